@@ -1,0 +1,1 @@
+"""Sweep, validate and diagnose the torsional compliance of cycloidal gear drives."""

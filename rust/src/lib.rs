@@ -1,0 +1,3 @@
+//! Compliance of single-stage cycloidal drives.
+#[cfg(feature = "python")]
+mod py;
