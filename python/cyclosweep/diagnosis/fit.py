@@ -376,13 +376,17 @@ class _Model:
 
     def settle(self, values: Floats) -> None:
         """Move the point about which the likelihood is expanded to these shapes."""
-        for _ in range(6):
-            _, history, mean, beta = self._evaluate(values, INNER)
-            moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
-            self.history, self.mean, self.beta = history, mean, beta
-            self.target, self.weight = self._working(mean)
-            if moved < 1e-3 * self.noise.sigma_deg:
-                break
+        exact = self.noise
+        for level in _levels(exact):
+            self.noise = exact.with_sigma(level)
+            self.target, self.weight = self._working(self.mean)
+            for _ in range(6):
+                _, history, mean, beta = self._evaluate(values, INNER)
+                moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
+                self.history, self.mean, self.beta = history, mean, beta
+                self.target, self.weight = self._working(mean)
+                if moved < 1e-3 * self.noise.sigma_deg:
+                    break
 
     def finish(self, values: Floats) -> Fit:
         """Collect the fit with its tangent space."""
@@ -430,6 +434,14 @@ class _Model:
                         return False
             first += width
         return True
+
+
+def _levels(noise: Noise) -> list[float]:
+    """Sizes of noise from wide to exact: a coarse dial's likelihood has to be approached."""
+    levels = [noise.sigma_deg]
+    while noise.step_deg > 0 and levels[-1] < 0.25 * noise.step_deg:
+        levels.append(1.8 * levels[-1])
+    return levels[::-1]
 
 
 def _solve(design: Floats, target: Floats) -> Floats:

@@ -1,5 +1,7 @@
 """A hum of unknown frequency: the periodogram of the residual, with its own look-elsewhere price."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from cyclosweep.diagnosis.freeform import FreeForm, clock_of
@@ -39,9 +41,10 @@ def find_hum(history: History, fitted: Flags, residual: Floats) -> tuple[float, 
     usable = frequency > CYCLES / (samples * step)
     if not np.any(usable):
         return 0.0, None
+    power = power / np.maximum(_floor(power), 1.0)
     best = int(np.argmax(np.where(usable, power, 0.0)))
     looked = max(count / 2.0 * np.mean(usable), 1.0)
-    value = float(power[best] - np.log(2.0 * looked))
+    value = float(power[best] - np.log(3.5 * looked) - 1.0)
     chosen = float(frequency[best])
 
     def waves(h: History) -> Floats:
@@ -52,6 +55,15 @@ def find_hum(history: History, fitted: Flags, residual: Floats) -> tuple[float, 
     return max(value, 0.0), FreeForm(FAMILY, f"at {chosen:.4g} {unit}, all along", waves)
 
 
+def _floor(power: Floats) -> Floats:
+    """Level of the noise around each frequency, where the whitening was not perfect."""
+    width = max(len(power) // 24, 16)
+    count = max(len(power) // width, 1)
+    edges = np.linspace(0, len(power), count + 1).astype(int)
+    level = [float(np.median(power[a:b])) / np.log(2.0) for a, b in pairwise(edges)]
+    return np.interp(np.arange(len(power)), 0.5 * (edges[1:] + edges[:-1]), level)
+
+
 def null_hum(count: int, rng: np.random.Generator) -> Floats:
     """Evidence of the strongest sinusoid in white noise: a Gumbel variable."""
-    return np.maximum(-np.log(-np.log(rng.uniform(1e-12, 1.0, count))), 0.0)
+    return np.maximum(-np.log(-np.log(rng.uniform(1e-12, 1.0, count))) - 1.0, 0.0)

@@ -129,7 +129,7 @@ def estimate_noise(
     angle : ndarray, shape (n,)
         Measured twist [deg].
     rich : ndarray, shape (n, k)
-        Columns of a model rich enough to leave hardly anything but noise.
+        Orthonormal columns of a model rich enough to leave hardly anything but noise.
     gap : ndarray, shape (n,)
         Steps since the row before, zero where unrelated.
     resolution : float
@@ -138,7 +138,7 @@ def estimate_noise(
         Samples averaged in each row.
     """
     count = len(angle)
-    basis = orthonormal(rich, 1e-7)
+    basis = rich
     limit = max(count // 3, 3)
     basis = basis[:, :limit]
     freedom = max(count - basis.shape[1], 1)
@@ -155,10 +155,16 @@ def estimate_noise(
             fine = _interval_sigma(angle, rich, resolution, sigma)
             if fine < resolution / COARSE_STEP:
                 known = Noise(fine, 0.0, 0.0, np.inf, resolution, freedom, gap)
-                mean = _scored_mean(angle, rich, known, sigma)
-                score, _ = known.residual(angle, mean)
+                mean = _scored_mean(angle, rich[:, :12], known, sigma)
+                score, weight = known.residual(angle, mean)
                 best, upper = _correlation(score, basis[:, :1], gap)
-                return replace(known, correlation=max(upper, 0.0), best_correlation=best)
+                telling = float(np.sum((weight * fine) ** 2))
+                return replace(
+                    known,
+                    correlation=upper,
+                    best_correlation=best,
+                    freedom=max(telling - 6.0, 4.0),
+                )
         sigma = max(sigma, resolution / np.sqrt(12.0))
     return Noise(sigma, upper, best, tail, 0.0, freedom, gap)
 
@@ -235,36 +241,47 @@ def _size(noise: Noise, left: Floats, basis: Floats, freedom: float) -> tuple[fl
     return best_sigma, best_tail
 
 
-def _scored_mean(angle: Floats, rich: Floats, noise: Noise, start_sigma: float) -> Floats:
+def _scoring_step(
+    angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float
+) -> Floats:
+    """One damped Fisher-scoring step of the mean of a coarse reading within a basis."""
+    score, information = interval_score(angle, mean, sigma, step)
+    gram = basis.T @ (basis * information[:, None])
+    gram += (1e-6 * np.trace(gram) / len(gram) + 1e-12) * np.eye(len(gram))
+    change = basis @ np.linalg.solve(gram, basis.T @ score)
+    longest = float(np.abs(change).max(initial=0.0))
+    return mean + change * min(1.0, 0.5 * step / max(longest, 1e-300))
+
+
+def _scored_mean(angle: Floats, basis: Floats, noise: Noise, start_sigma: float) -> Floats:
     """Mean of a coarse reading by Fisher scoring, from wide noise down to the given one."""
-    basis = orthonormal(rich)
     mean = basis @ (basis.T @ angle)
     sigma = max(start_sigma, noise.sigma_deg)
     while True:
-        for _ in range(4):
-            score, information = interval_score(angle, mean, sigma, noise.step_deg)
-            gram = basis.T @ (basis * information[:, None])
-            gram += 1e-8 * np.trace(gram) / len(gram) * np.eye(len(gram))
-            mean = mean + basis @ np.linalg.solve(gram, basis.T @ score)
+        for _ in range(5):
+            mean = _scoring_step(angle, basis, mean, sigma, noise.step_deg)
         if sigma <= noise.sigma_deg:
             return mean
         sigma = max(0.6 * sigma, noise.sigma_deg)
 
 
 def _interval_sigma(angle: Floats, rich: Floats, step: float, start: float) -> float:
-    """Standard deviation behind a coarse dial, by maximum likelihood over a grid."""
-    grid = step / np.geomspace(2.0, 60.0, 14)
-    basis = orthonormal(rich[:, : max(3, min(rich.shape[1], 25))])
-    mean = basis @ (basis.T @ angle)
-    best, best_value = float(grid[0]), -np.inf
-    for sigma in grid:
-        for _ in range(6):
-            score, information = interval_score(angle, mean, sigma, step)
-            gram = basis.T @ (basis * information[:, None])
-            gram += 1e-8 * np.trace(gram) / len(gram) * np.eye(len(gram))
-            mean = mean + basis @ np.linalg.solve(gram, basis.T @ score)
-        _, probability = _bin_score(angle - mean, sigma, step)
-        value = float(np.log(np.maximum(probability, 1e-300)).sum())
-        if value > best_value:
-            best, best_value = float(sigma), value
-    return best
+    """Standard deviation behind a coarse dial: the largest that the likelihood still allows.
+
+    Only readings near a step tell anything, so the model that is taken out is kept small.
+    """
+    grid = step / np.geomspace(2.0, 60.0, 24)
+    telling = len(angle) * 4.0 * grid / step
+    value = np.empty(len(grid))
+    for width in (3, 12):
+        basis = rich[:, :width]
+        mean = basis @ (basis.T @ angle)
+        for k, sigma in enumerate(grid):
+            if width > 3 and telling[k] < 20 * width:
+                break
+            for _ in range(4):
+                mean = _scoring_step(angle, basis, mean, float(sigma), step)
+            _, probability = _bin_score(angle - mean, float(sigma), step)
+            value[k] = float(np.log(np.maximum(probability, 1e-300)).sum())
+    allowed = np.flatnonzero(value > value.max() - 1.0)
+    return float(grid[allowed[0]])

@@ -25,9 +25,15 @@ def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
     return np.where((chi2 > rank) & (rank > 0), value, 0.0)
 
 
-def small_sample(chi2: Floats, freedom: float) -> Floats:
-    """Likelihood-ratio gain where sigma is known with few degrees of freedom only."""
-    return freedom * np.log1p(chi2 / freedom)
+def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
+    """Twice the log-likelihood gained by taking chi2 away from an excess over pure noise.
+
+    The noise is known with so many degrees of freedom only, so gains count by the logarithm; they
+    add up over nested models, whatever the order.
+    """
+    before = np.log1p(np.maximum(excess, chi2) / freedom)
+    after = np.log1p(np.maximum(excess - chi2, 0.0) / freedom)
+    return np.asarray(freedom * (before - after))
 
 
 def average_evidence(values: Floats) -> float:
@@ -51,6 +57,8 @@ class Scan:
         Inner products of the columns before the projection.
     freedom : float
         Degrees of freedom with which the noise is known.
+    excess : float
+        Chi-squared of the residual beyond what noise explains.
     """
 
     library: Library
@@ -58,6 +66,7 @@ class Scan:
     gram: Floats
     energy: Floats
     freedom: float
+    excess: float = 0.0
 
     @cached_property
     def transforms(self) -> list[Floats]:
@@ -75,7 +84,7 @@ class Scan:
         return np.array([t.shape[1] for t in self.transforms], dtype=np.float64)
 
     def gains(self, score: Floats) -> Floats:
-        """Chi-squared gain of each block, shape (blocks,) or (blocks, draws)."""
+        """Chi-squared that each block takes away, shape (blocks,) or (blocks, draws)."""
         out = np.zeros((len(self.library.blocks), *score.shape[1:]))
         alone = self._single
         if len(alone[0]):
@@ -94,7 +103,7 @@ class Scan:
                 signs = block.signs.reshape((-1,) + (1,) * (score.ndim - 1))
                 gain = np.where(np.any(signs * amplitude < 0, axis=0), 0.0, gain)
             out[k] = gain
-        return small_sample(out, self.freedom)
+        return out
 
     @cached_property
     def _single(self) -> tuple[np.ndarray, np.ndarray, Floats, Floats]:
@@ -132,7 +141,7 @@ class Scan:
     @cached_property
     def observed(self) -> Floats:
         """Gain of each block on the recording."""
-        return self.gains(self.score)
+        return likelihood_gain(self.gains(self.score), self.excess, self.freedom)
 
     @cached_property
     def by_hypothesis(self) -> dict[str, float]:
@@ -162,7 +171,8 @@ class Scan:
         left = count
         while left > 0:
             part = min(left, 500)
-            maxima.append(self.evidences(self.gains(self.draws(part, rng))).max(axis=0))
+            gains = likelihood_gain(self.gains(self.draws(part, rng)), 0.0, self.freedom)
+            maxima.append(self.evidences(gains).max(axis=0))
             left -= part
         return np.concatenate(maxima)
 
@@ -185,7 +195,7 @@ class Scan:
         library = Library(tuple(blocks), self.library.columns[:, index], self.library.untestable)
         return Scan(
             library, self.score[index], self.gram[np.ix_(index, index)], self.energy[index],
-            self.freedom,
+            self.freedom, self.excess,
         )
 
 
@@ -203,7 +213,7 @@ def _whitener(inner: Floats, energy: Floats) -> Floats:
 
 def scan(
     library: Library, whitened: Floats, gram: Floats, tangent: Floats, residual: Floats,
-    freedom: float,
+    freedom: float, excess: float = 0.0,
 ) -> Scan:
     """Project the library's whitened columns off a tangent basis and score the residual.
 
@@ -221,4 +231,4 @@ def scan(
     shadow = tangent.T @ whitened
     projected = gram - shadow.T @ shadow
     score = whitened.T @ residual - shadow.T @ (tangent.T @ residual)
-    return Scan(library, score, projected, np.diag(gram).copy(), freedom)
+    return Scan(library, score, projected, np.diag(gram).copy(), freedom, excess)

@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.freeform import FreeForm
 from cyclosweep.diagnosis.library import Block, Library
 from cyclosweep.diagnosis.noise import Noise
 from cyclosweep.diagnosis.problem import Problem
-from cyclosweep.diagnosis.scan import Scan, evidence, scan, small_sample
+from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
 from cyclosweep.effects.history import Floats
 
 DRAWS = 1000
@@ -97,7 +97,7 @@ class Search:
     def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
         rest = scan(
             self.library, self.whitened, self.gram, fitted.tangent, fitted.residual,
-            self.noise.freedom,
+            self.noise.freedom, self._excess(fitted),
         )
         found = hum.find_hum(fitted.history, self.problem.fitted, fitted.residual)
         return Node(fitted, gain, prior, rest, found)
@@ -109,8 +109,7 @@ class Search:
             joint = fit(self.problem, self.noise, (*node.fit.terms, term), node.fit)
             if not joint.valid:
                 continue
-            chi2 = float(small_sample(np.array(node.fit.chi2 - joint.chi2), self.noise.freedom))
-            added = float(evidence(chi2, rank)) - cost
+            added = float(evidence(self._gain(node.fit, joint), rank)) - cost
             prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
             prior -= 0.0 if term.effect is not None else WITHOUT_NAME
             if best is None or node.gain + added > best.gain:
@@ -120,6 +119,14 @@ class Search:
             if known is None or best.score > known.score:
                 self.nodes[best.names] = best
         return best
+
+    def _excess(self, fitted: Fit) -> float:
+        return max(fitted.chi2 - self.noise.freedom, 0.0)
+
+    def _gain(self, before: Fit, after: Fit) -> float:
+        """Twice the log-likelihood gained from one fit to the next."""
+        drop = before.chi2 - after.chi2
+        return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
     def _starts(self, node: Node, hypothesis: str) -> Iterable[tuple[Term, float, float]]:
         """Terms to start from, with projected rank and the price of the choice of shape."""
@@ -195,9 +202,12 @@ class Search:
         self._follow(progress)
 
     def _drop(self) -> None:
-        """Leave each term out of the best structure: the rest may explain it all."""
-        node = self.best()
-        if node is None or len(node.fit.terms) < 2:
+        """Leave each term out of the best structures: the rest may explain it all."""
+        for node in sorted(self.nodes.values(), key=lambda n: -n.score)[:4]:
+            self._visit_subsets(node)
+
+    def _visit_subsets(self, node: Node) -> None:
+        if len(node.fit.terms) < 2:
             return
         for k in range(len(node.fit.terms)):
             kept = [t for j, t in enumerate(node.fit.terms) if j != k]
@@ -228,7 +238,13 @@ class Search:
 
     def best(self) -> Node | None:
         """Structure with the largest posterior odds."""
-        return max(self.nodes.values(), key=lambda n: n.score, default=None)
+        return max(self.explanations(), key=lambda n: n.score, default=None)
+
+    def explanations(self) -> list[Node]:
+        """Structures worth considering: those that contain a sufficient smaller one are not."""
+        enough = [n.names for n in self.nodes.values() if n.left < self.threshold]
+        kept = [n for n in self.nodes.values() if not any(e < n.names for e in enough)]
+        return sorted(kept, key=lambda n: -n.score)
 
 
 def _differs(block: Block, other: Block) -> bool:
