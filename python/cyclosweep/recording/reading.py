@@ -47,12 +47,13 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     notes += notes_dropped
     _recognise_angle(columns, meta, notes)
     run = columns.pop("run")
+    assert run is not None  # _canonical makes one where the file has none
     resolution = meta.angle_resolution_deg
     if resolution == 0 and columns["angle_deg"] is not None:
         resolution = angle_lattice(columns["angle_deg"])
         if resolution:
             notes.append(f"Angles lie on steps of {resolution:g} deg: taken as the resolution.")
-    if meta.side is None:
+    if meta.side is None and columns["angle_deg"] is not None:
         notes.append("Side not given: taken as the input shaft.")
     return {
         "name": stem(path),

@@ -227,9 +227,8 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
 
 def _refuse_long_rows(path: Path, text: CsvText) -> None:
     """Refuse rows with more cells than the header, as decimal commas between commas make them."""
-    body = memoryview(text.content)[text.start :]
     count = text.content.count(text.separator.encode(), text.start)
-    lines = text.content.count(b"\n", text.start) + (len(body) > 0 and body[-1:] != b"\n")
+    lines = text.content.count(b"\n", text.start) + (not text.content.endswith(b"\n"))
     if count == lines * (len(text.header) - 1):
         return
     for line, cells in _rows(path, text):
