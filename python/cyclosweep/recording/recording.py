@@ -10,9 +10,11 @@ import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
+from cyclosweep.errors import InputError
 from cyclosweep.recording import reading, structure
 from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.faults import Fault
+from cyclosweep.recording.messages import printable
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -114,7 +116,10 @@ class Recording:
         InputError
             The file cannot be read as a recording; one line says why.
         """
-        parts = reading.read(Path(path), None if meta is None else Path(meta))
+        try:
+            parts = reading.read(Path(path), None if meta is None else Path(meta))
+        except InputError as error:  # names in the file may hold line breaks
+            raise InputError(printable(str(error))) from None
         recording = cls(**parts)
         return replace(recording, faults=find_faults(recording))
 

@@ -81,11 +81,11 @@ def find_structure(recording: "Recording") -> Structure:
     loading = np.ones(n, dtype=bool)
     largest = float(np.abs(torque).max(initial=0.0))
     threshold = REVERSAL_SHARE * float(np.ptp(torque)) if n else 0.0
-    edges = np.flatnonzero(np.r_[True, np.diff(run) != 0]) if n else np.zeros(0, dtype=np.int64)
+    edges = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
     reversals: list[int] = []
     branches: list[Branch] = []
     holds: list[Hold] = []
-    for start, stop in zip(edges, [*edges[1:], n], strict=True):
+    for start, stop in pairwise([*edges, n]):
         part = torque[start:stop]
         turns = turning_points(part, threshold)
         reversals += (turns + start).tolist()
@@ -97,7 +97,7 @@ def find_structure(recording: "Recording") -> Structure:
             loading[a:crossing], loading[crossing:b] = False, True
         holds += _holds(recording, int(start), int(stop))
     cuts = np.flatnonzero((np.diff(loading) != 0) | (np.diff(run) != 0)) + 1
-    for a, b in zip([0, *cuts], [*cuts, n], strict=True):
+    for a, b in pairwise([0, *cuts, n]):
         if b > a:
             direction: Direction = "loading" if loading[a] else "unloading"
             ends = float(torque[a]), float(torque[b - 1])
