@@ -6,7 +6,7 @@ def one_line(text: str) -> str:
 
     Examples
     --------
-    >>> one_line("first\\n  second\\x0b")
+    >>> one_line("first\n  second\x0b")
     'first second'
     """
     return printable(" ".join(text.split()))
@@ -17,8 +17,8 @@ def printable(text: str) -> str:
 
     Examples
     --------
-    >>> printable("a\\nb")
-    'a\\\\nb'
+    >>> printable("a\nb")
+    'a\\nb'
     """
     if text.isprintable():
         return text
