@@ -12,12 +12,18 @@ if TYPE_CHECKING:
 MIN_SAMPLES = 8
 """Fewest samples from which stiffness, free play, datum and a scatter can be told."""
 
+ABSURD = 1e10
+"""Magnitude that no reading has, in any of the units."""
+
 GAP_FACTOR = 20.0
 """A step of the clock beyond so many median steps is a gap."""
 
 
+@np.errstate(all="ignore")
 def find_faults(recording: "Recording") -> tuple[Fault, ...]:
     """Everything that is wrong with a recording, worst first."""
+    if absurd := _absurd(recording):
+        return absurd
     faults = [
         *_sample_size(recording),
         *_runs(recording),
@@ -27,6 +33,17 @@ def find_faults(recording: "Recording") -> tuple[Fault, ...]:
     ]
     order = {"DATA_FAULT": 0, "INSUFFICIENT_DATA": 1, None: 2}
     return tuple(sorted(faults, key=lambda fault: order[fault.verdict]))
+
+
+def _absurd(recording: "Recording") -> tuple[Fault, ...]:
+    """Refuse numbers that no torque, angle or clock has."""
+    for name, unit in (("torque_nm", "N m"), ("angle_deg", "deg"), ("time_s", "s")):
+        values = getattr(recording, name)
+        largest = 0.0 if values is None else float(np.abs(values).max(initial=0.0))
+        if largest > ABSURD:
+            reason = f"{name} reaches {largest:.3g} {unit}: no rig reads that."
+            return (Fault("absurd_value", "DATA_FAULT", reason),)
+    return ()
 
 
 def _sample_size(recording: "Recording") -> list[Fault]:
@@ -161,8 +178,7 @@ def _relation(recording: "Recording") -> list[Fault]:
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < 30 or not np.ptp(torque) or not np.ptp(angle):
         return []
-    with np.errstate(over="ignore", invalid="ignore"):
-        relation = float(np.corrcoef(torque, angle)[0, 1])
+    relation = float(np.corrcoef(torque, angle)[0, 1])
     if np.isfinite(relation) and abs(relation) > 0.05:
         return []
     return [

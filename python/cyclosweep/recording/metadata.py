@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.messages import one_line
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
 """Column names of a recording, each with its unit."""
@@ -153,13 +154,8 @@ class Metadata(_Strict):
             raise InputError(f"{path}: {first_problem(error)}") from None
 
 
-def one_line(text: str) -> str:
-    """Collapse a message to one printable line."""
-    return " ".join(text.split())
-
-
 def first_problem(error: ValidationError) -> str:
-    """First validation problem as 'key: what was found, what was expected'."""
+    """Say the first validation problem as 'key: what was found, what was expected'."""
     problem = error.errors(include_url=False, include_context=False)[0]
     key = ".".join(str(part) for part in problem["loc"] if part != "[key]")
     found = one_line(repr(problem["input"]))

@@ -23,6 +23,7 @@ from cyclosweep.recording.signals import (
 Floats = NDArray[np.float64]
 
 
+@np.errstate(all="ignore")
 def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     """Read the parts of a recording, as keyword arguments of `Recording`.
 
@@ -43,16 +44,19 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     columns, frame = _select(path, meta_path, meta, columns, frame, notes)
     if meta.merge.same_time:
         columns = _merge(path, columns, notes)
+    elif columns["time_s"] is not None:
+        columns = _drop_repeated(columns, notes)
     columns, notes_dropped = _drop_missing(columns)
     notes += notes_dropped
     _recognise_angle(columns, meta, notes)
     run = columns.pop("run")
+    assert run is not None  # _canonical makes one where the file has none
     resolution = meta.angle_resolution_deg
     if resolution == 0 and columns["angle_deg"] is not None:
         resolution = angle_lattice(columns["angle_deg"])
         if resolution:
             notes.append(f"Angles lie on steps of {resolution:g} deg: taken as the resolution.")
-    if meta.side is None:
+    if meta.side is None and columns["angle_deg"] is not None:
         notes.append("Side not given: taken as the input shaft.")
     return {
         "name": stem(path),
@@ -205,6 +209,17 @@ def _merge(
             f"(up to {largest} in one)."
         )
     return merged
+
+
+def _drop_repeated(columns: dict[str, Floats | None], notes: list[str]) -> dict[str, Floats | None]:
+    """Drop rows that repeat the one before them in everything, the clock included."""
+    present = [values for values in columns.values() if values is not None]
+    repeated = np.logical_and.reduce([values[1:] == values[:-1] for values in present])
+    if not repeated.any():
+        return columns
+    keep = np.r_[True, ~repeated]
+    notes.append(f"{np.count_nonzero(repeated)} rows that repeat the one before dropped.")
+    return {name: None if a is None else a[keep] for name, a in columns.items()}
 
 
 def _drop_missing(

@@ -4,15 +4,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
+from cyclosweep.errors import InputError
 from cyclosweep.recording import reading, structure
 from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.faults import Fault
+from cyclosweep.recording.messages import printable
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -87,12 +89,14 @@ class Recording:
             given = getattr(self, name)
             if given is None:
                 continue
-            array = np.array(given, dtype=np.int64 if name == "run" else np.float64)
+            array = np.asarray(given, dtype=np.int64 if name == "run" else np.float64)
             if array.ndim != 1 or len(array) != len(self.torque_nm):
                 raise ValueError(
                     f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
                 )
-            array.flags.writeable = False
+            if array.flags.writeable:
+                array = array.copy()
+                array.flags.writeable = False
             object.__setattr__(self, name, array)
 
     @classmethod
@@ -112,7 +116,10 @@ class Recording:
         InputError
             The file cannot be read as a recording; one line says why.
         """
-        parts = reading.read(Path(path), None if meta is None else Path(meta))
+        try:
+            parts = reading.read(Path(path), None if meta is None else Path(meta))
+        except InputError as error:  # names in the file may hold line breaks
+            raise InputError(printable(str(error))) from None
         recording = cls(**parts)
         return replace(recording, faults=find_faults(recording))
 
@@ -127,7 +134,7 @@ class Recording:
         crank_deg: ArrayLike | None = None,
         temperature_c: ArrayLike | None = None,
         name: str = "recording",
-        **known: object,
+        **known: Any,
     ) -> Self:
         """Make a recording of arrays; other attributes by keyword.
 
@@ -140,12 +147,12 @@ class Recording:
         recording = cls(
             name=name,
             torque_nm=torque,
-            angle_deg=angle_deg,  # type: ignore[arg-type]  # converted in __post_init__
-            time_s=time_s,  # type: ignore[arg-type]
-            run=np.ones(len(torque)) if run is None else run,  # type: ignore[arg-type]
-            crank_deg=crank_deg,  # type: ignore[arg-type]
-            temperature_c=temperature_c,  # type: ignore[arg-type]
-            **known,  # type: ignore[arg-type]
+            angle_deg=_floats(angle_deg),
+            time_s=_floats(time_s),
+            run=np.asarray(np.ones(len(torque)) if run is None else run, dtype=np.int64),
+            crank_deg=_floats(crank_deg),
+            temperature_c=_floats(temperature_c),
+            **known,
         )
         return replace(recording, faults=find_faults(recording))
 
@@ -182,7 +189,7 @@ class Recording:
 
     def take(self, rows: NDArray[np.bool_] | Sequence[int] | Ints | slice) -> Self:
         """Return a part of the recording, in the order recorded."""
-        parts = {
+        parts: dict[str, Any] = {
             name: None if (array := getattr(self, name)) is None else array[rows]
             for name in ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
         }
@@ -190,7 +197,7 @@ class Recording:
 
     def with_angle(self, angle_deg: ArrayLike | None) -> Self:
         """Return the same load history with another angle, as for synthetic twins."""
-        return replace(self, angle_deg=angle_deg)
+        return replace(self, angle_deg=_floats(angle_deg))
 
     def to_frame(self) -> pl.DataFrame:
         """Canonical columns as a polars frame."""
@@ -198,3 +205,8 @@ class Recording:
         return pl.DataFrame(
             {name: array for name in columns if (array := getattr(self, name)) is not None}
         )
+
+
+def _floats(values: ArrayLike | None) -> Floats | None:
+    """Make an array of floats, where there is one to make."""
+    return None if values is None else np.asarray(values, dtype=np.float64)

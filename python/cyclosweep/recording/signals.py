@@ -59,16 +59,15 @@ def sign_is_reversed(torque_nm: Floats, angle_deg: Floats, run: NDArray[np.gener
     count = np.bincount(label)
     torque = torque_nm - (np.bincount(label, torque_nm) / count)[label]
     angle = angle_deg - (np.bincount(label, angle_deg) / count)[label]
-    with np.errstate(over="ignore", invalid="ignore"):
-        spread = np.sqrt(np.mean(torque**2) * np.mean(angle**2))
-        return bool(spread > 0 and np.mean(torque * angle) < -0.5 * spread)
+    spread = np.sqrt(np.mean(torque**2) * np.mean(angle**2))
+    return bool(spread > 0 and np.mean(torque * angle) < -0.5 * spread)
 
 
 def angle_lattice(angle_deg: Floats) -> float:
     """Step of the angle reading [deg] where all values are multiples of one; else 0.
 
     Steps below a thousandth of the range, as the printing of decimals makes them, do not matter
-    and count as continuous.
+    and count as continuous; so do steps that no dial or encoder has.
     """
     levels = np.unique(angle_deg)
     if len(levels) < 3 or len(levels) > 1000:
@@ -80,7 +79,19 @@ def angle_lattice(angle_deg: Floats) -> float:
     places = (levels - levels[0]) / step
     if np.abs(places - np.rint(places)).max() > 1e-3:
         return 0.0
-    return float(f"{span / np.rint(places[-1]):.9g}")
+    step = float(f"{span / np.rint(places[-1]):.6g}")
+    return step if _is_graduation(step) else 0.0
+
+
+def _is_graduation(step_deg: float) -> bool:
+    """Whether a dial or an encoder has such steps: 1, 2, 2.5 or 5 times ten to a power, or 360/2^n.
+
+    Even steps of torque on a straight line give even steps of angle too, but not such ones.
+    """
+    mantissa = step_deg / 10.0 ** np.floor(np.log10(step_deg) + 1e-9)
+    power = np.log2(360.0 / step_deg)
+    dial = bool(np.isclose(mantissa, [1.0, 2.0, 2.5, 5.0], rtol=1e-5).any())
+    return dial or bool(abs(power - np.rint(power)) < 1e-5)
 
 
 def merge_same_time(

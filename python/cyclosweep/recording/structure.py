@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 Direction = Literal["loading", "unloading"]
 
-REVERSAL_SHARE = 0.02
+REVERSAL_SHARE = 0.05
 """A change of direction counts once the torque has gone back by this share of its range."""
 
 HOLD_SAMPLES = 5
@@ -78,24 +78,26 @@ def find_structure(recording: "Recording") -> Structure:
     torque, run = recording.torque_nm, recording.run
     n = len(torque)
     sense = np.ones(n, dtype=np.int8)
+    loading = np.ones(n, dtype=bool)
     largest = float(np.abs(torque).max(initial=0.0))
     threshold = REVERSAL_SHARE * float(np.ptp(torque)) if n else 0.0
-    edges = np.flatnonzero(np.r_[True, np.diff(run) != 0]) if n else np.zeros(0, dtype=np.int64)
+    edges = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
     reversals: list[int] = []
     branches: list[Branch] = []
     holds: list[Hold] = []
-    for start, stop in zip(edges, [*edges[1:], n], strict=True):
+    for start, stop in pairwise([*edges, n]):
         part = torque[start:stop]
         turns = turning_points(part, threshold)
         reversals += (turns + start).tolist()
         bounds = [0, *(turns + 1), len(part)]
-        for a, b in pairwise(bounds):
-            begin = part[max(a - 1, 0)]
-            sense[start + a : start + b] = 1 if part[b - 1] >= begin else -1
+        for a, b in pairwise(start + np.array(bounds)):
+            rising = torque[b - 1] >= torque[max(a - 1, start)]
+            sense[a:b] = 1 if rising else -1
+            crossing = a + _zero_crossing(torque[a:b], rising)
+            loading[a:crossing], loading[crossing:b] = False, True
         holds += _holds(recording, int(start), int(stop))
-    loading = np.where(torque >= 0, sense > 0, sense < 0)
     cuts = np.flatnonzero((np.diff(loading) != 0) | (np.diff(run) != 0)) + 1
-    for a, b in zip([0, *cuts], [*cuts, n], strict=True):
+    for a, b in pairwise([0, *cuts, n]):
         if b > a:
             direction: Direction = "loading" if loading[a] else "unloading"
             ends = float(torque[a]), float(torque[b - 1])
@@ -144,6 +146,16 @@ def turning_points(values: NDArray[np.float64], threshold: float) -> NDArray[np.
                 turns.append(low)
             direction, low, high = 1, index, index
     return np.array([turn for turn in turns if turn > 0], dtype=np.int64)
+
+
+def _zero_crossing(torque: NDArray[np.float64], rising: bool) -> int:
+    """Index within one sweep from which the magnitude of torque grows.
+
+    The sum of torque turns there, which noise around zero does not shift.
+    """
+    total = np.cumsum(torque if rising else -torque)
+    lowest = int(np.argmin(total))
+    return lowest + 1 if total[lowest] < 0 else 0
 
 
 def _holds(recording: "Recording", start: int, stop: int) -> list[Hold]:

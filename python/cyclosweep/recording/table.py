@@ -11,7 +11,7 @@ from pathlib import Path
 import polars as pl
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording.metadata import one_line
+from cyclosweep.recording.messages import one_line, shown
 
 MAX_BYTES = 8 * 2**30
 """Largest uncompressed text that is read [byte]."""
@@ -129,7 +129,7 @@ def open_csv(path: Path) -> CsvText:
     separator = max(_SEPARATORS, key=head.count)
     if separator not in head:
         raise InputError(
-            f"{path}, line {line}: one column ({_shown(head)}), expected at least torque_nm and "
+            f"{path}, line {line}: one column ({shown(head)}), expected at least torque_nm and "
             "angle_deg divided by ',' or ';'"
         )
     try:
@@ -140,7 +140,7 @@ def open_csv(path: Path) -> CsvText:
         ) from None
     if all(_is_number(name) or not name for name in names):
         raise InputError(
-            f"{path}, line {line}: found numbers ({_shown(head)}), expected a header row with "
+            f"{path}, line {line}: found numbers ({shown(head)}), expected a header row with "
             "column names such as torque_nm,angle_deg"
         )
     decimal_comma = separator != "," and b"," in content[stop : stop + 10_000]
@@ -217,7 +217,7 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
                 number = _number(cell.replace(",", ".") if text.decimal_comma else cell)
                 if number is None:
                     raise InputError(
-                        f"{path}, line {line}, column {name}: found {_shown(cell)}, "
+                        f"{path}, line {line}, column {name}: found {shown(cell)}, "
                         "expected a number"
                     )
                 columns[name].append(number)
@@ -227,9 +227,8 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
 
 def _refuse_long_rows(path: Path, text: CsvText) -> None:
     """Refuse rows with more cells than the header, as decimal commas between commas make them."""
-    body = memoryview(text.content)[text.start :]
     count = text.content.count(text.separator.encode(), text.start)
-    lines = text.content.count(b"\n", text.start) + (len(body) > 0 and body[-1:] != b"\n")
+    lines = text.content.count(b"\n", text.start) + (not text.content.endswith(b"\n"))
     if count == lines * (len(text.header) - 1):
         return
     for line, cells in _rows(path, text):
@@ -283,11 +282,6 @@ def _number(cell: str) -> float | None:
 def _is_number(cell: str) -> bool:
     """Whether a header cell is a number, also with a decimal comma."""
     return _number(cell.replace(",", ".")) is not None
-
-
-def _shown(text: str) -> str:
-    """Foreign text as a short, printable quotation."""
-    return repr(text if len(text) <= 40 else text[:37] + "...")
 
 
 def read_parquet(path: Path, numbers: Iterable[str], words: Iterable[str]) -> pl.DataFrame:
