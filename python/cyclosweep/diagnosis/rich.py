@@ -9,7 +9,6 @@ from cyclosweep.effects.history import Floats
 
 SMOOTH = (
     "torque and direction",
-    "run offsets",
     "smooth odd curve",
     "even curve",
     "hysteresis",

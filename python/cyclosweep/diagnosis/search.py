@@ -21,7 +21,7 @@ FLOOR = 5.2
 """Smallest threshold of evidence: a thousand draws wander by about this much less."""
 EXTRA_TERM = 3.0
 """Log prior odds against every further effect."""
-WITHOUT_NAME = 1.5
+WITHOUT_NAME = 3.0
 """Log prior odds against a shape without a name."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
