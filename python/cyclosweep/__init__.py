@@ -6,6 +6,7 @@ import cyclosweep._core as _core
 from cyclosweep.dataset import scan_dataset
 from cyclosweep.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.errors import DesignError, InputError, SweepError
+from cyclosweep.recording import Recording
 from cyclosweep.scan import scan, sweep
 from cyclosweep.shards import shard, sink
 from cyclosweep.space import Space, linspace
@@ -27,6 +28,7 @@ __all__ = [
     "InputError",
     "Keyway",
     "Objective",
+    "Recording",
     "Space",
     "Study",
     "SweepError",

@@ -1,14 +1,13 @@
 """The TOML file beside a recording that says how to read it."""
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
+from cyclosweep.drive import one_line, read_toml
 from cyclosweep.errors import InputError
-from cyclosweep.recording.messages import one_line
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
 """Column names of a recording, each with its unit."""
@@ -137,35 +136,9 @@ class Metadata(_Strict):
         InputError
             The file is missing, is not TOML, or has a key or value that is not known.
         """
-        path = Path(path)
         try:
-            text = path.read_bytes().decode("utf-8-sig")
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
-        except UnicodeDecodeError:
-            raise InputError(f"{path}: expected a TOML file in UTF-8") from None
-        try:
-            table = tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
-            raise InputError(f"{path}: not valid TOML: {one_line(str(error))}") from None
-        try:
-            return cls.model_validate(table)
+            return cls.model_validate(read_toml(path))
         except ValidationError as error:
-            raise InputError(f"{path}: {first_problem(error)}") from None
-
-
-def first_problem(error: ValidationError) -> str:
-    """Say the first validation problem as 'key: what was found, what was expected'."""
-    problem = error.errors(include_url=False, include_context=False)[0]
-    key = ".".join(str(part) for part in problem["loc"] if part != "[key]")
-    found = one_line(repr(problem["input"]))
-    if len(found) > 60:
-        found = found[:57] + "..."
-    where = f"key {key}: " if key else ""
-    match problem["type"]:
-        case "extra_forbidden":
-            return f"{where}unknown key (found value {found})"
-        case "value_error":
-            return where + one_line(problem["msg"].removeprefix("Value error, "))
-        case _:
-            return f"{where}found {found}, expected: {one_line(problem['msg'])}"
+            raise InputError(f"{path}: {one_line(error)}") from None
+        except RecursionError:
+            raise InputError(f"{path}: nested too deeply, expected a flat TOML file") from None

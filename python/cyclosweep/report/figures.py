@@ -143,17 +143,22 @@ def zoom_figure(data: ReportData) -> Figure:
         share *= 2
     near = np.flatnonzero(np.abs(torque) <= share * rated)
     near = near[thin(len(near), measured[near], 3000)]
-    name = (
-        f"±{number(100 * share)} % of {'rated' if data.rated_torque_nm else 'the largest'} torque"
-    )
-    zoom = Panel(
-        title=f"Around zero: {name}",
-        x_label=f"torque at the {recording.side} shaft (N m)",
-        y_label=f"twist at the {recording.side} shaft (deg)",
-        series=tuple(_loop_series(data, near)),
-        x_range=(-share * rated, share * rated),
-    )
-    panels = [Placed(panel=zoom, row=0, column=0)]
+    of = "rated" if data.rated_torque_nm else "the largest"
+    sides = _zoom_sides(torque[near], measured[near], share * rated)
+    panels = [
+        Placed(
+            panel=Panel(
+                title=f"Around zero: ±{number(100 * share)} % of {of} torque" if not column else "",
+                x_label=f"torque at the {recording.side} shaft (N m)",
+                y_label=f"twist at the {recording.side} shaft (deg)",
+                series=tuple(_loop_series(data, near[rows])),
+                x_range=x_range,
+            ),
+            row=0,
+            column=column,
+        )
+        for column, (rows, x_range) in enumerate(sides)
+    ]
     energy = _energy_series(data)
     if energy:
         runs = list(recording.runs)
@@ -169,7 +174,7 @@ def zoom_figure(data: ReportData) -> Figure:
                     x_range=(-0.6, len(runs) - 0.4),
                 ),
                 row=0,
-                column=1,
+                column=len(sides),
             )
         )
     return Figure(
@@ -178,9 +183,23 @@ def zoom_figure(data: ReportData) -> Figure:
         caption="Lost motion is read between +3 % and −3 % of rated torque at mid-width, the "
         "hysteresis loss as the gap between the branches at zero torque.",
         panels=tuple(panels),
-        columns=2,
+        columns=len(sides) + 1,
         row_height=330,
     )
+
+
+def _zoom_sides(
+    torque: Floats, angle: Floats, limit: float
+) -> list[tuple[Mask, tuple[float, float]]]:
+    """Both sides of the dead zone in one panel, or in two where it dwarfs everything else."""
+    right = torque >= 0
+    both = np.ones(len(torque), dtype=bool)
+    if not right.any() or right.all():
+        return [(both, (-limit, limit))]
+    within = max(np.ptp(angle[right]), np.ptp(angle[~right]))
+    if np.ptp(angle) < 5 * within:
+        return [(both, (-limit, limit))]
+    return [(~right, (-limit, 0.0)), (right, (0.0, limit))]
 
 
 def profiles_figure(data: ReportData) -> Figure:
@@ -366,20 +385,25 @@ def _profile_panels(data: ReportData) -> Iterator[Panel]:
     side = recording.side
     torque_label = f"torque at the {side} shaft (N m)"
     yield _profile_panel(
-        data, recording.torque_nm, scored & structure.loading, "Loading", torque_label
+        data, recording.torque_nm, scored & structure.loading, "Loading", torque_label, split=True
     )
     yield _profile_panel(
-        data, recording.torque_nm, scored & ~structure.loading, "Unloading", torque_label
+        data,
+        recording.torque_nm,
+        scored & ~structure.loading,
+        "Unloading",
+        torque_label,
+        split=True,
     )
     assert recording.angle_deg is not None
     yield _profile_panel(
-        data, recording.angle_deg, scored, "Twist", f"twist at the {side} shaft (deg)"
+        data, recording.angle_deg, scored, "Twist", f"twist at the {side} shaft (deg)", split=True
     )
     if len(set(recording.run[scored])) > 1:
         yield _run_panel(data)
     if recording.time_s is not None:
         time, label = _axis_values(recording, "time")
-        yield _profile_panel(data, time, scored, "Time", label)
+        yield _profile_panel(data, time, scored, "Time", label, bins=72)
         yield _profile_panel(
             data, _torque_rate(recording), scored, "Rate of loading", "torque rate (N m/s)"
         )
@@ -393,19 +417,34 @@ def _profile_panels(data: ReportData) -> Iterator[Panel]:
         )
 
 
-def _profile_panel(data: ReportData, x: Floats, rows: Mask, title: str, label: str) -> Panel:
-    """Mean residual before and after against one quantity."""
+def _profile_panel(
+    data: ReportData,
+    x: Floats,
+    rows: Mask,
+    title: str,
+    label: str,
+    *,
+    split: bool = False,
+    bins: int = 24,
+) -> Panel:
+    """Mean residual before and after against one quantity, each side of zero by itself if asked."""
     sigma, rho = noise_of(data)
     before, after = data.residual_before_deg, data.residual_after_deg
     assert before is not None
     assert after is not None
+    parts = [rows & (x < 0), rows & (x >= 0)] if split else [rows]
+    parts = [part for part in parts if np.count_nonzero(part) >= 2]
     series: list[Series] = []
-    if np.count_nonzero(rows) >= 2:
+    for part in parts:
         profiles = [
-            (profile(x[rows], before[rows], sigma, rho), NAME_RESIDUAL_BEFORE, BEFORE),
-            (profile(x[rows], after[rows], sigma, rho), NAME_RESIDUAL_AFTER, AFTER),
-        ]
-        series = _profile_series(profiles)
+            (profile(x[part], residual[part], sigma, rho, bins=bins // len(parts), cells=bins),
+             name, colour)
+            for residual, name, colour in (
+                (before, NAME_RESIDUAL_BEFORE, BEFORE),
+                (after, NAME_RESIDUAL_AFTER, AFTER),
+            )
+        ]  # fmt: skip
+        series += _profile_series(profiles)
     return Panel(
         title=title, x_label=label, y_label="mean residual (deg)", series=tuple(series),
         zero_line=True,

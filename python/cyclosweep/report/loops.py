@@ -72,7 +72,9 @@ def loop_figures(
     at_level, at_zero = _angles_at(recording, angle_deg, level), _angles_at(recording, angle_deg, 0)
     middle = {sign: np.mean(list(sides.values())) for sign, sides in at_level.items() if sides}
     gaps = [
-        abs(sides["unloading"] - sides["loading"]) for sides in at_zero.values() if len(sides) == 2
+        round(abs(sides["unloading"] - sides["loading"]), 9)
+        for sides in at_zero.values()
+        if len(sides) == 2
     ]
     top = min(rated, largest)
     loading = recording.structure.loading & (np.abs(torque) >= 0.5 * top)
@@ -136,4 +138,6 @@ def _energy(recording: Recording, angle: Floats) -> dict[int, float]:
             continue
         around = 0.5 * (torque + np.roll(torque, -1)) * (np.roll(theta, -1) - theta)
         areas[run] = float(abs(around.sum()))
+        if areas[run] < 1e-9 * span * float(np.ptp(theta)):
+            areas[run] = 0.0  # rounding of a line gone forth and back
     return areas

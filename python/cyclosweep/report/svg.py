@@ -21,6 +21,7 @@ from cyclosweep.report.charts import (
     nice_ticks,
     tick_text,
 )
+from cyclosweep.report.wording import number
 
 Floats = NDArray[np.float64]
 
@@ -41,15 +42,16 @@ def figure_svg(figure: Figure) -> str:
         An ``svg`` element that scales with its container.
     """
     entries = legend(figure)
-    top = LEGEND if entries else 4.0
+    top = LEGEND if entries or _first_cells(figure) else 4.0
     height = top + figure.rows * figure.row_height
     parts = [
         f'<svg viewBox="0 0 {WIDTH:g} {height:g}" role="img" aria-label="{escape(figure.title)}" '
         'xmlns="http://www.w3.org/2000/svg">'
     ]
     parts.append(_legend(entries))
-    for number, placed in enumerate(figure.panels):
-        parts.append(_panel(figure, placed, top, f"{figure.key}-{number}"))
+    parts += [_colour_scale(cells) for cells in _first_cells(figure)]
+    for place, placed in enumerate(figure.panels):
+        parts.append(_panel(figure, placed, top, f"{figure.key}-{place}"))
     parts.append("</svg>")
     return "".join(parts)
 
@@ -313,6 +315,29 @@ def _legend(entries: list[LegendEntry]) -> str:
         )
         at += 31 + 7.0 * len(entry.name) + 24
     return "".join(out)
+
+
+def _first_cells(figure: Figure) -> list[Cells]:
+    """First map of a figure, whose colours hold for all of them."""
+    maps = [s for placed in figure.panels for s in placed.panel.series if isinstance(s, Cells)]
+    return maps[:1]
+
+
+def _colour_scale(cells: Cells) -> str:
+    """Colours of a map from -limit to +limit, at the top right."""
+    steps, width = 21, 9.0
+    start = WIDTH - RIGHT - steps * width - 70
+    boxes = "".join(
+        f'<rect x="{start + k * width:.1f}" y="8" width="{width:g}" height="12" '
+        f'fill="{diverging(2 * k / (steps - 1) - 1)}"/>'
+        for k in range(steps)
+    )
+    return (
+        f'<text class="tick" text-anchor="end" x="{start - 6:.1f}" y="18">'
+        f"{number(-cells.limit)}</text>{boxes}"
+        f'<text class="tick" x="{start + steps * width + 6:.1f}" y="18">'
+        f"+{number(cells.limit)} {escape(cells.unit)}</text>"
+    )
 
 
 def _class(name: str) -> str:

@@ -15,10 +15,7 @@ VERDICTS = {
 }
 """Verdict in plain words, and its colour."""
 
-_NAMES = {
-    "compliance_scale": "compliance / nominal",
-    "friction_hysteresis": "friction hysteresis",
-}
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: Any, digits: int = 3) -> str:
@@ -28,6 +25,8 @@ def number(value: Any, digits: int = 3) -> str:
     --------
     >>> number(0.012345), number(-1234.5), number(0), number(None)
     ('0.0123', '−1234', '0', '–')
+    >>> number(158_300.0), number(1.2e-7)
+    ('158 000', '1.20×10⁻⁷')
     """
     if value is None:
         return "–"
@@ -41,15 +40,14 @@ def number(value: Any, digits: int = 3) -> str:
     if value == 0:
         return "0"
     magnitude = abs(value)
-    if magnitude >= 1e5 or magnitude < 1e-4:
+    if magnitude >= 1e7 or magnitude < 1e-4:
         mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
-        return f"{mantissa}·10^{int(power)}".replace("-", "−")
-    text = f"{value:.{digits}g}"
-    if "e" in text:
-        text = f"{value:.0f}"
-    if float(text) >= 10 ** (digits - 1):
-        text = f"{value:.0f}"
-    return text.replace("-", "−")
+        return f"{mantissa}×10{str(int(power)).translate(_SUPERSCRIPT)}".replace("-", "−")
+    if magnitude >= 10 ** (digits - 1):
+        rounded = float(f"{value:.{digits}g}") if magnitude >= 1e5 else value
+        grouped = f"{rounded:,.0f}" if magnitude >= 1e4 else f"{rounded:.0f}"
+        return grouped.replace(",", " ").replace("-", "−")
+    return f"{value:.{digits}g}".replace("-", "−")
 
 
 def angle(value_deg: Any, digits: int = 3) -> str:
@@ -99,4 +97,4 @@ def plain(name: str) -> str:
     >>> plain("overload_softening")
     'overload softening'
     """
-    return _NAMES.get(name, name.replace("_", " "))
+    return name.replace("_", " ")
