@@ -104,7 +104,9 @@ class Fit:
         scale = np.linalg.norm(self.sensitivity, axis=0)
         scale = np.where(scale > 0, scale, 1.0)
         gram = (self.sensitivity / scale).T @ (self.sensitivity / scale)
-        return np.asarray(np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale))
+        return np.asarray(
+            np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale)
+        )
 
     def column_range(self, index: int) -> slice:
         """Place of a linear term's amplitudes within `beta`."""

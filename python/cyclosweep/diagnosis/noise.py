@@ -87,9 +87,7 @@ class Noise:
         return replace(self, sigma_deg=sigma_deg)
 
 
-def interval_score(
-    angle: Floats, mean: Floats, sigma: float, step: float
-) -> tuple[Floats, Floats]:
+def interval_score(angle: Floats, mean: Floats, sigma: float, step: float) -> tuple[Floats, Floats]:
     """Score and expected information of the mean of a reading rounded to a step."""
     centre = angle - mean
     score = _bin_score(centre, sigma, step)[0]
@@ -241,9 +239,7 @@ def _size(noise: Noise, left: Floats, basis: Floats, freedom: float) -> tuple[fl
     return best_sigma, best_tail
 
 
-def _scoring_step(
-    angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float
-) -> Floats:
+def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float) -> Floats:
     """One damped Fisher-scoring step of the mean of a coarse reading within a basis."""
     score, information = interval_score(angle, mean, sigma, step)
     gram = basis.T @ (basis * information[:, None])

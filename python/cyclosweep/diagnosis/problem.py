@@ -116,7 +116,7 @@ def prepare(
         weight=weight,
         fitted=fitted,
         held_out=held,
-        gap=_gaps(fitted, run, time),
+        gap=gaps(fitted, run, time),
         rows=rows,
         one_sided=one_sided,
         loop_width_deg=width,
@@ -145,7 +145,7 @@ def _rows(recording: Recording, most_rows: int) -> np.ndarray:
     return np.cumsum(cut | ((np.arange(n) - start) % size == 0)) - 1
 
 
-def _gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
+def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
     """Steps between fitted rows in units of the usual step; zero across runs and long breaks."""
     index = np.flatnonzero(fitted)
     gap = np.zeros(len(fitted))

@@ -186,16 +186,26 @@ class Scan:
             columns.append(np.arange(block.first, block.stop))
             blocks.append(
                 Block(
-                    block.hypothesis, block.effect, block.shape, block.free,
-                    first, first + width, block.signs, block.scale,
+                    block.hypothesis,
+                    block.effect,
+                    block.shape,
+                    block.free,
+                    first,
+                    first + width,
+                    block.signs,
+                    block.scale,
                 )
             )
             first += width
         index = np.concatenate(columns) if columns else np.zeros(0, dtype=int)
         library = Library(tuple(blocks), self.library.columns[:, index], self.library.untestable)
         return Scan(
-            library, self.score[index], self.gram[np.ix_(index, index)], self.energy[index],
-            self.freedom, self.excess,
+            library,
+            self.score[index],
+            self.gram[np.ix_(index, index)],
+            self.energy[index],
+            self.freedom,
+            self.excess,
         )
 
 
@@ -212,8 +222,13 @@ def _whitener(inner: Floats, energy: Floats) -> Floats:
 
 
 def scan(
-    library: Library, whitened: Floats, gram: Floats, tangent: Floats, residual: Floats,
-    freedom: float, excess: float = 0.0,
+    library: Library,
+    whitened: Floats,
+    gram: Floats,
+    tangent: Floats,
+    residual: Floats,
+    freedom: float,
+    excess: float = 0.0,
 ) -> Scan:
     """Project the library's whitened columns off a tangent basis and score the residual.
 

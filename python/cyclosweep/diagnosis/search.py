@@ -96,8 +96,13 @@ class Search:
 
     def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
         rest = scan(
-            self.library, self.whitened, self.gram, fitted.tangent, fitted.residual,
-            self.noise.freedom, self._excess(fitted),
+            self.library,
+            self.whitened,
+            self.gram,
+            fitted.tangent,
+            fitted.residual,
+            self.noise.freedom,
+            self._excess(fitted),
         )
         found = hum.find_hum(fitted.history, self.problem.fitted, fitted.residual)
         return Node(fitted, gain, prior, rest, found)
@@ -127,6 +132,10 @@ class Search:
         """Twice the log-likelihood gained from one fit to the next."""
         drop = before.chi2 - after.chi2
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
+
+    def refit(self, terms: tuple[Term, ...]) -> Node:
+        """Fit a structure that was not visited on its own."""
+        return self._node(fit(self.problem, self.noise, terms, self.root.fit), 0.0, 0.0)
 
     def _starts(self, node: Node, hypothesis: str) -> Iterable[tuple[Term, float, float]]:
         """Terms to start from, with projected rank and the price of the choice of shape."""

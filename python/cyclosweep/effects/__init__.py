@@ -16,7 +16,7 @@ from cyclosweep.effects.thermal_drift import ThermalDrift
 from cyclosweep.effects.transmission_error import TransmissionError
 from cyclosweep.effects.viscous_drag import ViscousDrag
 
-__all__ = ["Effect", "History", "Parameter", "Shape", "VOCABULARY", "effects", "find", "register"]
+__all__ = ["VOCABULARY", "Effect", "History", "Parameter", "Shape", "effects", "find", "register"]
 
 VOCABULARY: tuple[Effect, ...] = (
     FrictionHysteresis(),
