@@ -470,9 +470,11 @@ def _unknown(
             "size_deg": float(np.max(np.abs(shape))),
         }
     values = dict(node.rest.by_hypothesis)
-    values["hum"] = node.rest_hum[0]
+    wave = node.rest_hum[1]
+    if wave is not None:
+        values[wave.family] = node.rest_hum[0]
     name = max(values, key=lambda key: values[key])
-    place = node.rest_hum[1].place if name == "hum" and node.rest_hum[1] is not None else ""
+    place = wave.place if wave is not None and wave.family == name else ""
     if name in node.rest.groups:
         block = node.rest.library.blocks[node.rest.best_block(name)]
         place = block.free.place if block.free is not None else "all along"

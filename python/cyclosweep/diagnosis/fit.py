@@ -183,8 +183,11 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
     twist = problem.history.largest_twist_deg
     if parameter.unit == "N m":
         lower, upper = 1e-3 * top, 3.0 * top
-        if parameter.name in ("onset_nm", "first_nm"):
+        if parameter.name == "onset_nm":
             lower, upper = 0.0, 0.92 * top
+        if parameter.name == "first_nm":
+            # A kink near the end of the range is a sensor at its limit as well.
+            lower, upper = 0.0, 0.65 * top
         if parameter.name == "turn_nm":
             upper = 0.25 * top
         if parameter.name == "range_nm":

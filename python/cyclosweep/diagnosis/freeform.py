@@ -103,7 +103,7 @@ def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
 
 def _clips(history: History) -> Iterator[FreeForm]:
     top = history.largest_torque_nm
-    for share in (0.85, 0.93, 0.97):
+    for share in (0.66, 0.74, 0.82, 0.88, 0.93, 0.97):
         for flank in (0, 1, -1):
             if flank and not np.any(history.side == flank):
                 continue

@@ -160,6 +160,7 @@ def estimate_noise(
     best, upper = _correlation(clean, basis, gap)
     rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
     sigma, tail = _size(rough, left, basis, freedom)
+    sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     averaged = float(np.median(weight)) > 1.5
     if resolution > 0 and not averaged:
         if sigma**2 < 0.165 * resolution**2 and count >= 60:

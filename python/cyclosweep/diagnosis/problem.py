@@ -187,7 +187,6 @@ def find_flanks(
     ).x
     datum, compliance = float(robust[0]), float(robust[1])
     play = float(robust[2]) if both else line.free_play_deg
-    compliance = compliance if compliance > 0 else line.compliance_deg_per_nm
     residual = target[loaded] - design[loaded] @ robust
     width = 2.0 * float(np.quantile(np.abs(residual), 0.9))
     inside = angle - datum - compliance * torque

@@ -33,9 +33,9 @@ class ClearanceTakeup(Effect):
         top = history.largest_torque_nm
         grid: list[Shape] = [
             {"first_nm": first * top, "range_nm": width * top}
-            for first in (0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.55, 0.7)
+            for first in (0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.55)
             for width in (0.01, 0.15, 0.4)
-            if first + width < 0.95
+            if first + width < 0.85
         ]
         kinks = ((0.06, 0.2), (0.12, 0.4), (0.25, 0.6), (0.06, 0.2, 0.45), (0.12, 0.3, 0.6))
         return grid + [
