@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.verdict import unit_slip

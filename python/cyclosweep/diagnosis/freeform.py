@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -58,7 +59,6 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
     if count < 1:
         return
     places = index[np.linspace(0, len(index) - 1, count + 2)[1:-1].astype(int)]
-    row = np.arange(len(history))
     clock = clock_of(history)
     what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
     for place in places:
@@ -66,19 +66,38 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
         yield FreeForm(
             "step of the angle",
             label,
-            lambda h, p=place: (row >= p).astype(np.float64)[:, None],
+            partial(_after, place, None),
         )
         yield FreeForm(
             "slip within a run",
             label + " to the end of that run",
-            lambda h, p=place: ((row >= p) & (h.run == h.run[p])).astype(np.float64)[:, None],
+            partial(_after, place, int(history.run[place])),
         )
     for place in places[::3]:
         yield FreeForm(
             "change of compliance",
             f"from {what.format(clock[place])} (run {history.run[place] + 1})",
-            lambda h, p=place: ((row >= p) * h.elastic_nm)[:, None],
+            partial(_softer_after, place),
         )
+
+
+def _after(place: int, run: int | None, history: History) -> Floats:
+    rows = np.arange(len(history)) >= place
+    if run is not None:
+        rows &= history.run == run
+    return np.asarray(rows, dtype=np.float64)[:, None]
+
+
+def _softer_after(place: int, history: History) -> Floats:
+    return np.asarray((np.arange(len(history)) >= place) * history.elastic_nm)[:, None]
+
+
+def _one_run(number: int, history: History) -> Floats:
+    return np.asarray(history.run == number, dtype=np.float64)[:, None]
+
+
+def _constant(columns: Floats, history: History) -> Floats:
+    return columns
 
 
 def _bumps(history: History) -> Iterator[FreeForm]:
@@ -92,7 +111,7 @@ def _bumps(history: History) -> Iterator[FreeForm]:
                 yield FreeForm(
                     "bump at a load",
                     f"near{where} {centre * top:.3g} N m",
-                    lambda h, c=centre, w=width, f=flank: _bump(h, c * top, w * top, f),
+                    partial(_bump, centre=centre * top, width=width * top, flank=flank),
                 )
 
 
@@ -103,14 +122,14 @@ def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
 
 def _clips(history: History) -> Iterator[FreeForm]:
     top = history.largest_torque_nm
-    for share in (0.66, 0.74, 0.82, 0.88, 0.93, 0.97):
+    for share in (0.46, 0.53, 0.6, 0.67, 0.74, 0.81, 0.87, 0.93, 0.97):
         for flank in (0, 1, -1):
             if flank and not np.any(history.side == flank):
                 continue
             yield FreeForm(
                 "saturation at the end of the range",
                 f"beyond {share * top:.3g} N m",
-                lambda h, s=share, f=flank: _over(h, s * top, f),
+                partial(_over, start=share * top, flank=flank),
             )
 
 
@@ -167,7 +186,7 @@ def _runs(history: History) -> Iterator[FreeForm]:
         yield FreeForm(
             "one run apart",
             f"run {number + 1}",
-            lambda h, k=number: (h.run == k).astype(np.float64)[:, None],
+            partial(_one_run, number),
         )
 
 
@@ -189,7 +208,7 @@ def _trends(history: History) -> Iterator[FreeForm]:
         yield FreeForm(
             "drift in time",
             "dying out over the recording",
-            lambda h, s=tau: np.exp(-share / s)[:, None],
+            partial(_constant, np.exp(-share / tau)[:, None]),
         )
 
 
@@ -204,7 +223,7 @@ def _windows(history: History, fitted: Flags) -> Iterator[FreeForm]:
         yield FreeForm(
             "wandering of the zero",
             "over the whole recording",
-            lambda h, w=window, n=count: (w[:, None] == np.arange(n)).astype(np.float64),
+            partial(_constant, (window[:, None] == np.arange(count)).astype(np.float64)),
         )
 
 

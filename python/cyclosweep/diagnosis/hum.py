@@ -1,4 +1,4 @@
-"""A wave of unknown frequency, in time (hum, also in proportion to torque) or along the twist (ripple).
+"""A wave of unknown frequency: in time (also in proportion to torque), or along the twist.
 
 The periodogram of the residual shows it; the number of frequencies looked at is its price.
 """
@@ -137,7 +137,8 @@ def _floor(power: Floats) -> Floats:
     count = max(len(power) // width, 1)
     edges = np.linspace(0, len(power), count + 1).astype(int)
     level = [float(np.median(power[a:b])) / np.log(2.0) for a, b in pairwise(edges)]
-    return np.interp(np.arange(len(power)), 0.5 * (edges[1:] + edges[:-1]), level)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    return np.asarray(np.interp(np.arange(len(power)), middle, level), dtype=np.float64)
 
 
 def null_wave(count: int, rng: np.random.Generator) -> Floats:

@@ -1,4 +1,4 @@
-"""Search for the set of effects that explains a recording, each refitted jointly with the baseline."""
+"""Search for the set of effects that explains a recording, each refitted with the baseline."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -23,6 +23,8 @@ EXTRA_TERM = 3.0
 """Log prior odds against every further effect."""
 WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
+CAUTION = {"saturation at the end of the range": 1.0}
+"""The same for shapes as common as the named effects."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 
@@ -116,7 +118,8 @@ class Search:
                 continue
             added = float(evidence(self._gain(node.fit, joint), rank)) - cost
             prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
-            prior -= 0.0 if term.effect is not None else WITHOUT_NAME
+            if term.effect is None:
+                prior -= CAUTION.get(term.name, WITHOUT_NAME)
             if best is None or node.gain + added > best.gain:
                 best = self._node(joint, node.gain + added, prior)
         if best is not None:

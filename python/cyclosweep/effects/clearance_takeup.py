@@ -12,7 +12,9 @@ class ClearanceTakeup(Effect):
     """Compliance that drops while further pins engage, between two loads.
 
     Below `first_nm` the first pins carry alone; up to `first_nm + range_nm` the others engage, and
-    the compliance falls by the amplitude. A range of zero is a single kink.
+    the compliance falls by the amplitude. A range of zero is a single kink. Clearances are small
+    against the elastic twist, so the first engagement lies in the lower half of the range; a single
+    kink beyond is what a sensor at its limit shows.
     """
 
     name = "clearance_takeup"
@@ -33,7 +35,7 @@ class ClearanceTakeup(Effect):
         top = history.largest_torque_nm
         grid: list[Shape] = [
             {"first_nm": first * top, "range_nm": width * top}
-            for first in (0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.55)
+            for first in (0.02, 0.06, 0.12, 0.2, 0.3, 0.4)
             for width in (0.01, 0.15, 0.4)
             if first + width < 0.85
         ]
@@ -52,7 +54,7 @@ class ClearanceTakeup(Effect):
         first, width = shape["first_nm"], max(shape["range_nm"], 1e-9)
         begun = np.maximum(load - first, 0.0)
         done = np.maximum(load - first - width, 0.0)
-        return (-side * (begun**2 - done**2) / (2 * width))[:, None]
+        return np.asarray(-side * (begun**2 - done**2) / (2 * width))[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Compliance lost by the engagement."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.effects.base import Effect, Parameter, Shape, spread
 from cyclosweep.effects.history import Floats, History
 
