@@ -72,7 +72,7 @@ def main_figure(data: ReportData) -> Figure:
         title="Torque–twist loop",
         x_label=f"torque at the {recording.side} shaft (N m)",
         y_label=f"twist at the {recording.side} shaft (deg)",
-        series=tuple(_loop_series(data, shown)),
+        series=tuple(_loop_series(data, shown, _reach(len(recording), len(shown)))),
         spans=tuple(_spans(data, "torque", labelled=False)),
     )
     before, after = data.residual_before_deg, data.residual_after_deg
@@ -93,7 +93,7 @@ def main_figure(data: ReportData) -> Figure:
     repair: list[Series] = []
     if data.is_repaired:
         added = before - after
-        line = _with_breaks(recording, rows, added, x)
+        line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
         repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
     for row, (residual, name, colour, title, model) in enumerate(
         (
@@ -142,7 +142,9 @@ def zoom_figure(data: ReportData) -> Figure:
     while np.count_nonzero(np.abs(torque) <= share * rated) < 20 and share < 0.5:
         share *= 2
     near = np.flatnonzero(np.abs(torque) <= share * rated)
-    near = near[thin(len(near), measured[near], 3000)]
+    every = len(near)
+    near = near[thin(every, measured[near], 3000)]
+    reach = _reach(every, len(near))
     of = "rated" if data.rated_torque_nm else "the largest"
     sides = _zoom_sides(torque[near], measured[near], share * rated)
     panels = [
@@ -151,7 +153,7 @@ def zoom_figure(data: ReportData) -> Figure:
                 title=f"Around zero: ±{number(100 * share)} % of {of} torque" if not column else "",
                 x_label=f"torque at the {recording.side} shaft (N m)",
                 y_label=f"twist at the {recording.side} shaft (deg)",
-                series=tuple(_loop_series(data, near[rows])),
+                series=tuple(_loop_series(data, near[rows], reach)),
                 x_range=x_range,
             ),
             row=0,
@@ -270,7 +272,7 @@ def _shown_rows(data: ReportData) -> NDArray[np.int64]:
     return thin(len(data.recording), key)
 
 
-def _loop_series(data: ReportData, rows: NDArray[np.int64]) -> Iterator[Series]:
+def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Iterator[Series]:
     """Measured points and simulated lines over torque."""
     recording = data.recording
     measured = recording.angle_deg
@@ -282,19 +284,28 @@ def _loop_series(data: ReportData, rows: NDArray[np.int64]) -> Iterator[Series]:
         (data.after_deg, NAME_AFTER, AFTER, False),
     ):
         if angle is not None:
-            x, y = _with_breaks(recording, rows, angle, torque)
+            x, y = _with_breaks(recording, rows, angle, torque, reach)
             yield Line(x, y, name, colour, 1.5, dashed)
 
 
 def _with_breaks(
-    recording: Recording, rows: NDArray[np.int64], y: Floats, x: Floats
+    recording: Recording, rows: NDArray[np.int64], y: Floats, x: Floats, reach: int
 ) -> tuple[Floats, Floats]:
-    """Put a NaN where the run ends or the torque changes its side."""
+    """Put a NaN where the run ends, the torque changes its side, or more than `reach` is left out.
+
+    Thinned rows leave out some samples anyway; `reach` is how many.
+    """
     torque, run = recording.torque_nm[rows], recording.run[rows]
     jump = np.abs(np.diff(torque)) > 0.1 * np.ptp(recording.torque_nm)
-    cut = (run[1:] != run[:-1]) | (torque[1:] * torque[:-1] < 0) | jump
+    left_out = np.diff(rows) > reach
+    cut = (run[1:] != run[:-1]) | (torque[1:] * torque[:-1] < 0) | jump | left_out
     at = np.flatnonzero(cut) + 1
     return np.insert(x[rows], at, np.nan), np.insert(y[rows], at, np.nan)
+
+
+def _reach(samples: int, shown: int) -> int:
+    """Longest step between drawn samples that thinning makes."""
+    return 1 if shown >= samples else 4 * -(-samples // shown)
 
 
 def _noise_band(x: Floats, sigma: float) -> tuple[Band, ...]:
