@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,7 +55,7 @@ def _write(figure: Figure, path: Path) -> Path:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as Canvas
 
-    height = figure.rows * figure.row_height + 60
+    height = figure.rows * figure.row_height + 80
     canvas = Canvas(figsize=(WIDTH / 100, height / 100), layout="constrained")
     FigureCanvasAgg(canvas)
     grid = canvas.add_gridspec(figure.rows, figure.columns)
@@ -63,8 +64,10 @@ def _write(figure: Figure, path: Path) -> Path:
         axes = canvas.add_subplot(grid[_cells_of(placed)])
         _panel(axes, placed.panel)
         names = axes.get_legend_handles_labels()
-        handles = {name: handle for handle, name in zip(*names, strict=True)} | handles
+        for handle, name in zip(*names, strict=True):
+            handles.setdefault(name, handle)
     canvas.suptitle(figure.title, fontsize=11, fontweight="bold")
+    canvas.supxlabel(fill(figure.caption, 190), fontsize=7.5, color="#5c6672", x=0.01, ha="left")
     if handles:
         canvas.legend(
             handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles),
