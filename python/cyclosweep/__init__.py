@@ -7,6 +7,7 @@ from cyclosweep.dataset import scan_dataset
 from cyclosweep.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.recording import Recording
+from cyclosweep.reference.validation import validate
 from cyclosweep.scan import scan, sweep
 from cyclosweep.shards import shard, sink
 from cyclosweep.space import Space, linspace
@@ -39,4 +40,5 @@ __all__ = [
     "shard",
     "sink",
     "sweep",
+    "validate",
 ]

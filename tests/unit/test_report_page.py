@@ -61,10 +61,12 @@ def test_main_picture_comes_first_and_is_complete(whole: ReportData) -> None:
     first = svgs(text)[0]
     words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
     for name in (
-        "measured", "simulation before", "simulation after", "residual before", "residual after",
+        "measured", "simulation before", "simulation after", "what the repair adds",
         "located region", "residual (arcmin)", "torque at the input shaft (N m)",
     ):  # fmt: skip
         assert name in words
+    assert any(word.startswith("Residual before") for word in words)
+    assert any(word.startswith("Residual after") for word in words)
     shaded = [e for e in first.iter() if e.get("class") == "span"]
     assert len(shaded) == 6  # two regions in each of three panels
 

@@ -95,10 +95,10 @@ def main_figure(data: ReportData) -> Figure:
         added = before - after
         line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
         repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
-    for row, (residual, name, colour, title, model) in enumerate(
+    for row, (residual, colour, title, model) in enumerate(
         (
-            (before, NAME_RESIDUAL_BEFORE, BEFORE, "Measured minus simulation, before", repair),
-            (after, NAME_RESIDUAL_AFTER, AFTER, "Measured minus simulation, after", []),
+            (before, BEFORE, "Residual before (measured minus simulation)", repair),
+            (after, AFTER, "Residual after", []),
         )
     ):
         rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))
@@ -108,7 +108,7 @@ def main_figure(data: ReportData) -> Figure:
             y_label="residual (deg)",
             series=(
                 *_noise_band(x[rows], sigma),
-                Points(x[rows], residual[rows], name, colour, 1.3),
+                Points(x[rows], residual[rows], "", colour, 1.3),
                 *model,
             ),
             spans=tuple(_spans(data, axis, labelled=row == 0)),
