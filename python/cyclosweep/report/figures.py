@@ -291,14 +291,14 @@ def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Itera
 def _with_breaks(
     recording: Recording, rows: NDArray[np.int64], y: Floats, x: Floats, reach: int
 ) -> tuple[Floats, Floats]:
-    """Put a NaN where the run ends, the torque changes its side, or more than `reach` is left out.
+    """Put a NaN where the run ends or more than `reach` samples are left out.
 
     Thinned rows leave out some samples anyway; `reach` is how many.
     """
     torque, run = recording.torque_nm[rows], recording.run[rows]
     jump = np.abs(np.diff(torque)) > 0.1 * np.ptp(recording.torque_nm)
     left_out = np.diff(rows) > reach
-    cut = (run[1:] != run[:-1]) | (torque[1:] * torque[:-1] < 0) | jump | left_out
+    cut = (run[1:] != run[:-1]) | jump | left_out
     at = np.flatnonzero(cut) + 1
     return np.insert(x[rows], at, np.nan), np.insert(y[rows], at, np.nan)
 

@@ -61,6 +61,12 @@ def loop_table(data: ReportData) -> Table | None:
         rows.append(("stiffness at the output", *(_at_output(f, data.ratio) for f in figures)))
     rows.append(("energy lost in one cycle, mean", *(_mean_energy(f) for f in figures)))
     note = f"Stiffness is the slope of the loading branches between 50 % and 100 % of {of} torque."
+    lost, gap = figures[0].lost_motion_deg, figures[0].hysteresis_loss_deg
+    if lost is not None and gap is not None and gap > lost:
+        note += (
+            " Friction holds the shaft inside its play here: the play shows as hysteresis loss "
+            "rather than as lost motion."
+        )
     if figures[0].extrapolated:
         note += (
             " No sample lies within ±3 % of that torque: lost motion and hysteresis loss are "
