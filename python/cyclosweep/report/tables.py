@@ -1,5 +1,6 @@
 """The tables of a report as plain rows, shared by the page and the terminal."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -86,7 +87,7 @@ def parameter_table(data: ReportData) -> Table | None:
         fitted = after.get(name) or {}
         rows.append(
             (
-                plain(name),
+                _without_unit(name),
                 str(value.get("unit") or "–"),
                 number(value.get("nominal"), 4),
                 _with_error(value),
@@ -95,7 +96,7 @@ def parameter_table(data: ReportData) -> Table | None:
             )
         )
     rows += [
-        (plain(name), str(value.get("unit") or "–"), "–", "–", _with_error(value), "–")
+        (_without_unit(name), str(value.get("unit") or "–"), "–", "–", _with_error(value), "–")
         for name, value in after.items()
         if name not in before and isinstance(value, Mapping)
     ]
@@ -210,7 +211,7 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str]]:
             f"detectability {number(effect.get('detectability'), 3)}"
         )
         parameters = "; ".join(
-            f"{plain(name)} {_with_error(value)} {value.get('unit') or ''}".strip()
+            f"{_without_unit(name)} {_with_error(value)} {value.get('unit') or ''}".strip()
             for name, value in (effect.get("parameters") or {}).items()
         )
         evidence += f". {parameters[:1].upper()}{parameters[1:]}" if parameters else ""
@@ -258,10 +259,9 @@ def explanations(data: ReportData) -> list[str]:
     """Structures that fit about as well as the best."""
     rows = []
     for row in data.result.get("explanation_set") or []:
-        names = (
-            " + ".join(plain(str(name)) for name in row.get("effects") or []) or "nothing missing"
-        )
-        rows.append(f"{names}: probability {probability(row.get('probability'))}")
+        names = [*(row.get("effects") or []), *(row.get("without_name") or [])]
+        text = " + ".join(plain(str(name)) for name in names) or "nothing missing"
+        rows.append(f"{text}: probability {probability(row.get('probability'))}")
     return rows
 
 
@@ -309,6 +309,11 @@ def _section(result: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     """Part of the result, empty where there is none."""
     part = result.get(key)
     return part if isinstance(part, Mapping) else {}
+
+
+def _without_unit(name: str) -> str:
+    """Name of a parameter in words; its unit stands beside it."""
+    return plain(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
 
 
 def _range(ends: Any) -> str:
