@@ -45,7 +45,7 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     sources = _sources(meta)
     frame, notes = _load(path, meta_path, meta, sources)
     columns = _canonical(path, frame, sources, notes)
-    columns, frame = _select(path, meta_path, meta, columns, frame, notes)
+    columns = _select(path, meta_path, meta, columns, frame, notes)
     if meta.merge.same_time:
         columns = _merge(path, columns, notes)
     elif columns["time_s"] is not None:
@@ -177,7 +177,7 @@ def _select(
     columns: dict[str, Floats | None],
     frame: pl.DataFrame,
     notes: list[str],
-) -> tuple[dict[str, Floats | None], pl.DataFrame]:
+) -> dict[str, Floats | None]:
     """Keep the rows asked for."""
     keep = np.ones(frame.height, dtype=bool)
 
@@ -193,10 +193,9 @@ def _select(
     for key, limit in meta.abs_max.items():
         keep &= np.abs(values_of(key)) <= limit
     if keep.all():
-        return columns, frame
+        return columns
     notes.append(f"Selection keeps {keep.sum()} of {len(keep)} rows.")
-    picked = {name: None if a is None else a[keep] for name, a in columns.items()}
-    return picked, frame
+    return {name: None if a is None else a[keep] for name, a in columns.items()}
 
 
 def _merge(
