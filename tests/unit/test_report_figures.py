@@ -33,6 +33,18 @@ def test_loop_figures_of_a_known_loop() -> None:
     assert not figures.extrapolated
 
 
+def test_a_dead_zone_that_was_not_recorded_costs_no_energy() -> None:
+    up = np.linspace(0.8, 10, 60)
+    torque = np.r_[up, up[::-1], -up[3:], -up[::-1]]
+    recording = Recording.from_arrays(torque)
+    elastic = GAP * np.sign(torque) + C * torque
+    assert loop_figures(recording, elastic, 10.0).energy_j[1] == pytest.approx(0, abs=1e-9)
+    with_friction = parallelogram(smallest=0.8)
+    assert with_friction.angle_deg is not None
+    energy = loop_figures(with_friction, with_friction.angle_deg, 10.0).energy_j[1]
+    assert energy == pytest.approx(2 * 10 * np.radians(2 * HALF_WIDTH), rel=0.02)
+
+
 def test_lost_motion_is_extended_where_no_sample_is_near() -> None:
     recording = parallelogram(smallest=0.8)
     assert recording.angle_deg is not None

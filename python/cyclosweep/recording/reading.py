@@ -278,12 +278,12 @@ def _recognise_angle(columns: dict[str, Floats | None], meta: Metadata, notes: l
 
 
 def _drive(meta: Metadata, meta_path: Path | None) -> str | None:
-    """Built-in name, or the path of a drive file beside the metadata."""
+    """Built-in name, or the whole path of a drive file beside the metadata."""
     if meta.drive is None or meta_path is None:
         return meta.drive
     beside = meta_path.parent / meta.drive
     if beside.is_file():
-        return str(beside)
+        return str(beside.resolve())
     if meta.drive.endswith(".toml"):
         raise InputError(f"{meta_path}, key drive: no file {meta.drive!r} beside it")
     return meta.drive

@@ -14,6 +14,7 @@ AFTER = "#0072b2"
 MODELLED = "#1d232b"
 REGION = "#f0b400"
 QUIET = "#8a93a0"
+FAINT = "#c3c9d1"
 """Colours of Okabe and Ito that stay apart for colour-blind readers."""
 
 

@@ -10,6 +10,7 @@ from cyclosweep.recording import Recording
 from cyclosweep.report.charts import (
     AFTER,
     BEFORE,
+    FAINT,
     MEASURED,
     MODELLED,
     QUIET,
@@ -24,7 +25,7 @@ from cyclosweep.report.charts import (
     Span,
 )
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.loops import LOST_MOTION_SHARE, loop_figures
+from cyclosweep.report.loops import LOST_MOTION_SHARE, dead_zone_crossings, loop_figures
 from cyclosweep.report.profiles import Profile, by_group, profile, residual_map
 from cyclosweep.report.thin import thin
 from cyclosweep.report.wording import ARCMIN, number
@@ -89,6 +90,8 @@ def main_figure(data: ReportData) -> Figure:
     sigma, _ = noise_of(data)
     rows = shown[data.scored[shown]]
     limit = 1.2 * max(np.abs(before[rows]).max(), np.abs(after[rows]).max(), 2 * sigma, 1e-9)
+    located = _located(data)[rows]
+    inside, outside = rows[located], rows[~located]
     panels = [Placed(panel=loop, row=0, column=0, rows=2)]
     repair: list[Series] = []
     if data.is_repaired:
@@ -108,7 +111,8 @@ def main_figure(data: ReportData) -> Figure:
             y_label="residual (deg)",
             series=(
                 *_noise_band(x[rows], sigma),
-                Points(x[rows], residual[rows], "", colour, 1.3),
+                Points(x[outside], residual[outside], "", FAINT, 1.3),
+                Points(x[inside], residual[inside], "", colour, 1.3),
                 *model,
             ),
             spans=tuple(_spans(data, axis, labelled=row == 0)),
@@ -123,8 +127,8 @@ def main_figure(data: ReportData) -> Figure:
         title="Measured loop, simulation before and after, and what is left",
         caption="Before: the published model with calibrated stiffness, free play and datum. "
         "After: the same with the effects named below. Shaded: where simulation and recording "
-        f"differ beyond noise. Grey band: ±2 standard deviations of the noise ({number(sigma)} "
-        "deg).",
+        "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
+        f"deviations of the noise ({number(sigma)} deg).",
         panels=tuple(panels),
         rows=2,
         columns=2,
@@ -291,14 +295,17 @@ def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Itera
 def _with_breaks(
     recording: Recording, rows: NDArray[np.int64], y: Floats, x: Floats, reach: int
 ) -> tuple[Floats, Floats]:
-    """Put a NaN where the run ends or more than `reach` samples are left out.
+    """Put a NaN where the run ends, the dead zone is crossed unseen, or samples are left out.
 
     Thinned rows leave out some samples anyway; `reach` is how many.
     """
+    measured = recording.angle_deg
+    assert measured is not None
     torque, run = recording.torque_nm[rows], recording.run[rows]
     jump = np.abs(np.diff(torque)) > 0.1 * np.ptp(recording.torque_nm)
     left_out = np.diff(rows) > reach
-    cut = (run[1:] != run[:-1]) | jump | left_out
+    crossing = dead_zone_crossings(torque, measured[rows])
+    cut = (run[1:] != run[:-1]) | jump | left_out | crossing
     at = np.flatnonzero(cut) + 1
     return np.insert(x[rows], at, np.nan), np.insert(y[rows], at, np.nan)
 
@@ -378,6 +385,29 @@ def _spans(data: ReportData, axis: str, *, labelled: bool) -> Iterator[Span]:
         if ends:
             yield Span(float(ends[0]), float(ends[1]), _region_label(region) if labelled else "")
             labelled = False
+
+
+def _located(data: ReportData) -> Mask:
+    """Mark the samples of the shaded regions; all where there is none."""
+    recording = data.recording
+    regions = _regions(data)[:2]
+    marked = np.full(len(recording), not regions)
+    for region in regions:
+        rows = np.ones(len(recording), dtype=bool)
+        for key, values in (
+            ("torque_nm", recording.torque_nm),
+            ("time_s", recording.time_s),
+            ("temperature_c", recording.temperature_c),
+        ):
+            if region.get(key) and values is not None:
+                low, high = region[key]
+                rows &= (values >= low) & (values <= high)
+        if region.get("run"):
+            rows &= _in_run_range(recording, region["run"])
+        if region.get("direction") in ("loading", "unloading"):
+            rows &= recording.structure.loading == (region["direction"] == "loading")
+        marked |= rows
+    return marked
 
 
 def _region_label(region: Mapping[str, Any]) -> str:

@@ -59,7 +59,15 @@ def loop_table(data: ReportData) -> Table | None:
         (f"stiffness at the {side}", *(_stiffness(f.stiffness_nm_per_deg) for f in figures)),
     ]
     if side == "input" and data.ratio:
-        rows.append(("stiffness at the output", *(_at_output(f, data.ratio) for f in figures)))
+        ratio = data.ratio
+        rows += [
+            ("stiffness at the output", *(_at_output(f, ratio) for f in figures)),
+            ("lost motion at the output", *(_divided(f.lost_motion_deg, ratio) for f in figures)),
+            (
+                "hysteresis loss at the output",
+                *(_divided(f.hysteresis_loss_deg, ratio) for f in figures),
+            ),
+        ]
     rows.append(("energy lost in one cycle, mean", *(_mean_energy(f) for f in figures)))
     note = f"Stiffness is the slope of the loading branches between 50 % and 100 % of {of} torque."
     lost, gap = figures[0].lost_motion_deg, figures[0].hysteresis_loss_deg
@@ -140,7 +148,8 @@ def hypothesis_table(data: ReportData) -> Table | None:
         ),
         tuple(rows),
         "Hidden by calibration: share of the effect that a refit of stiffness, free play and datum "
-        "absorbs. p: chance of so large a signal with nothing missing, all effects searched. "
+        "absorbs. p: chance of so large a signal with nothing missing, each effect by itself, all "
+        "of them searched; what an accepted effect explains as well is ruled out all the same. "
         "e: evidence from data not used for the choice; 100 is strong.",
         frozenset({1}),
         frozenset(lead),
@@ -271,11 +280,12 @@ def next_experiment(data: ReportData) -> str:
     if not plan:
         return ""
     text = str(plan.get("program") or "").rstrip(".") + "."
+    text = text[:1].upper() + text[1:]
     if plan.get("separates"):
         text += " It separates " + " from ".join(plain(str(s)) for s in plan["separates"]) + "."
-    if plan.get("detectability") is not None:
+    if plan.get("detectability"):
         text += f" Expected detectability {number(plan['detectability'], 2)} noise units."
-    if plan.get("minutes") is not None:
+    if plan.get("minutes"):
         text += f" Takes about {number(plan['minutes'], 2)} minutes."
     return text
 
@@ -324,8 +334,12 @@ def _range(ends: Any) -> str:
 def _with_error(value: Mapping[str, Any]) -> str:
     """Estimate and standard error."""
     text = number(value.get("estimate"), 4)
-    error = value.get("std_error")
-    return text if error is None else f"{text} ± {number(error, 2)}"
+    error, estimate = value.get("std_error"), value.get("estimate")
+    if not error:
+        return text
+    if isinstance(estimate, int | float) and error > 10 * abs(estimate) > 0:
+        return f"{text} (poorly determined)"
+    return f"{text} ± {number(error, 2)}"
 
 
 def _shift(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
@@ -348,6 +362,11 @@ def _at_output(figures: LoopFigures, ratio: float) -> str:
     """Stiffness of the input shaft as seen from the output shaft."""
     k = figures.stiffness_nm_per_deg
     return _stiffness(None if k is None else k * ratio**2)
+
+
+def _divided(value_deg: float | None, ratio: float) -> str:
+    """Angle of the input shaft as seen from the output shaft."""
+    return angle(None if value_deg is None else value_deg / ratio)
 
 
 def _mean_energy(figures: LoopFigures) -> str:

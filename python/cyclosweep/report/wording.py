@@ -83,10 +83,14 @@ def probability(value: Any) -> str:
     --------
     >>> probability(0.00001), probability(0.034)
     ('< 0.001', '0.034')
+    >>> probability(1.0)
+    '> 0.999'
     """
     if not isinstance(value, int | float):
         return "–"
-    return "< 0.001" if 0 <= value < 0.001 else number(value, 2)
+    if 0 <= value < 0.001:
+        return "< 0.001"
+    return "> 0.999" if 0.999 < value <= 1 else number(value, 2)
 
 
 def plain(name: str) -> str:
