@@ -36,7 +36,7 @@ def test_every_part_is_there(whole: ReportData) -> None:
     for heading in (
         "Where simulation and recording differ", "What was left out of the model",
         "Next experiment", "Loop", "Residuals", "Residual map", "Parameters",
-        "Every effect that was tried", "Explanations that fit", "Ruled out, with 95 % upper bounds",
+        "Every effect that was tried", "Explanations that fit", "Not found, with 95 % upper bounds",
         "What this recording cannot show", "Errors on data not used", "Self-check",
         "The recording", "Provenance",
     ):  # fmt: skip
@@ -135,6 +135,19 @@ def test_an_event_in_time_is_shown_over_time(whole: ReportData) -> None:
     first = svgs(page(replace(whole, result=result)))[0]
     words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
     assert words.count("time (s)") == 2
+
+
+def test_unknown_physics_has_shape_place_and_size(whole: ReportData) -> None:
+    rest = {"shape": "step of the angle", "place": "from t = 2671 s (run 7)", "size_deg": 0.16}
+    result = {
+        **whole.result, "verdict": "UNKNOWN_PHYSICS", "effects": [], "unknown": rest,
+        "undecided": [{"name": "creep", "upper95_deg": 0.9}],
+    }  # fmt: skip
+    text = page(replace(whole, result=result))
+    assert "Step of the angle of 0.16 deg (9.6 arcmin), from t = 2671 s (run 7)." in text
+    assert "Creep: could be as large as 0.9 deg (54 arcmin), above the tolerance" in text
+    assert "Residual after (no repair)" in text
+    assert "What was left out of the model" not in text
 
 
 def test_the_file_appears_whole(tmp_path: Path, whole: ReportData) -> None:

@@ -94,6 +94,7 @@ def main_figure(data: ReportData) -> Figure:
     inside, outside = rows[located], rows[~located]
     panels = [Placed(panel=loop, row=0, column=0, rows=2)]
     repair: list[Series] = []
+    after_title = "Residual after" if data.is_repaired else "Residual after (no repair)"
     if data.is_repaired:
         added = before - after
         line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
@@ -101,7 +102,7 @@ def main_figure(data: ReportData) -> Figure:
     for row, (residual, colour, title, model) in enumerate(
         (
             (before, BEFORE, "Residual before (measured minus simulation)", repair),
-            (after, AFTER, "Residual after", []),
+            (after, AFTER, after_title, []),
         )
     ):
         rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))

@@ -53,14 +53,15 @@ def page(data: ReportData) -> str:
             picture("loop"),
             _list("Where simulation and recording differ", tables.regions(data)),
             _effects(data),
-            _next(data),
+            _paragraph("What remains without a name", tables.unknown(data)),
+            _paragraph("Next experiment", tables.next_experiment(data)),
             _section("Loop", picture("zoom") + _table(tables.loop_table(data))),
             _section("Residuals", picture("profiles")),
             _section("Residual map", picture("map")),
             _section("Parameters", _table(tables.parameter_table(data))),
             _section("Every effect that was tried", _table(tables.hypothesis_table(data))),
             _list("Explanations that fit", tables.explanations(data)),
-            _list("Ruled out, with 95 % upper bounds", tables.bounds(data)),
+            _list("Not found, with 95 % upper bounds", tables.bounds(data)),
             _list("What this recording cannot show", tables.untestable(data)),
             _section("Errors on data not used", _table(tables.held_out_table(data))),
             _section("Self-check", _table(tables.self_check_table(data))),
@@ -136,12 +137,6 @@ def _effects(data: ReportData) -> str:
     )
 
 
-def _next(data: ReportData) -> str:
-    """Next experiment."""
-    text = tables.next_experiment(data)
-    return _section("Next experiment", f"<p>{escape(text)}</p>" if text else "")
-
-
 def _recording(data: ReportData) -> str:
     """Forensics: what was read, recognised, changed and found wrong."""
     recording = data.recording
@@ -191,6 +186,11 @@ def _provenance(data: ReportData) -> str:
 def _section(title: str, content: str) -> str:
     """Section with a heading; nothing where there is no content."""
     return f"<section><h2>{escape(title)}</h2>{content}</section>" if content else ""
+
+
+def _paragraph(title: str, text: str) -> str:
+    """Section with one paragraph; nothing where there is no text."""
+    return _section(title, f"<p>{escape(text)}</p>" if text else "")
 
 
 def _list(title: str, items: list[str]) -> str:

@@ -247,11 +247,29 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
 
 
 def bounds(data: ReportData) -> list[str]:
-    """Upper bounds of what was ruled out."""
-    return [
+    """Upper bounds of what was not found, those above the tolerance first."""
+    undecided = [
+        f"{plain(str(row.get('name')))}: could be as large as {angle(row.get('upper95_deg'))}, "
+        "above the tolerance"
+        for row in data.result.get("undecided") or []
+    ]
+    ruled_out = [
         f"{plain(str(row.get('name')))}: at most {angle(row.get('upper95_deg'))}"
         for row in data.result.get("ruled_out") or []
     ]
+    return undecided + ruled_out
+
+
+def unknown(data: ReportData) -> str:
+    """Shape, place and size of what has no name, in one sentence."""
+    rest = _section(data.result, "unknown")
+    if not rest:
+        return ""
+    place = f", {rest['place']}" if rest.get("place") else ""
+    return (
+        f"{plain(str(rest.get('shape') or 'something')).capitalize()} of "
+        f"{angle(rest.get('size_deg'))}{place}. No effect of the vocabulary explains it."
+    )
 
 
 def untestable(data: ReportData) -> list[str]:
@@ -282,7 +300,9 @@ def next_experiment(data: ReportData) -> str:
     text = str(plan.get("program") or "").rstrip(".") + "."
     text = text[:1].upper() + text[1:]
     if plan.get("separates"):
-        text += " It separates " + " from ".join(plain(str(s)) for s in plan["separates"]) + "."
+        names = [plain(str(name)) for name in plan["separates"]]
+        text += f" It would {'show or rule out' if len(names) == 1 else 'separate'} "
+        text += " from ".join(names) + "."
     if plan.get("detectability"):
         text += f" Expected detectability {number(plan['detectability'], 2)} noise units."
     if plan.get("minutes"):

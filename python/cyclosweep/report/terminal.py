@@ -56,10 +56,12 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     if effects := result.get("effects"):
         yield Text("")
         yield _effects(effects)
+    rest = tables.unknown(data)
     for heading, lines in (
+        ("What remains without a name", [rest] if rest else []),
         ("Where simulation and recording differ", tables.regions(data)[:3]),
         ("Explanations that fit", tables.explanations(data)[:4]),
-        ("Ruled out (95 % upper bound)", tables.bounds(data)[:6]),
+        ("Not found (95 % upper bound)", tables.bounds(data)[:6]),
         ("What this recording cannot show", tables.untestable(data)[:4]),
         ("Remarks on the recording", [fault.reason for fault in data.recording.faults][:4]),
     ):
