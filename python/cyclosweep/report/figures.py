@@ -101,13 +101,13 @@ def main_figure(data: ReportData) -> Figure:
         repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
     for row, (residual, colour, title, model) in enumerate(
         (
-            (before, BEFORE, "Residual before (measured minus simulation)", repair),
+            (before, BEFORE, "Residual before", repair),
             (after, AFTER, after_title, []),
         )
     ):
         rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))
         panel = Panel(
-            title=f"{title}: {number(rmse)} deg rms",
+            title=f"{title}: {number(rmse)} deg rms over all samples",
             x_label=x_label,
             y_label="residual (deg)",
             series=(
@@ -346,7 +346,7 @@ def _residual_axis(data: ReportData) -> str:
         share_time = (high - low) / max(float(np.ptp(recording.time_s)), 1e-12)
     elif first.get("run"):
         share_time = float(np.mean(_in_run_range(recording, first["run"])))
-    return "time" if share_time < 0.5 * share_torque else "torque"
+    return "time" if share_time < 0.75 * share_torque else "torque"
 
 
 def _in_run_range(recording: Recording, ends: Any) -> Mask:

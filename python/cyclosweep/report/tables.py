@@ -214,7 +214,7 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str]]:
         if ci:
             text += f", 95 % interval {interval(ci)} deg"
         if isinstance(estimate, int | float) and data.compliance_deg_per_nm:
-            text += f"; worth {number(estimate / data.compliance_deg_per_nm)} N m"
+            text += f"; worth {number(abs(estimate / data.compliance_deg_per_nm))} N m"
         evidence = (
             f"p {probability(effect.get('p_value'))}, e-value {number(effect.get('e_value'), 2)}, "
             f"detectability {number(effect.get('detectability'), 3)}"
