@@ -93,6 +93,7 @@ def main_figure(data: ReportData) -> Figure:
     located = _located(data)[rows]
     inside, outside = rows[located], rows[~located]
     panels = [Placed(panel=loop, row=0, column=0, rows=2)]
+    change = " with the effects named below" if data.is_repaired else ", as nothing was repaired"
     repair: list[Series] = []
     after_title = "Residual after" if data.is_repaired else "Residual after (no repair)"
     if data.is_repaired:
@@ -112,8 +113,8 @@ def main_figure(data: ReportData) -> Figure:
             y_label="residual (deg)",
             series=(
                 *_noise_band(x[rows], sigma),
-                Points(x[outside], residual[outside], "", FAINT, 1.3),
-                Points(x[inside], residual[inside], "", colour, 1.3),
+                Points(x[outside], residual[outside], "", FAINT, _dot(len(rows))),
+                Points(x[inside], residual[inside], "", colour, _dot(len(rows))),
                 *model,
             ),
             spans=tuple(_spans(data, axis, labelled=row == 0)),
@@ -127,7 +128,7 @@ def main_figure(data: ReportData) -> Figure:
         key="loop",
         title="Measured loop, simulation before and after, and what is left",
         caption="Before: the published model with calibrated stiffness, free play and datum. "
-        "After: the same with the effects named below. Shaded: where simulation and recording "
+        f"After: the same{change}. Shaded: where simulation and recording "
         "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
         f"deviations of the noise ({number(sigma)} deg).",
         panels=tuple(panels),
@@ -144,7 +145,8 @@ def zoom_figure(data: ReportData) -> Figure:
     assert measured is not None  # all_figures asks first
     rated = data.rated_torque_nm or float(np.abs(torque).max())
     share = LOST_MOTION_SHARE
-    while np.count_nonzero(np.abs(torque) <= share * rated) < 20 and share < 0.5:
+    enough = min(20, len(torque) // 4)
+    while np.count_nonzero(np.abs(torque) <= share * rated) < enough and share < 0.5:
         share *= 2
     near = np.flatnonzero(np.abs(torque) <= share * rated)
     every = len(near)
@@ -283,7 +285,7 @@ def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Itera
     measured = recording.angle_deg
     assert measured is not None
     torque = recording.torque_nm
-    yield Points(torque[rows], measured[rows], NAME_MEASURED, MEASURED, 1.4)
+    yield Points(torque[rows], measured[rows], NAME_MEASURED, MEASURED, _dot(len(rows)))
     for angle, name, colour, dashed in (
         (data.before_deg, NAME_BEFORE, BEFORE, True),
         (data.after_deg, NAME_AFTER, AFTER, False),
@@ -309,6 +311,11 @@ def _with_breaks(
     cut = (run[1:] != run[:-1]) | jump | left_out | crossing
     at = np.flatnonzero(cut) + 1
     return np.insert(x[rows], at, np.nan), np.insert(y[rows], at, np.nan)
+
+
+def _dot(samples: int) -> float:
+    """Radius of a dot [px]: the fewer, the larger."""
+    return 3.2 if samples <= 100 else 2.0 if samples <= 600 else 1.3
 
 
 def _reach(samples: int, shown: int) -> int:
