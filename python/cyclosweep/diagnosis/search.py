@@ -133,6 +133,12 @@ class Search:
         drop = before.chi2 - after.chi2
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
+    def adopt(self, fitted: Fit, gain: float) -> Node:
+        """Take in a structure that was fitted elsewhere."""
+        node = self._node(fitted, gain, 0.0)
+        self.nodes[node.names] = node
+        return node
+
     def refit(self, terms: tuple[Term, ...]) -> Node:
         """Fit a structure that was not visited on its own."""
         return self._node(fit(self.problem, self.noise, terms, self.root.fit), 0.0, 0.0)
