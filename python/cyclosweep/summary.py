@@ -74,7 +74,9 @@ def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record
     }
     best: list[dict[str, Any]] = []
     if (objective := study.objective) is not None:
-        kept = rows.select(*_best_columns(study), "status").filter(pl.col("status") == "ok")
+        kept = rows.select(*_best_columns(study), "status").filter(
+            pl.col("status") == "ok", pl.col(objective.column).is_not_null()
+        )
         choose = kept.top_k if objective.maximise else kept.bottom_k
         best = choose(BEST, by=[objective.column, "variant"]).drop("status").to_dicts()
     return Record(start, stop, status, ranges, best)
