@@ -185,6 +185,8 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
         lower, upper = 1e-3 * top, 3.0 * top
         if parameter.name in ("onset_nm", "first_nm"):
             lower, upper = 0.0, 0.92 * top
+        if parameter.name == "turn_nm":
+            upper = 0.25 * top
         if parameter.name == "range_nm":
             upper = 0.9 * top
         return replace(parameter, lower=lower, upper=upper)

@@ -210,7 +210,7 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
     start = rows[alone].T @ rows[alone]
     k = basis.shape[1]
     freedom = len(left) - k
-    grid = np.r_[0.0:0.985:0.015]
+    grid = np.r_[0.0:0.985:0.01]
     value = np.empty(len(grid))
     for index, rho in enumerate(grid):
         gram = start + (current - rho * crossed + rho**2 * earlier) / (1 - rho**2)
@@ -222,7 +222,7 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
         if sign <= 0:
             value[index] = -np.inf
     best = int(np.argmax(value))
-    within = np.flatnonzero(value > value[best] - 0.5)
+    within = np.flatnonzero(value > value[best] - 1.0)
     if best == 0 and value[0] - value[1] > 1.0:
         return 0.0, 0.0
     return float(grid[best]), float(grid[within[-1]])

@@ -21,7 +21,7 @@ FLOOR = 5.2
 """Smallest threshold of evidence: a thousand draws wander by about this much less."""
 EXTRA_TERM = 3.0
 """Log prior odds against every further effect."""
-WITHOUT_NAME = 3.0
+WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
@@ -156,7 +156,7 @@ class Search:
         each = evidence(rest.observed[members], rest.ranks[members])
         average = rest.by_hypothesis[hypothesis]
         order = members[np.argsort(-each)]
-        price = float(np.clip(each.max() - average, 0.0, 5.0))
+        price = float(np.clip(each.max() - average, 0.0, 1.5))
         first = rest.library.blocks[order[0]]
         slips = first.effect is not None and first.effect.slips
         tried = 0

@@ -20,7 +20,7 @@ from cyclosweep.effects.history import Floats
 MOST_RUNGS = 6
 FIRST = 0.15
 """Share of the error on left-out stretches that the first effect must take away."""
-NEXT = 0.03
+NEXT = 0.02
 """Share that each further effect must take away."""
 PIECES = 40.0
 """Rough number of independent pieces of such a residual, by which parameters are charged."""
@@ -55,7 +55,7 @@ def climb(search: Search) -> list[Node]:
         tried.sort(key=lambda pair: pair[0])
         before = left_out_error(problem, noise, node.fit)
         needed = FIRST if rung == 0 else NEXT
-        for _, joint in tried[:2]:
+        for _, joint in tried[:3]:
             after = left_out_error(problem, noise, joint)
             if after < (1.0 - needed) * before:
                 gain = PIECES * float(np.log(before / after))
