@@ -158,7 +158,8 @@ def frame(
             return inputs.select(columns)
         picked = None if inputs.height == stop - start else inputs["variant"].to_numpy()
     else:
-        inputs, picked = _inputs(study, list(first), start, stop), None
+        # A frame without columns has no height: the number of the variant stands in.
+        inputs, picked = _inputs(study, list(first) or ["variant"], start, stop), None
     if not results:
         return inputs.select(columns)
     whole = inputs.with_columns(_results(study, results, start, stop, picked))
