@@ -289,7 +289,8 @@ class Space:
 
     def __repr__(self) -> str:
         axes = ", ".join(axis.name for axis in self.axes)
-        return f"<Space: {len(self):,} variants of {self.drive.name}, {self.method} over {axes}>"
+        count = self.stop - self.start  # len() ends at 2^63 - 1
+        return f"<Space: {count:,} variants of {self.drive.name}, {self.method} over {axes}>"
 
     def definition(self) -> dict[str, Any]:
         """What makes this space itself, for the study's hash and the manifest."""
