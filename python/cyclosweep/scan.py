@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 from polars.io.plugins import register_io_source
 
+from cyclosweep.errors import InputError
 from cyclosweep.study import Limits, Study
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["frame", "scan", "sweep"]
 
 DEFAULT_BATCH = 100_000
+_LARGEST_FRAME = 2**32 - 1  # rows polars can count
 # Null also for variants that can be built: without an inertia, without a shaft.
 _MAY_NOT_APPLY = frozenset({"natural_frequency_hz", "shaft_compliance_rad_per_nm"})
 
@@ -107,6 +109,11 @@ def sweep(
     polars.DataFrame
         One row a variant, in order.
 
+    Raises
+    ------
+    InputError
+        As for :func:`scan`, and for more variants than a frame can hold.
+
     Examples
     --------
     >>> import cyclosweep as cs
@@ -115,6 +122,11 @@ def sweep(
     ['ok', 'eccentricity_too_large_for_ring']
     """
     study = Study.of(space, loads_tn=loads_tn, limits=limits)
+    count = study.space.stop - study.space.start
+    if count > _LARGEST_FRAME:
+        raise InputError(
+            f"{count:,} variants do not fit into one frame, expected scan, sink or a slice"
+        )
     return frame(study, study.space.start, study.space.stop, list(study.schema()))
 
 

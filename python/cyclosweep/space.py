@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import hashlib
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, overload
@@ -22,6 +23,7 @@ __all__ = ["Axis", "Linspace", "Method", "Space", "linspace"]
 Method = Literal["grid", "sobol", "latin-hypercube", "random", "table"]
 MAX_VARIANTS = 2**63
 _WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
+_OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if optional)
 
 
 @dataclass(frozen=True)
@@ -281,6 +283,8 @@ class Space:
             value = float(core.axis_at(axis.name, index)[0])
             if axis.name == "criterion":
                 changes[axis.name] = CRITERIA[int(value)]
+            elif axis.name in _OPTIONAL and math.isnan(value):
+                changes[axis.name] = None
             elif axis.name in _WHOLE and value.is_integer():
                 changes[axis.name] = int(value)
             else:
