@@ -114,8 +114,12 @@ class Study:
         for name, _, _ in bounds:
             if name not in columns or name == "criterion":
                 raise InputError(f"limits.{name}: no such column, expected an input or a result")
-        if objective is not None and objective.column not in study.schema():
-            raise InputError(f"objective: no column {objective.column} in this study")
+        if objective is not None:
+            dtype = study.schema().get(objective.column)
+            if dtype is None:
+                raise InputError(f"objective: no column {objective.column} in this study")
+            if isinstance(dtype, pl.Enum):
+                raise InputError(f"objective: {objective.column} is no number, expected one")
         return study
 
     @classmethod
