@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 
 import typer
 
@@ -100,14 +101,15 @@ def sweep(
     """Sweep a study to a folder of Parquet parts; killed, the same command goes on from there."""
     from cyclosweep.shards import sink
 
-    summary = sink(
-        _study(study, rows),
-        out,
-        fresh=fresh,
-        workers=workers,
-        engine=engine,
-        scheduler=scheduler,
-    )
+    with _interruptible():
+        summary = sink(
+            _study(study, rows),
+            out,
+            fresh=fresh,
+            workers=workers,
+            engine=engine,
+            scheduler=scheduler,
+        )
     if as_json:
         _print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
     else:
@@ -126,11 +128,21 @@ def shard(
     """Compute one task of a batch array; any mix of tasks gives the same dataset."""
     from cyclosweep.shards import shard as run
 
-    summary = run(_study(study, None), out, index=index, of=of)
+    with _interruptible():
+        summary = run(_study(study, None), out, index=index, of=of)
     if as_json:
         _print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
     else:
         print(f"task {index} of {of}: {summary.rows:,} variants in {out}")
+
+
+@contextlib.contextmanager
+def _interruptible() -> Iterator[None]:
+    """Say in one line what Ctrl-C leaves behind; typer would end without a word."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        _fail("interrupted; what is whole stays, the same command goes on from there", 1)
 
 
 def _study(path: Path, rows: int | None) -> Any:
@@ -169,10 +181,8 @@ def main() -> None:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         _fail(f"{where}{error.strerror or error}", 1)
-    except KeyboardInterrupt:
-        _fail("interrupted; what is whole stays, the same command goes on from there", 1)
 
 
-def _fail(error: object, status: int) -> None:
+def _fail(error: object, status: int) -> NoReturn:
     print(f"cyclosweep: {error}", file=sys.stderr)
     sys.exit(status)

@@ -5,9 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-import numpy as np
-from scipy.integrate import quad
-
 import cyclosweep._core as _core
 from cyclosweep.drive import Drive
 from cyclosweep.reference.facts import Fact, Mark
@@ -42,6 +39,8 @@ def facts(drive: Drive) -> Iterator[Fact]:
 
     def unity(fact: str, value: float, tolerance: float, mark: Mark = "identity") -> Fact:
         return Fact(GROUP, fact, 1.0, value, "1", mark, tolerance)
+
+    from scipy.integrate import quad
 
     keyway = _core.keyway_compliance(_L, _D, 0.0, 10.0, _SHEAR_MODULUS)
     yield unity("Eq. (5) without depth / cylinder", keyway / _cylinder(_L, _D), 1e-12)
@@ -94,7 +93,7 @@ def _against_better_models() -> Iterator[Fact]:
     yield Fact(
         GROUP,
         "Eq. (5): keyway of 5.5 mm in 50 mm / cylinder",
-        float(np.round(thin, 4)),
+        round(thin, 4),
         printed,
         "1",
         "reading",

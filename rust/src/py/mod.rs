@@ -1,6 +1,7 @@
 //! Bindings for Python, and nothing else; everything Python can see is registered here.
 
 mod formulas;
+mod hysteresis;
 mod study;
 
 use pyo3::create_exception;
@@ -59,6 +60,7 @@ fn status_labels() -> Vec<&'static str> {
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    hysteresis::register(module)?;
     module.add("DEBUG_BUILD", cfg!(debug_assertions))?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SEGMENT_FIELDS", SEGMENT_FIELDS)?;
