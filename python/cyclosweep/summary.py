@@ -78,8 +78,8 @@ def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record
         kept = rows.select(*_best_columns(study), "status").filter(
             pl.col("status") == "ok", is_number
         )
-        choose = kept.top_k if objective.maximise else kept.bottom_k
-        best = choose(BEST, by=[objective.column, "variant"]).drop("status").to_dicts()
+        by, reverse = [objective.column, "variant"], [objective.maximise, False]
+        best = kept.bottom_k(BEST, by=by, reverse=reverse).drop("status").to_dicts()
     return Record(start, stop, status, ranges, best)
 
 

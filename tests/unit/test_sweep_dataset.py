@@ -87,6 +87,18 @@ def test_another_objective_on_a_finished_dataset(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.parametrize("maximise", [False, True])
+def test_among_equals_the_first_variants_are_best_however_the_study_is_cut(
+    tmp_path: Path, maximise: bool
+) -> None:
+    study = cs.Study.of(SPACE, objective=cs.Objective("active_pins_min", maximise))
+    ok = WHOLE.filter(pl.col("status") == "ok")
+    expected = ok.sort("active_pins_min", "variant", descending=[maximise, False])["variant"]
+    for rows in (100, 730):
+        best = sink(tmp_path / f"{rows}", study=study, rows_per_part=rows).best
+        assert [row["variant"] for row in best] == expected.head(10).to_list()
+
+
 @pytest.mark.parametrize("column", ["natural_frequency_hz", "statics_applicable", "variant"])
 def test_an_objective_that_does_not_apply_everywhere(tmp_path: Path, column: str) -> None:
     drive = cs.Drive.reference_87().replace(input_inertia_kg_m2=None)
