@@ -77,9 +77,7 @@ def random_shaft(rng: np.random.Generator) -> tuple[cs.Keyway | cs.Cylinder | cs
             segments.append(cs.Cylinder(diameter_mm=diameter, length_mm=length))
         else:
             end = diameter * float(rng.uniform(0.5, 2))
-            segments.append(
-                cs.Frustum(diameter_mm=diameter, end_diameter_mm=end, length_mm=length)
-            )
+            segments.append(cs.Frustum(diameter_mm=diameter, end_diameter_mm=end, length_mm=length))
             diameter = end
         diameter *= float(rng.choice([1.0, rng.uniform(1, 1.8)]))
     return tuple(segments)

@@ -117,6 +117,7 @@ def sink(
                 records.append(record)
         done = sum(record.stop - record.start for record in records)
         with Progress("sweep", len(study), done=done, show=progress) as bar:
+
             def advance(record: Record) -> None:
                 bar.advance(record.stop - record.start)
 

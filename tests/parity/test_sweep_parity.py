@@ -7,10 +7,10 @@ import math
 import numpy as np
 import polars as pl
 import pytest
-
-import cyclosweep as cs
 from tests.drives import random_drive, random_drives
 from tests.parity import twin
+
+import cyclosweep as cs
 
 LOADS = (0.5, 1.0, 3.0, 4.5)
 COUNTS = ("active_pins_min", "active_pins_max")
@@ -50,9 +50,7 @@ def test_every_column_of_random_drives(seed: int) -> None:
 def test_every_pin_count(criterion: str, disc_count: int) -> None:
     rng = np.random.default_rng(disc_count)
     for pins in range(3, 65):
-        drive = random_drive(
-            rng, output_pin_count=pins, disc_count=disc_count, criterion=criterion
-        )
+        drive = random_drive(rng, output_pin_count=pins, disc_count=disc_count, criterion=criterion)
         assert differences(drive) == [], drive
 
 

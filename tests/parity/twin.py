@@ -28,16 +28,12 @@ class Counts:
 def hole_angles(drive: cs.Drive) -> list[float]:
     """Angle (deg) of each hole at theta = 0: holes symmetric about ring pin 0, then clocked."""
     pitch = 360 / drive.output_pin_count
-    return [
-        (j + 0.5) * pitch + drive.hole_clocking_deg for j in range(drive.output_pin_count)
-    ]
+    return [(j + 0.5) * pitch + drive.hole_clocking_deg for j in range(drive.output_pin_count)]
 
 
 def delta_deg(drive: cs.Drive) -> float:
     """Return delta = asin(e / (2 R_OP))."""
-    return math.degrees(
-        math.asin(drive.eccentricity_mm / (2 * drive.output_pin_circle_radius_mm))
-    )
+    return math.degrees(math.asin(drive.eccentricity_mm / (2 * drive.output_pin_circle_radius_mm)))
 
 
 def recurring(opens: float, closes: float, psi_at_zero: float, ratio: int) -> list[Interval]:
@@ -164,9 +160,7 @@ def pin_compliance(drive: cs.Drive) -> float:
     area = math.pi / 4 * (d**2 - bore**2)
     second_moment = math.pi / 64 * (d**4 - bore**4)
     m2 = (bore / d) ** 2
-    kappa = (
-        6 * (1 + nu) * (1 + m2) ** 2 / ((7 + 6 * nu) * (1 + m2) ** 2 + (20 + 12 * nu) * m2)
-    )
+    kappa = 6 * (1 + nu) * (1 + m2) ** 2 / ((7 + 6 * nu) * (1 + m2) ** 2 + (20 + 12 * nu) * m2)
     shear = modulus / (2 * (1 + nu))
     force = drive.output_torque_nm / radius
     deflection = force * length**3 / (3 * modulus * second_moment)
@@ -309,9 +303,10 @@ def refusals(values: dict[str, float], kinds: list[str]) -> set[str]:
     if values["output_pin_bore_mm"] >= values["output_pin_diameter_mm"]:
         add("pin_bore_too_large")
     radius = values["output_pin_diameter_mm"] / 2 + values["bush_wall_mm"] + e
-    if values["output_pin_count"] > 0 and circle * math.sin(
-        math.pi / values["output_pin_count"]
-    ) <= radius:
+    if (
+        values["output_pin_count"] > 0
+        and circle * math.sin(math.pi / values["output_pin_count"]) <= radius
+    ):
         add("holes_overlap")
     if circle + radius >= rim:
         add("hole_breaks_rim")
@@ -327,5 +322,3 @@ def refusals(values: dict[str, float], kinds: list[str]) -> set[str]:
             add("keyway_too_deep")
         before = values[f"shaft_{number}_end_diameter_mm"] if kind == "frustum" else diameter
     return reasons
-
-

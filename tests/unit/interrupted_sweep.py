@@ -8,7 +8,6 @@ import time
 import cyclosweep as cs
 from cyclosweep.dataset import Dataset
 
-
 _put = Dataset.put
 
 
@@ -23,9 +22,7 @@ Dataset.put = _slow  # type: ignore[method-assign,assignment]
 
 def main() -> None:
     folder, count, rows, engine = sys.argv[1:]
-    space = cs.Space.sobol(
-        cs.Drive.reference_87(), int(count), seed=2, eccentricity_mm=(0.3, 0.8)
-    )
+    space = cs.Space.sobol(cs.Drive.reference_87(), int(count), seed=2, eccentricity_mm=(0.3, 0.8))
     cs.sink(space, folder, rows_per_part=int(rows), engine=engine)  # type: ignore[arg-type]
 
 

@@ -29,9 +29,7 @@ def whole() -> object:
 
 
 def space() -> cs.Space:
-    return cs.Space.sobol(
-        cs.Drive.reference_87(), PARTS * ROWS, seed=2, eccentricity_mm=(0.3, 0.8)
-    )
+    return cs.Space.sobol(cs.Drive.reference_87(), PARTS * ROWS, seed=2, eccentricity_mm=(0.3, 0.8))
 
 
 def go_on(folder: Path) -> None:
