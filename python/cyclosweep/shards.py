@@ -256,12 +256,12 @@ def run_shards(
                         attempts[part.index] += 1
                         try:
                             running[executor.submit(write_part, dataset, part)] = part
-                        except BrokenExecutor as error:
+                        except BrokenExecutor as gone:
                             broken = True
                             if attempts[part.index] < _ATTEMPTS:
                                 waiting.append(part)
                             else:  # A lent executor is the same one every time.
-                                failed[part.index] = error
+                                failed[part.index] = gone
                                 waiting.clear()
                     done, _ = wait(running, return_when=FIRST_COMPLETED)
                     for future in done:

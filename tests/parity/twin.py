@@ -6,6 +6,7 @@ are in degrees, and windows are found as intervals and then united, counted and 
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -97,7 +98,7 @@ def count(drive: cs.Drive, criterion: str) -> Counts:
     lasts: dict[int, float] = {}
     active, events = 0, sorted([(a, 1) for a, _ in windows] + [(b, -1) for _, b in windows])
     at = 0
-    for here, following in zip(edges, edges[1:], strict=False):
+    for here, following in itertools.pairwise(edges):
         while at < len(events) and events[at][0] <= here:
             active += events[at][1]
             at += 1

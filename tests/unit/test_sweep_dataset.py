@@ -234,7 +234,7 @@ def test_someone_else_s_parts_are_refused_and_left_untouched(tmp_path: Path) -> 
     pl.DataFrame({"a": [1]}).write_parquet(tmp_path / "part-000000.parquet")
     before = files(tmp_path)
     for fresh in (False, True):
-        with pytest.raises(cs.InputError, match="part-000000.parquet"):
+        with pytest.raises(cs.InputError, match=r"part-000000\.parquet"):
             sink(tmp_path, fresh=fresh)
         assert files(tmp_path) == before
 
