@@ -355,7 +355,11 @@ class Drive(_Part):
                 table[name] = value
             else:
                 raise InputError(f"{name}: no such input of this drive")
-            table["provenance"].pop(name, None)
+            table["provenance"] = {
+                key: mark
+                for key, mark in table["provenance"].items()
+                if key != name and not (name == "shaft" and key.startswith("shaft_"))
+            }
         return self._from_table(table, self.name)
 
     @property

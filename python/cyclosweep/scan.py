@@ -14,6 +14,7 @@ import polars as pl
 from polars.io.plugins import register_io_source
 
 import cyclosweep._core as _core
+from cyclosweep.errors import InputError
 from cyclosweep.study import Limits, Study
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Evaluations", "frame", "kernel_evaluations", "scan", "sweep"]
 
 DEFAULT_BATCH = 100_000
+_LARGEST_FRAME = 2**32 - 1  # rows polars can count
 # Null also for variants that can be built: without an inertia, without a shaft.
 _MAY_NOT_APPLY = frozenset({"natural_frequency_hz", "shaft_compliance_rad_per_nm"})
 
@@ -143,6 +145,11 @@ def sweep(
     polars.DataFrame
         One row a variant, in order.
 
+    Raises
+    ------
+    InputError
+        As for :func:`scan`, and for more variants than a frame can hold.
+
     Examples
     --------
     >>> import cyclosweep as cs
@@ -151,6 +158,11 @@ def sweep(
     ['ok', 'eccentricity_too_large_for_ring']
     """
     study = Study.of(space, loads_tn=loads_tn, limits=limits)
+    count = study.space.stop - study.space.start
+    if count > _LARGEST_FRAME:
+        raise InputError(
+            f"{count:,} variants do not fit into one frame, expected scan, sink or a slice"
+        )
     return frame(study, study.space.start, study.space.stop, list(study.schema()))
 
 
@@ -194,7 +206,8 @@ def frame(
             return inputs.select(columns)
         picked = None if inputs.height == stop - start else inputs["variant"].to_numpy()
     else:
-        inputs, picked = _inputs(study, list(first), start, stop), None
+        # A frame without columns has no height: the number of the variant stands in.
+        inputs, picked = _inputs(study, list(first) or ["variant"], start, stop), None
     if not results:
         return inputs.select(columns)
     whole = inputs.with_columns(_results(study, results, start, stop, picked))
