@@ -1,9 +1,16 @@
-"""Fixtures that several test folders use."""
+"""Shared fixtures."""
 
 import os
 from pathlib import Path
 
 import pytest
+
+import cyclosweep as cs
+
+
+@pytest.fixture
+def reference() -> cs.Drive:
+    return cs.Drive.reference_87()
 
 
 @pytest.fixture(scope="session")

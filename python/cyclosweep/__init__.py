@@ -8,7 +8,8 @@ from cyclosweep.diagnosis import Diagnosis, diagnose
 from cyclosweep.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.recording import Recording
-from cyclosweep.scan import scan, sweep
+from cyclosweep.reference.validation import validate
+from cyclosweep.scan import kernel_evaluations, scan, sweep
 from cyclosweep.shards import shard, sink
 from cyclosweep.simulate import Model, simulate
 from cyclosweep.space import Space, linspace
@@ -38,6 +39,7 @@ __all__ = [
     "SweepError",
     "__version__",
     "diagnose",
+    "kernel_evaluations",
     "linspace",
     "scan",
     "scan_dataset",
@@ -45,4 +47,5 @@ __all__ = [
     "simulate",
     "sink",
     "sweep",
+    "validate",
 ]

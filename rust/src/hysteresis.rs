@@ -137,7 +137,12 @@ fn balance(
         let (state, slope) = elements.state(angle, anchor, stretch);
         let growth = elements.load_factor * stiffness * elastic.signum() * state;
         let force = limit * state;
-        (elastic + force - torque, stiffness + growth + limit * slope, force, stretch)
+        (
+            elastic + force - torque,
+            stiffness + growth + limit * slope,
+            force,
+            stretch,
+        )
     };
     // The friction can never exceed its limit, which brackets the elastic torque.
     let bound = (torque.abs() + elements.limit) / (1.0 - elements.load_factor).max(0.05);
@@ -197,7 +202,13 @@ pub fn play(input: &[f64], half_width: f64, restart: &[bool], start: &[f64], out
 }
 
 /// Kelvin-Voigt state: follows the input with a time constant, exactly for a piecewise linear input.
-pub fn creep_state(input: &[f64], time: &[f64], restart: &[bool], time_constant: f64, out: &mut [f64]) {
+pub fn creep_state(
+    input: &[f64],
+    time: &[f64],
+    restart: &[bool],
+    time_constant: f64,
+    out: &mut [f64],
+) {
     let mut state = 0.0;
     for i in 0..input.len() {
         if i == 0 || restart[i] {
@@ -206,7 +217,11 @@ pub fn creep_state(input: &[f64], time: &[f64], restart: &[bool], time_constant:
         } else {
             let step = ((time[i] - time[i - 1]) / time_constant).max(0.0);
             let decay = (-step).exp();
-            let slope = if step > 1e-12 { (input[i] - input[i - 1]) / step } else { 0.0 };
+            let slope = if step > 1e-12 {
+                (input[i] - input[i - 1]) / step
+            } else {
+                0.0
+            };
             // x' = (u - x)/tau with u linear over the step.
             state = input[i] - slope + (state - input[i - 1] + slope) * decay;
         }
@@ -247,10 +262,19 @@ mod tests {
         let torque: Vec<f64> = up.iter().chain(up.iter().rev()).copied().collect();
         let n = torque.len();
         let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
-        let spring = Spring { free_play: 0.0, compliance: 2.0 };
+        let spring = Spring {
+            free_play: 0.0,
+            compliance: 2.0,
+        };
         solve_slip(
-            &torque, &vec![0.0; n], &vec![false; n], &vec![0.0; n], spring,
-            &single(0.5, &[0.01]), &mut angle, &mut friction,
+            &torque,
+            &vec![0.0; n],
+            &vec![false; n],
+            &vec![0.0; n],
+            spring,
+            &single(0.5, &[0.01]),
+            &mut angle,
+            &mut friction,
         );
         let width = angle[151] - angle[50];
         assert!((width - 2.0 * 0.5 * 2.0).abs() < 1e-9, "{width}");

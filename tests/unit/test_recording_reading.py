@@ -301,3 +301,35 @@ def test_from_arrays_take_and_frame() -> None:
 def test_only_graduations_count_as_resolution(step: float, seen: float) -> None:
     angle = step * np.rint(np.random.default_rng(2).uniform(-80, 80, 300) / step)
     assert angle_lattice(angle) == pytest.approx(seen, rel=1e-5)
+
+
+def test_a_true_half_turn_is_not_a_wrap(tmp_path: Path) -> None:
+    torque = np.tile([30.0, -30.0, 25.0, -25.0], 5)
+    twist = 28 * np.sign(torque) + 2.73 * torque
+    text = "torque_nm,angle_deg\n" + "".join(
+        f"{t},{a:.4f}\n" for t, a in zip(torque, twist, strict=True)
+    )
+    recording = Recording.read(write(tmp_path, text))
+    np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
+
+
+def test_mostly_missing_is_a_data_fault(tmp_path: Path) -> None:
+    text = "torque_nm,angle_deg\n" + "".join(
+        f"{k},{28 + 2.7 * k if k % 2 else ''}\n" for k in range(1, 41)
+    )
+    fault = Recording.read(write(tmp_path, text)).blocking_fault
+    assert fault is not None
+    assert (fault.kind, fault.verdict) == ("missing_values", "DATA_FAULT")
+    assert "20 of 40" in fault.reason
+
+
+@pytest.mark.parametrize("head", ["sep=;\n", "\ufeffsep=;\r\n"])
+def test_a_spreadsheets_separator_line_is_passed_over(tmp_path: Path, head: str) -> None:
+    assert_is_the_loop(Recording.read(write(tmp_path, (head + GERMAN).encode())))
+
+
+def test_semicolons_with_decimal_points(tmp_path: Path) -> None:
+    text = TEXT.replace(",", ";").replace("run\n", 'run;"note, free"\n')
+    assert_is_the_loop(Recording.read(write(tmp_path, text)))
+    mixed = text.replace("29.5;1\n", "29.5;1;warm, dry\n")
+    assert_is_the_loop(Recording.read(write(tmp_path, mixed)))

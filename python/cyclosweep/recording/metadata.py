@@ -13,7 +13,7 @@ CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "te
 """Column names of a recording, each with its unit."""
 
 CanonicalName = Literal["torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c"]
-SelectValue = bool | int | float | str
+SelectValue = int | float | str
 
 
 class _Strict(BaseModel):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cyclosweep.errors import InputError
 from cyclosweep.recording import table
+from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata
 from cyclosweep.recording.signals import (
     angle_lattice,
@@ -21,6 +22,9 @@ from cyclosweep.recording.signals import (
 )
 
 Floats = NDArray[np.float64]
+
+MISSING_SHARE = 1 / 3
+"""Share of samples without a value above which a recording is faulty."""
 
 
 @np.errstate(all="ignore")
@@ -41,13 +45,12 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     sources = _sources(meta)
     frame, notes = _load(path, meta_path, meta, sources)
     columns = _canonical(path, frame, sources, notes)
-    columns, frame = _select(path, meta_path, meta, columns, frame, notes)
+    columns = _select(path, meta_path, meta, columns, frame, notes)
     if meta.merge.same_time:
         columns = _merge(path, columns, notes)
     elif columns["time_s"] is not None:
         columns = _drop_repeated(columns, notes)
-    columns, notes_dropped = _drop_missing(columns)
-    notes += notes_dropped
+    columns, faults = _drop_missing(columns, notes)
     _recognise_angle(columns, meta, notes)
     run = columns.pop("run")
     assert run is not None  # _canonical makes one where the file has none
@@ -71,6 +74,7 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
         "conditioning_runs": tuple(meta.conditioning_runs),
         "holdout_runs": tuple(meta.holdout_runs),
         "notes": tuple(notes),
+        "faults": faults,
         "sha256": _sha256(path),
     }
 
@@ -173,7 +177,7 @@ def _select(
     columns: dict[str, Floats | None],
     frame: pl.DataFrame,
     notes: list[str],
-) -> tuple[dict[str, Floats | None], pl.DataFrame]:
+) -> dict[str, Floats | None]:
     """Keep the rows asked for."""
     keep = np.ones(frame.height, dtype=bool)
 
@@ -188,10 +192,10 @@ def _select(
         keep &= mask
     for key, limit in meta.abs_max.items():
         keep &= np.abs(values_of(key)) <= limit
-    if not keep.all():
-        notes.append(f"Selection keeps {keep.sum()} of {len(keep)} rows.")
-    picked = {name: None if a is None else a[keep] for name, a in columns.items()}
-    return picked, frame
+    if keep.all():
+        return columns
+    notes.append(f"Selection keeps {keep.sum()} of {len(keep)} rows.")
+    return {name: None if a is None else a[keep] for name, a in columns.items()}
 
 
 def _merge(
@@ -215,7 +219,7 @@ def _drop_repeated(columns: dict[str, Floats | None], notes: list[str]) -> dict[
     """Drop rows that repeat the one before them in everything, the clock included."""
     present = [values for values in columns.values() if values is not None]
     repeated = np.logical_and.reduce([values[1:] == values[:-1] for values in present])
-    if not repeated.any():
+    if not repeated.any() or repeated.all():  # all of them: the checks say it better
         return columns
     keep = np.r_[True, ~repeated]
     notes.append(f"{np.count_nonzero(repeated)} rows that repeat the one before dropped.")
@@ -223,10 +227,13 @@ def _drop_repeated(columns: dict[str, Floats | None], notes: list[str]) -> dict[
 
 
 def _drop_missing(
-    columns: dict[str, Floats | None],
-) -> tuple[dict[str, Floats | None], list[str]]:
-    """Drop samples without a finite torque, angle or time; a sparse extra column is left out."""
-    notes: list[str] = []
+    columns: dict[str, Floats | None], notes: list[str]
+) -> tuple[dict[str, Floats | None], tuple[Fault, ...]]:
+    """Drop samples without a finite torque, angle or time; a sparse extra column is left out.
+
+    More than `MISSING_SHARE` of them missing is a fault: what is left is not the test any more.
+    """
+    faults: tuple[Fault, ...] = ()
     run = columns["run"]
     keep = np.ones(0 if run is None else len(run), dtype=bool)
     for name in ("torque_nm", "angle_deg", "time_s"):
@@ -240,13 +247,18 @@ def _drop_missing(
             continue
         keep &= finite
     if dropped := int((~keep).sum()):
-        notes.append(f"{dropped} of {len(keep)} samples without a finite value dropped.")
+        text = f"{dropped} of {len(keep)} samples without a finite value dropped."
+        notes.append(text)
+        if dropped > MISSING_SHARE * len(keep):
+            faults = (Fault("missing_values", "DATA_FAULT", text),)
     for name in ("crank_deg", "temperature_c"):
         values = columns[name]
         if values is not None and not np.isfinite(values[keep]).all():
             columns = {**columns, name: None}
             notes.append(f"Column {name} has missing values: left out.")
-    return {name: None if a is None else a[keep] for name, a in columns.items()}, notes
+    if not dropped:
+        return columns, faults
+    return {name: None if a is None else a[keep] for name, a in columns.items()}, faults
 
 
 def _recognise_angle(columns: dict[str, Floats | None], meta: Metadata, notes: list[str]) -> None:
@@ -255,7 +267,7 @@ def _recognise_angle(columns: dict[str, Floats | None], meta: Metadata, notes: l
     if angle is None or torque is None or run is None:
         return
     told = meta.columns.get("angle_deg")
-    if (told is None or told.modulo is None) and wraps_at_360(angle):
+    if (told is None or told.modulo is None) and wraps_at_360(angle, torque):
         angle, count = unwrap(angle, 360.0)
         angle = angle - 360.0 * np.rint(np.median(angle) / 360.0)
         notes.append(f"Dial wraps at 360 deg: {count} wraps undone.")
@@ -266,12 +278,12 @@ def _recognise_angle(columns: dict[str, Floats | None], meta: Metadata, notes: l
 
 
 def _drive(meta: Metadata, meta_path: Path | None) -> str | None:
-    """Built-in name, or the path of a drive file beside the metadata."""
+    """Built-in name, or the whole path of a drive file beside the metadata."""
     if meta.drive is None or meta_path is None:
         return meta.drive
     beside = meta_path.parent / meta.drive
     if beside.is_file():
-        return str(beside)
+        return str(beside.resolve())
     if meta.drive.endswith(".toml"):
         raise InputError(f"{meta_path}, key drive: no file {meta.drive!r} beside it")
     return meta.drive

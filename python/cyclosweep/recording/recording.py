@@ -121,7 +121,7 @@ class Recording:
         except InputError as error:  # names in the file may hold line breaks
             raise InputError(printable(str(error))) from None
         recording = cls(**parts)
-        return replace(recording, faults=find_faults(recording))
+        return replace(recording, faults=(*recording.faults, *find_faults(recording)))
 
     @classmethod
     def from_arrays(

@@ -35,17 +35,26 @@ def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
     return unwrapped, int(np.count_nonzero(turns))
 
 
-def wraps_at_360(angle_deg: Floats) -> bool:
+def wraps_at_360(angle_deg: Floats, torque_nm: Floats) -> bool:
     """Whether a dial of one turn jumps from one of its ends to the other.
 
-    All readings must lie within one turn, and some step must exceed half of it. A locked drive
-    does not twist half a turn from one sample to the next.
+    All readings must lie within one turn, some step must exceed half of it, and the unwrapped
+    angle must follow the torque no worse: a soft drive that is loaded the other way between two
+    readings also makes a long step, but a true one.
     """
     if len(angle_deg) < 2:
         return False
     low, high = float(angle_deg.min()), float(angle_deg.max())
     one_turn = (low >= 0 and high <= 360) or (low >= -180 and high <= 180)
-    return one_turn and bool(np.abs(np.diff(angle_deg)).max() > 180)
+    if not one_turn or np.abs(np.diff(angle_deg)).max() <= 180:
+        return False
+    unwrapped, _ = unwrap(angle_deg, 360.0)
+    return not _relation(torque_nm, unwrapped) < _relation(torque_nm, angle_deg)
+
+
+def _relation(a: Floats, b: Floats) -> float:
+    """Magnitude of the correlation; NaN where one of them is constant."""
+    return abs(float(np.corrcoef(a, b)[0, 1]))
 
 
 def sign_is_reversed(torque_nm: Floats, angle_deg: Floats, run: NDArray[np.generic]) -> bool:

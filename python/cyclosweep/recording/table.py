@@ -257,13 +257,13 @@ def _rows(path: Path, text: CsvText) -> Iterator[tuple[int, list[str]]]:
 
 
 def _header_line(content: bytes, path: Path) -> tuple[int, int, int]:
-    """Start, end and number of the first line that is neither blank nor a comment."""
+    """Start, end and number of the header: not blank, a comment, or a spreadsheet's ``sep=;``."""
     start = line = 0
     while start < len(content):
         line += 1
         stop = content.find(b"\n", start) + 1 or len(content)
         head = content[start:stop].strip()
-        if head and not head.startswith(b"#"):
+        if head and not head.startswith(b"#") and not head.lower().startswith(b"sep="):
             return start, stop, line
         start = stop
     raise InputError(f"{path}: only comments, expected a header row and samples")

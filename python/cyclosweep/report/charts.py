@@ -14,6 +14,7 @@ AFTER = "#0072b2"
 MODELLED = "#1d232b"
 REGION = "#f0b400"
 QUIET = "#8a93a0"
+FAINT = "#c3c9d1"
 """Colours of Okabe and Ito that stay apart for colour-blind readers."""
 
 
@@ -163,7 +164,9 @@ def nice_ticks(low: float, high: float, count: int = 6) -> Floats:
     raw = span / count
     magnitude = 10.0 ** np.floor(np.log10(raw))
     step = next(m * magnitude for m in (1, 2, 2.5, 5, 10) if m * magnitude >= raw * 0.999)
-    ticks: Floats = np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1) * step
+    ticks: Floats = (
+        np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1) * step + 0.0
+    )
     return ticks
 
 

@@ -10,7 +10,7 @@ from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.tables import Table
-from cyclosweep.report.wording import VERDICTS, number, plain, probability
+from cyclosweep.report.wording import number, probability, verdict_words
 
 
 def write_html(data: ReportData, path: str | Path) -> Path:
@@ -53,14 +53,15 @@ def page(data: ReportData) -> str:
             picture("loop"),
             _list("Where simulation and recording differ", tables.regions(data)),
             _effects(data),
-            _next(data),
+            _paragraph("What remains without a name", tables.unknown(data)),
+            _paragraph("Next experiment", tables.next_experiment(data)),
             _section("Loop", picture("zoom") + _table(tables.loop_table(data))),
             _section("Residuals", picture("profiles")),
             _section("Residual map", picture("map")),
             _section("Parameters", _table(tables.parameter_table(data))),
             _section("Every effect that was tried", _table(tables.hypothesis_table(data))),
             _list("Explanations that fit", tables.explanations(data)),
-            _list("Ruled out, with 95 % upper bounds", tables.bounds(data)),
+            _list("Not found, with 95 % upper bounds", tables.bounds(data)),
             _list("What this recording cannot show", tables.untestable(data)),
             _section("Errors on data not used", _table(tables.held_out_table(data))),
             _section("Self-check", _table(tables.self_check_table(data))),
@@ -98,8 +99,7 @@ def _top(data: ReportData) -> str:
 
 def _verdict(data: ReportData) -> str:
     """Verdict line with its evidence."""
-    code = str(data.result.get("verdict") or "")
-    words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
+    code, words, tone = verdict_words(data.result)
     figures = "".join(
         f'<div class="figure-value"><b>{escape(value)}</b><span>{escape(label)}</span>'
         f"<span>{escape(remark)}</span></div>"
@@ -134,12 +134,6 @@ def _effects(data: ReportData) -> str:
     return _section(
         "What was left out of the model", f'<div class="cards">{cards}</div>' if cards else ""
     )
-
-
-def _next(data: ReportData) -> str:
-    """Next experiment."""
-    text = tables.next_experiment(data)
-    return _section("Next experiment", f"<p>{escape(text)}</p>" if text else "")
 
 
 def _recording(data: ReportData) -> str:
@@ -191,6 +185,11 @@ def _provenance(data: ReportData) -> str:
 def _section(title: str, content: str) -> str:
     """Section with a heading; nothing where there is no content."""
     return f"<section><h2>{escape(title)}</h2>{content}</section>" if content else ""
+
+
+def _paragraph(title: str, text: str) -> str:
+    """Section with one paragraph; nothing where there is no text."""
+    return _section(title, f"<p>{escape(text)}</p>" if text else "")
 
 
 def _list(title: str, items: list[str]) -> str:

@@ -118,7 +118,7 @@ def _slope(torque: Floats, angle: Floats, chosen: NDArray[np.bool_]) -> float | 
     slopes = []
     for side in (torque > 0, torque < 0):
         rows = chosen & side
-        if np.count_nonzero(rows) >= 5 and np.ptp(torque[rows]) > 0:
+        if np.count_nonzero(rows) >= 3 and np.ptp(torque[rows]) > 0:
             t, a = torque[rows], angle[rows]
             compliance = np.cov(t, a)[0, 1] / np.var(t, ddof=1)
             if compliance > 0:
@@ -126,18 +126,40 @@ def _slope(torque: Floats, angle: Floats, chosen: NDArray[np.bool_]) -> float | 
     return float(np.mean(slopes)) if slopes else None
 
 
+def dead_zone_crossings(torque: Floats, angle: Floats) -> NDArray[np.bool_]:
+    """Steps over which torque changes its sign and the angle jumps: the dead zone, not recorded.
+
+    Returns
+    -------
+    ndarray of bool, shape (n - 1,)
+        For the step from each sample to the next.
+    """
+    far = np.abs(np.diff(angle)) > 0.1 * np.ptp(angle) if len(angle) else np.zeros(0, dtype=bool)
+    crossings: NDArray[np.bool_] = far & (torque[1:] * torque[:-1] <= 0)
+    return crossings
+
+
 def _energy(recording: Recording, angle: Floats) -> dict[int, float]:
-    """Area of each run's loop [J], for runs that come back to where they began."""
+    """Area of each run's loop [J], for runs that come back to where they began.
+
+    A dead zone that was not recorded is crossed at zero torque; from its last sample to there the
+    shaft goes along the elastic line.
+    """
     areas = {}
     twist = np.radians(angle)
+    slope = _slope(recording.torque_nm, angle, recording.structure.loading)
+    compliance = np.radians(1.0 / slope) if slope else 0.0
     for run in recording.runs:
         rows = np.flatnonzero(recording.run == run)
         torque, theta = recording.torque_nm[rows], twist[rows]
         span = float(np.ptp(torque))
         if len(rows) < 8 or span == 0 or abs(torque[-1] - torque[0]) > 0.1 * span:
             continue
-        around = 0.5 * (torque + np.roll(torque, -1)) * (np.roll(theta, -1) - theta)
-        areas[run] = float(abs(around.sum()))
-        if areas[run] < 1e-9 * span * float(np.ptp(theta)):
-            areas[run] = 0.0  # rounding of a line gone forth and back
+        torque, theta = np.r_[torque, torque[0]], np.r_[theta, theta[0]]
+        step = 0.5 * (torque[1:] + torque[:-1]) * np.diff(theta)
+        crossing = dead_zone_crossings(torque, theta)
+        step[crossing] = 0.5 * compliance * (torque[1:] ** 2 - torque[:-1] ** 2)[crossing]
+        area = abs(float(step.sum()))
+        rounding = 1e-9 * span * float(np.ptp(theta))  # of a line gone forth and back
+        areas[run] = area if area > rounding else 0.0
     return areas

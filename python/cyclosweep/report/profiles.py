@@ -87,6 +87,9 @@ def by_group(
 def _equal_bins(x: Floats, bins: int) -> NDArray[np.int64]:
     """Label samples by quantile bins; equal values share a bin, no bin is empty."""
     bins = max(1, min(bins, len(x) // _LEAST_PER_BIN))
+    span = float(np.ptp(x)) if len(x) else 0.0
+    if span > 0:  # values that differ by less belong to one bin
+        x = np.rint((x - x.min()) / span * 2000)
     edges = np.unique(np.quantile(x, np.linspace(0, 1, bins + 1)[1:-1]))
     raw = np.searchsorted(edges, x, side="right")
     return np.unique(raw, return_inverse=True)[1].astype(np.int64)

@@ -24,3 +24,4 @@ for (const svg of document.querySelectorAll("figure svg")) {
     hit.addEventListener("pointerleave", () => { at.textContent = ""; });
   }
 }
+document.documentElement.dataset.ready = "yes";

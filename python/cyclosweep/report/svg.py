@@ -29,7 +29,7 @@ WIDTH = 1120.0
 """Width of a figure [px]."""
 
 LEFT, RIGHT, RIGHT_SCALE, TOP, BOTTOM = 66.0, 20.0, 62.0, 30.0, 48.0
-LEGEND = 30.0
+LEGEND_ROW = 22.0
 NAMED_LEFT = 104.0
 
 
@@ -41,15 +41,16 @@ def figure_svg(figure: Figure) -> str:
     str
         An ``svg`` element that scales with its container.
     """
-    entries = legend(figure)
-    top = LEGEND if entries or _first_cells(figure) else 4.0
+    names, legend_rows = _legend(legend(figure))
+    maps = _first_cells(figure)
+    top = 8 + LEGEND_ROW * max(legend_rows, len(maps))
     height = top + figure.rows * figure.row_height
     parts = [
         f'<svg viewBox="0 0 {WIDTH:g} {height:g}" role="img" aria-label="{escape(figure.title)}" '
-        'xmlns="http://www.w3.org/2000/svg">'
+        'xmlns="http://www.w3.org/2000/svg">',
+        names,
+        *(_colour_scale(cells) for cells in maps),
     ]
-    parts.append(_legend(entries))
-    parts += [_colour_scale(cells) for cells in _first_cells(figure)]
     for place, placed in enumerate(figure.panels):
         parts.append(_panel(figure, placed, top, f"{figure.key}-{place}"))
     parts.append("</svg>")
@@ -285,36 +286,40 @@ def diverging(share: float) -> str:
     return "#" + "".join(f"{c:02x}" for c in rgb)
 
 
-def _legend(entries: list[LegendEntry]) -> str:
-    """Names of the series in one row at the top; a click hides a series."""
+def _legend(entries: list[LegendEntry]) -> tuple[str, int]:
+    """Names of the series at the top, and how many rows they take; a click hides a series."""
     out = []
-    at = LEFT
+    at, row = LEFT, 0
     for entry in entries:
+        width = 31 + 6.5 * len(entry.name) + 24
+        if at + width > WIDTH and at > LEFT:
+            at, row = LEFT, row + 1
+        y = 14 + row * LEGEND_ROW
         match entry.kind:
             case "line" | "dashed":
                 dash = ' stroke-dasharray="6 4"' if entry.kind == "dashed" else ""
                 sign = (
-                    f'<path d="M{at:.0f} 14h24" stroke="{entry.colour}" stroke-width="2.2" '
+                    f'<path d="M{at:.0f} {y:g}h24" stroke="{entry.colour}" stroke-width="2.2" '
                     f'fill="none"{dash}/>'
                 )
             case "points":
-                sign = f'<circle cx="{at + 12:.0f}" cy="14" r="3.6" fill="{entry.colour}"/>'
+                sign = f'<circle cx="{at + 12:.0f}" cy="{y:g}" r="3.6" fill="{entry.colour}"/>'
             case "ring":
                 sign = (
-                    f'<circle cx="{at + 12:.0f}" cy="14" r="3.6" fill="#fff" '
+                    f'<circle cx="{at + 12:.0f}" cy="{y:g}" r="3.6" fill="#fff" '
                     f'stroke="{entry.colour}" stroke-width="1.6"/>'
                 )
             case "area":
                 sign = (
-                    f'<rect x="{at:.0f}" y="8" width="24" height="12" fill="{entry.colour}" '
-                    'fill-opacity="0.28"/>'
+                    f'<rect x="{at:.0f}" y="{y - 6:g}" width="24" height="12" '
+                    f'fill="{entry.colour}" fill-opacity="0.28"/>'
                 )
         out.append(
             f'<g class="key" data-for="{_class(entry.name)}">{sign}'
-            f'<text x="{at + 31:.0f}" y="18">{escape(entry.name)}</text></g>'
+            f'<text x="{at + 31:.0f}" y="{y + 4:g}">{escape(entry.name)}</text></g>'
         )
-        at += 31 + 7.0 * len(entry.name) + 24
-    return "".join(out)
+        at += width
+    return "".join(out), row + 1 if entries else 0
 
 
 def _first_cells(figure: Figure) -> list[Cells]:

@@ -1,5 +1,6 @@
 """The tables of a report as plain rows, shared by the page and the terminal."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -58,9 +59,23 @@ def loop_table(data: ReportData) -> Table | None:
         (f"stiffness at the {side}", *(_stiffness(f.stiffness_nm_per_deg) for f in figures)),
     ]
     if side == "input" and data.ratio:
-        rows.append(("stiffness at the output", *(_at_output(f, data.ratio) for f in figures)))
+        ratio = data.ratio
+        rows += [
+            ("stiffness at the output", *(_at_output(f, ratio) for f in figures)),
+            ("lost motion at the output", *(_divided(f.lost_motion_deg, ratio) for f in figures)),
+            (
+                "hysteresis loss at the output",
+                *(_divided(f.hysteresis_loss_deg, ratio) for f in figures),
+            ),
+        ]
     rows.append(("energy lost in one cycle, mean", *(_mean_energy(f) for f in figures)))
     note = f"Stiffness is the slope of the loading branches between 50 % and 100 % of {of} torque."
+    lost, gap = figures[0].lost_motion_deg, figures[0].hysteresis_loss_deg
+    if lost is not None and gap is not None and gap > lost:
+        note += (
+            " Friction holds the shaft inside its play here: the play shows as hysteresis loss "
+            "rather than as lost motion."
+        )
     if figures[0].extrapolated:
         note += (
             " No sample lies within ±3 % of that torque: lost motion and hysteresis loss are "
@@ -80,7 +95,7 @@ def parameter_table(data: ReportData) -> Table | None:
         fitted = after.get(name) or {}
         rows.append(
             (
-                plain(name),
+                _without_unit(name),
                 str(value.get("unit") or "–"),
                 number(value.get("nominal"), 4),
                 _with_error(value),
@@ -89,7 +104,7 @@ def parameter_table(data: ReportData) -> Table | None:
             )
         )
     rows += [
-        (plain(name), str(value.get("unit") or "–"), "–", "–", _with_error(value), "–")
+        (_without_unit(name), str(value.get("unit") or "–"), "–", "–", _with_error(value), "–")
         for name, value in after.items()
         if name not in before and isinstance(value, Mapping)
     ]
@@ -133,7 +148,8 @@ def hypothesis_table(data: ReportData) -> Table | None:
         ),
         tuple(rows),
         "Hidden by calibration: share of the effect that a refit of stiffness, free play and datum "
-        "absorbs. p: chance of so large a signal with nothing missing, all effects searched. "
+        "absorbs. p: chance of so large a signal with nothing missing, each effect by itself, all "
+        "of them searched; what an accepted effect explains as well is ruled out all the same. "
         "e: evidence from data not used for the choice; 100 is strong.",
         frozenset({1}),
         frozenset(lead),
@@ -198,13 +214,13 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str]]:
         if ci:
             text += f", 95 % interval {interval(ci)} deg"
         if isinstance(estimate, int | float) and data.compliance_deg_per_nm:
-            text += f"; worth {number(estimate / data.compliance_deg_per_nm)} N m"
+            text += f"; worth {number(abs(estimate / data.compliance_deg_per_nm))} N m"
         evidence = (
             f"p {probability(effect.get('p_value'))}, e-value {number(effect.get('e_value'), 2)}, "
             f"detectability {number(effect.get('detectability'), 3)}"
         )
         parameters = "; ".join(
-            f"{plain(name)} {_with_error(value)} {value.get('unit') or ''}".strip()
+            f"{_without_unit(name)} {_with_error(value)} {value.get('unit') or ''}".strip()
             for name, value in (effect.get("parameters") or {}).items()
         )
         evidence += f". {parameters[:1].upper()}{parameters[1:]}" if parameters else ""
@@ -223,19 +239,39 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
         before, after = base.get(key), repaired.get(key)
         if before is None and after is None:
             continue
-        value = number(before) if after is None else f"{number(before)} → {number(after)}"
-        rows.append((f"{value} deg", label, "before → after" if after is not None else "before"))
+        if data.is_repaired and after is not None:
+            rows.append((f"{number(before)} → {number(after)} deg", label, "before → after"))
+        else:
+            rows.append((f"{number(before)} deg", label, "calibrated model"))
     if noise.get("sigma_deg") is not None:
         rows.append((f"{number(noise['sigma_deg'])} deg", "noise", "standard deviation"))
     return rows
 
 
 def bounds(data: ReportData) -> list[str]:
-    """Upper bounds of what was ruled out."""
-    return [
+    """Upper bounds of what was not found, those above the tolerance first."""
+    undecided = [
+        f"{plain(str(row.get('name')))}: could be as large as {angle(row.get('upper95_deg'))}, "
+        "above the tolerance"
+        for row in data.result.get("undecided") or []
+    ]
+    ruled_out = [
         f"{plain(str(row.get('name')))}: at most {angle(row.get('upper95_deg'))}"
         for row in data.result.get("ruled_out") or []
     ]
+    return undecided + ruled_out
+
+
+def unknown(data: ReportData) -> str:
+    """Shape, place and size of what has no name, in one sentence."""
+    rest = _section(data.result, "unknown")
+    if not rest:
+        return ""
+    place = f", {rest['place']}" if rest.get("place") else ""
+    return (
+        f"{plain(str(rest.get('shape') or 'something')).capitalize()} of "
+        f"{angle(rest.get('size_deg'))}{place}. No effect of the vocabulary explains it."
+    )
 
 
 def untestable(data: ReportData) -> list[str]:
@@ -252,10 +288,9 @@ def explanations(data: ReportData) -> list[str]:
     """Structures that fit about as well as the best."""
     rows = []
     for row in data.result.get("explanation_set") or []:
-        names = (
-            " + ".join(plain(str(name)) for name in row.get("effects") or []) or "nothing missing"
-        )
-        rows.append(f"{names}: probability {probability(row.get('probability'))}")
+        names = [*(row.get("effects") or []), *(row.get("without_name") or [])]
+        text = " + ".join(plain(str(name)) for name in names) or "nothing missing"
+        rows.append(f"{text}: probability {probability(row.get('probability'))}")
     return rows
 
 
@@ -265,11 +300,14 @@ def next_experiment(data: ReportData) -> str:
     if not plan:
         return ""
     text = str(plan.get("program") or "").rstrip(".") + "."
+    text = text[:1].upper() + text[1:]
     if plan.get("separates"):
-        text += " It separates " + " from ".join(plain(str(s)) for s in plan["separates"]) + "."
-    if plan.get("detectability") is not None:
+        names = [plain(str(name)) for name in plan["separates"]]
+        text += f" It would {'show or rule out' if len(names) == 1 else 'separate'} "
+        text += " from ".join(names) + "."
+    if plan.get("detectability"):
         text += f" Expected detectability {number(plan['detectability'], 2)} noise units."
-    if plan.get("minutes") is not None:
+    if plan.get("minutes"):
         text += f" Takes about {number(plan['minutes'], 2)} minutes."
     return text
 
@@ -305,6 +343,11 @@ def _section(result: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     return part if isinstance(part, Mapping) else {}
 
 
+def _without_unit(name: str) -> str:
+    """Name of a parameter in words; its unit stands beside it."""
+    return plain(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
+
+
 def _range(ends: Any) -> str:
     """Write two ends of a range."""
     return f"{number(ends[0])} to {number(ends[1])}"
@@ -313,8 +356,12 @@ def _range(ends: Any) -> str:
 def _with_error(value: Mapping[str, Any]) -> str:
     """Estimate and standard error."""
     text = number(value.get("estimate"), 4)
-    error = value.get("std_error")
-    return text if error is None else f"{text} ± {number(error, 2)}"
+    error, estimate = value.get("std_error"), value.get("estimate")
+    if not error:
+        return text
+    if isinstance(estimate, int | float) and error > 10 * abs(estimate) > 0:
+        return f"{text} (poorly determined)"
+    return f"{text} ± {number(error, 2)}"
 
 
 def _shift(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
@@ -337,6 +384,11 @@ def _at_output(figures: LoopFigures, ratio: float) -> str:
     """Stiffness of the input shaft as seen from the output shaft."""
     k = figures.stiffness_nm_per_deg
     return _stiffness(None if k is None else k * ratio**2)
+
+
+def _divided(value_deg: float | None, ratio: float) -> str:
+    """Angle of the input shaft as seen from the output shaft."""
+    return angle(None if value_deg is None else value_deg / ratio)
 
 
 def _mean_energy(figures: LoopFigures) -> str:

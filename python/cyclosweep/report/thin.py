@@ -27,7 +27,7 @@ def thin(n: int, key: NDArray[np.float64], limit: int = DISPLAY_LIMIT) -> NDArra
     Examples
     --------
     >>> thin(9, np.array([0.0, 0, 0, 7, 0, 0, 0, -3, 0]), limit=4).tolist()
-    [0, 3, 5, 7]
+    [0, 3, 7, 8]
     """
     if n <= limit:
         return np.arange(n)

@@ -1,5 +1,6 @@
 """Numbers and names as a test engineer reads them."""
 
+from collections.abc import Mapping
 from typing import Any
 
 ARCMIN = 60.0
@@ -14,6 +15,16 @@ VERDICTS = {
     "DATA_FAULT": ("The recording is faulty", "#a61b1b"),
 }
 """Verdict in plain words, and its colour."""
+
+
+def verdict_words(result: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Return verdict, its plain words and its colour."""
+    code = str(result.get("verdict") or "")
+    words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
+    if code == "UNKNOWN_PHYSICS" and result.get("effects"):
+        words = "Known effects found, and something without a name"
+    return code, words, tone
+
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -83,10 +94,14 @@ def probability(value: Any) -> str:
     --------
     >>> probability(0.00001), probability(0.034)
     ('< 0.001', '0.034')
+    >>> probability(1.0)
+    '> 0.999'
     """
     if not isinstance(value, int | float):
         return "–"
-    return "< 0.001" if 0 <= value < 0.001 else number(value, 2)
+    if 0 <= value < 0.001:
+        return "< 0.001"
+    return "> 0.999" if 0.999 < value <= 1 else number(value, 2)
 
 
 def plain(name: str) -> str:

@@ -9,7 +9,9 @@ type Flags<'py> = PyReadonlyArray1<'py, bool>;
 
 fn same_length(expected: usize, found: &[usize]) -> PyResult<()> {
     match found.iter().find(|&&n| n != expected) {
-        Some(n) => Err(PyValueError::new_err(format!("arrays differ in length: {expected} and {n}"))),
+        Some(n) => Err(PyValueError::new_err(format!(
+            "arrays differ in length: {expected} and {n}"
+        ))),
         None => Ok(()),
     }
 }
@@ -18,7 +20,10 @@ fn same_length(expected: usize, found: &[usize]) -> PyResult<()> {
 #[pyfunction]
 #[pyo3(signature = (torque, offset, restart, start_angle, slip_angle, share, *, free_play, compliance,
                     limit, load_factor=0.0, growth=0.0, reference_torque=1.0))]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments on the Python side")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "keyword arguments on the Python side"
+)]
 fn solve_slip<'py>(
     py: Python<'py>,
     torque: Column<'py>,
@@ -47,11 +52,21 @@ fn solve_slip<'py>(
         growth,
         reference_torque,
     };
-    let spring = Spring { free_play, compliance };
+    let spring = Spring {
+        free_play,
+        compliance,
+    };
     let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
     py.detach(|| {
         hysteresis::solve_slip(
-            torque, offset, restart, start_angle, spring, &elements, &mut angle, &mut friction,
+            torque,
+            offset,
+            restart,
+            start_angle,
+            spring,
+            &elements,
+            &mut angle,
+            &mut friction,
         );
     });
     Ok((angle.into_pyarray(py), friction.into_pyarray(py)))
@@ -79,7 +94,11 @@ fn slip_state<'py>(
         reference_torque: 1.0,
     };
     let mut out = vec![0.0; n];
-    let (angle, restart, start) = (angle.as_slice()?, restart.as_slice()?, start_angle.as_slice()?);
+    let (angle, restart, start) = (
+        angle.as_slice()?,
+        restart.as_slice()?,
+        start_angle.as_slice()?,
+    );
     py.detach(|| hysteresis::slip_state(angle, restart, start, &elements, &mut out));
     Ok(out.into_pyarray(py))
 }
@@ -96,7 +115,13 @@ fn play<'py>(
     let n = input.len()?;
     same_length(n, &[restart.len()?, start.len()?])?;
     let mut out = vec![0.0; n];
-    hysteresis::play(input.as_slice()?, half_width, restart.as_slice()?, start.as_slice()?, &mut out);
+    hysteresis::play(
+        input.as_slice()?,
+        half_width,
+        restart.as_slice()?,
+        start.as_slice()?,
+        &mut out,
+    );
     Ok(out.into_pyarray(py))
 }
 
@@ -113,7 +138,11 @@ fn creep_state<'py>(
     same_length(n, &[time.len()?, restart.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::creep_state(
-        input.as_slice()?, time.as_slice()?, restart.as_slice()?, time_constant, &mut out,
+        input.as_slice()?,
+        time.as_slice()?,
+        restart.as_slice()?,
+        time_constant,
+        &mut out,
     );
     Ok(out.into_pyarray(py))
 }

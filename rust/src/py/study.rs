@@ -1,5 +1,7 @@
 //! `_core.Study`: a study's definition in, columns as NumPy arrays out.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -15,6 +17,19 @@ use crate::space::{Axis, Layout, Rows, Space, Values};
 pub struct PyStudy {
     study: Study,
     outputs: Vec<(String, Output)>,
+}
+
+static VARIANTS: AtomicU64 = AtomicU64::new(0);
+static VALUES: AtomicU64 = AtomicU64::new(0);
+
+/// How many variants, and how many values of result columns, the kernel has computed in this
+/// process.
+#[pyfunction]
+pub fn kernel_evaluations() -> (u64, u64) {
+    (
+        VARIANTS.load(Ordering::Relaxed),
+        VALUES.load(Ordering::Relaxed),
+    )
 }
 
 /// One axis as Python describes it: (name, form, numbers).
@@ -118,6 +133,8 @@ impl PyStudy {
         outputs: &[String],
     ) -> PyResult<Evaluated<'py>> {
         let outputs = self.chosen(outputs)?;
+        VARIANTS.fetch_add(len as u64, Ordering::Relaxed);
+        VALUES.fetch_add((len * outputs.len()) as u64, Ordering::Relaxed);
         let columns = py.detach(|| self.study.evaluate(rows, len, &outputs));
         let values = columns
             .values
