@@ -31,6 +31,9 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> tuple
     ratio = compliance / problem.nominal_compliance
     if 0.1 <= ratio <= 10.0:
         return None
+    torque, angle = problem.history.applied_nm, problem.angle_deg
+    if ratio < 0 and torque @ (angle - angle.mean()) > 0:
+        return None
     if -10.0 <= ratio < 0:
         return (
             "DATA_FAULT",

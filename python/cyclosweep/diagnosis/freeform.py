@@ -102,8 +102,8 @@ def _constant(columns: Floats, history: History) -> Floats:
 
 def _bumps(history: History) -> Iterator[FreeForm]:
     top = history.largest_torque_nm
-    for width in (0.03, 0.08):
-        for centre in np.arange(0.05, 1.0, 2 * width):
+    for width in (0.03, 0.06, 0.12):
+        for centre in np.arange(0.05, 1.0, 1.2 * width):
             for flank in (0, 1, -1):
                 if flank and not np.any(history.side == flank):
                     continue

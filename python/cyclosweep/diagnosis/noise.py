@@ -223,7 +223,9 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
         if sign <= 0:
             value[index] = -np.inf
     best = int(np.argmax(value))
-    within = np.flatnonzero(value > value[best] - 1.0)
+    # The higher it is, the dearer an underestimate.
+    drop = 1.0 + 2.0 * grid[best] ** 2
+    within = np.flatnonzero(value > value[best] - drop)
     if best == 0 and value[0] - value[1] > 1.0:
         return 0.0, 0.0
     return float(grid[best]), float(grid[within[-1]])

@@ -191,6 +191,9 @@ def find_flanks(
 
     robust = least_squares(misfit, start, loss="soft_l1").x
     datum, compliance = float(robust[0]), float(robust[1])
+    if compliance <= 0 and torque @ (angle - angle.mean()) > 0:
+        # Friction hides the slope where the drive hardly turns back.
+        compliance = line.compliance_deg_per_nm
     play = float(robust[2]) if both else line.free_play_deg
     residual = target[loaded] - design[loaded] @ robust
     width = 2.0 * float(np.quantile(np.abs(residual), 0.9))

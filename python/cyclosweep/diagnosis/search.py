@@ -87,6 +87,7 @@ class Search:
         self.gram = self.whitened.T @ self.whitened
         self.root = self._node(base, 0.0, 0.0)
         self.nodes: dict[frozenset[str], Node] = {}
+        self.settled: Node | None = None
         self.maxima = self.null(self.root)
         self.threshold = max(float(np.quantile(self.maxima, 1.0 - LEVEL)), FLOOR)
 
