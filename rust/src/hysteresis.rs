@@ -149,7 +149,7 @@ fn balance(
     let reach = spring.free_play + spring.compliance * bound * (1.0 + 1e-9) + 1e-9;
     let (mut low, mut high) = (offset - reach, offset + reach);
     let mut angle = guess.clamp(low, high);
-    let tolerance = 1e-11 * (1.0 + torque.abs());
+    let tolerance = 1e-9 * (1e-3 + torque.abs());
     let mut best = evaluate(angle);
     for _ in 0..100 {
         if best.0.abs() <= tolerance || high - low <= 1e-13 * (1.0 + high.abs()) {

@@ -8,8 +8,10 @@ import pytest
 from made_up_report import make
 from rich.console import Console
 
+from cyclosweep.errors import InputError
+from cyclosweep.recording import Recording
 from cyclosweep.recording.faults import Fault
-from cyclosweep.report import ReportData, print_summary, write_png
+from cyclosweep.report import ReportData, print_summary, write_png, write_report
 
 
 def printed(data: ReportData, width: int) -> str:
@@ -44,3 +46,16 @@ def test_pictures(tmp_path: Path) -> None:
     assert [path.name for path in files] == ["loop.png", "zoom.png", "profiles.png", "map.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in files)
     assert len(list((tmp_path / "pictures").iterdir())) == 4
+
+
+def test_the_name_chooses_the_form(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    data = make(runs=2, samples=200)
+    assert write_report(data, tmp_path / "a.html").read_text("utf-8").startswith("<!doctype html>")
+    assert write_report(data, tmp_path / "b.png").read_bytes().startswith(b"\x89PNG")
+    assert (write_report(data, tmp_path / "pictures") / "loop.png").is_file()
+    with pytest.raises(InputError, match=r"\.pdf"):
+        write_report(data, tmp_path / "c.pdf")
+    program = ReportData(recording=Recording.from_arrays([1.0, 2.0]), result={})
+    with pytest.raises(InputError, match="no angles"):
+        write_report(program, tmp_path / "d.png")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep.diagnosis import fault
+from cyclosweep.diagnosis import fault, structured
 from cyclosweep.diagnosis.experiment import next_experiment
 from cyclosweep.diagnosis.fit import Fit
 from cyclosweep.diagnosis.holdout import HeldOutResult, judge
@@ -19,7 +19,7 @@ from cyclosweep.diagnosis.rich import rich_basis
 from cyclosweep.diagnosis.search import DRAWS, Node, Search
 from cyclosweep.diagnosis.self_check import self_check
 from cyclosweep.diagnosis.testability import Testability, hidden_effects, size_of, testability
-from cyclosweep.diagnosis.verdict import Decision, decide
+from cyclosweep.diagnosis.verdict import Decision, decide, decide_structured
 from cyclosweep.diagnosis.words import statement
 from cyclosweep.drive import Drive
 from cyclosweep.effects import effects as all_effects
@@ -121,6 +121,9 @@ def _search(problem: Problem, library: Library, seed: int, say: Progress) -> Sea
     """Search, and start over from nothing whenever the noise turns out to be another."""
     noise = _noise(problem, library, None)
     search = Search(problem, noise, library, seed)
+    if noise.structured:
+        structured.climb(search)
+        return search
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()
@@ -156,6 +159,11 @@ def _conclude(
     }
     bounds = testability(search, search.root, p_of)
     decision = decide(search, bounds, tolerance)
+    repeats = None
+    if noise.structured:
+        top = decision.best or search.root
+        repeats = structured.repetition(problem, top.fit)
+        decision = decide_structured(search, decision, repeats.is_physics)
     node = decision.best if decision.best is not None else search.root
     accepted = _named_part(search, node)
     remaining = testability(search, accepted, p_of)
@@ -163,6 +171,9 @@ def _conclude(
     if decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
         regions = find_regions(search, accepted) or regions
     held = judge(problem, noise, accepted.fit) if full else HeldOutResult((), 0.0, 0.0, 1.0, "")
+    unsteady = noise.structured and _unsteady(problem, accepted.fit, held)
+    if unsteady:
+        decision = Decision("UNKNOWN_PHYSICS", decision.best, decision.explanations, True)
     effects = [_effect(search, accepted, k, held) for k in range(len(accepted.fit.terms))]
     sufficiency = _p_value(search.null(node), node.left)
     model = _model(accepted.fit, drive)
@@ -172,7 +183,7 @@ def _conclude(
         "verdict": decision.verdict,
         "statement": "",
         "noise": {
-            "sigma_deg": noise.sigma_deg,
+            "sigma_deg": noise.spread_deg,
             "autocorrelation": noise.best_correlation,
             "autocorrelation_upper": noise.correlation,
             "tail_degrees_of_freedom": noise.tail,
@@ -218,6 +229,12 @@ def _conclude(
         "model": "model.json",
         "notes": [*problem.recording.notes, *[f.reason for f in problem.recording.faults]],
     }
+    if repeats is not None:
+        content["sufficiency"] = {
+            "p_value": None,
+            "residual_repeats_between_runs": repeats.correlation,
+            "cells": repeats.cells,
+        }
     if decision.unexplained and decision.best is not None:
         content["unknown"] = _unknown(search, decision, accepted, regions)
     if full:
@@ -226,6 +243,7 @@ def _conclude(
         content["self_check"] = self_check(search, decision.best, rivals)
         say("choosing the next experiment")
         content["next_experiment"] = _experiment(search, decision, bounds, tolerance)
+    content["stationary"] = not unsteady
     content["statement"] = _statement(search, decision, content, regions, bounds, tolerance)
     before = _at_samples(problem, base)
     after = _at_samples(problem, accepted.fit)
@@ -242,7 +260,7 @@ def _conclude(
                 samples=b.samples,
                 rmse_before_deg=b.before_deg,
                 rmse_after_deg=b.after_deg,
-                floor_deg=noise.sigma_deg,
+                floor_deg=noise.spread_deg,
             )
             for b in held.blocks
         ),
@@ -250,6 +268,12 @@ def _conclude(
         ratio=float(drive.ratio),
         provenance=fault.provenance(problem.recording, drive, search.seed),
     )
+
+
+def _unsteady(problem: Problem, fitted: Fit, held: HeldOutResult) -> bool:
+    """Whether a model of some runs fails on others by far more than it fails on its own."""
+    span = float(np.ptp(problem.angle_deg))
+    return held.after_deg > 1.8 * fitted.rmse_deg and held.after_deg > 0.03 * span
 
 
 def _p_value(null: np.ndarray, value: float) -> float:
@@ -483,8 +507,11 @@ def _statement(
     if unknown:
         remains = f"a {unknown['shape']} of {unknown['size_deg']:.2g} deg, {unknown['place']}"
     repaired = content["repaired"]
+    if not content["stationary"]:
+        remains = "a drift from run to run"
     numbers = {
-        "sigma": search.noise.sigma_deg,
+        "stationary": content["stationary"],
+        "sigma": search.noise.spread_deg,
         "tolerance": tolerance,
         "largest_bound": max((b.upper95_deg for b in bounds), default=0.0),
         "open": [

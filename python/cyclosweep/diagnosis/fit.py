@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
 from cyclosweep import _core
@@ -184,6 +185,8 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
         lower, upper = 1e-3 * top, 3.0 * top
         if parameter.name in ("onset_nm", "first_nm"):
             lower, upper = 0.0, 0.92 * top
+        if parameter.name == "turn_nm":
+            upper = 0.25 * top
         if parameter.name == "range_nm":
             upper = 0.9 * top
         return replace(parameter, lower=lower, upper=upper)
@@ -199,7 +202,7 @@ def fit(
     start: "Fit | None" = None,
     *,
     refine: bool = True,
-    rounds: int = 8,
+    rounds: int = 6,
 ) -> Fit:
     """Fit baseline and terms jointly by maximum likelihood.
 
@@ -374,7 +377,7 @@ class _Model:
 
     def residual(self, values: Floats) -> Floats:
         """Working residual with path and linear parameters settled."""
-        return self._evaluate(values, 2)[0]
+        return self._evaluate(values, 1)[0]
 
     def settle(self, values: Floats) -> None:
         """Move the point about which the likelihood is expanded to these shapes."""
@@ -447,16 +450,17 @@ def _levels(noise: Noise) -> list[float]:
 
 
 def _solve(design: Floats, target: Floats) -> Floats:
-    """Least squares by normal equations on scaled columns, rank aware."""
-    norm = np.linalg.norm(design, axis=0)
+    """Least squares by normal equations on scaled columns, a whisker of ridge for lost ranks."""
+    norm = np.sqrt(np.einsum("ij,ij->j", design, design))
     norm = np.where(norm > 0, norm, 1.0)
     scaled = design / norm
     gram = scaled.T @ scaled
     right = scaled.T @ target
-    try:
-        factor = np.linalg.cholesky(gram)
-        if np.min(np.diag(factor)) > 1e-5:
-            return np.asarray(np.linalg.solve(gram, right) / norm)
-    except np.linalg.LinAlgError:
-        pass
+    for ridge in (0.0, 1e-9, 1e-6):
+        try:
+            factor = cho_factor(gram + ridge * np.eye(len(gram)), check_finite=False)
+        except np.linalg.LinAlgError:
+            continue
+        if ridge > 0 or np.min(np.abs(np.diag(factor[0]))) > 1e-5:
+            return np.asarray(cho_solve(factor, right, check_finite=False) / norm)
     return np.asarray(np.linalg.lstsq(scaled, target, rcond=1e-10)[0] / norm)

@@ -3,10 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtr
-from scipy.stats import t as student
+from scipy.special import gammaln, ndtr
 
 from cyclosweep.effects.history import Floats
+
+MODEL_ERROR = 0.945
+"""An autocorrelation above this is taken for structured error of the model, not for noise."""
 
 COARSE_STEP = 3.5
 """Resolution steps above this many standard deviations need the interval likelihood."""
@@ -32,6 +34,10 @@ class Noise:
         Degrees of freedom with which sigma is known.
     gap : ndarray
         Steps since the fitted row before; zero: no correlation with it.
+    marginal_deg : float or None
+        Standard deviation of a row where ``sigma_deg`` is something else.
+    structured : bool
+        What is left is error of the model rather than noise.
     """
 
     sigma_deg: float
@@ -41,6 +47,13 @@ class Noise:
     step_deg: float
     freedom: float
     gap: Floats
+    marginal_deg: float | None = None
+    structured: bool = False
+
+    @property
+    def spread_deg(self) -> float:
+        """Standard deviation of one row about the mean [deg]."""
+        return self.sigma_deg if self.marginal_deg is None else self.marginal_deg
 
     @property
     def _pair(self) -> Floats:
@@ -164,6 +177,11 @@ def estimate_noise(
                     freedom=max(telling - 6.0, 4.0),
                 )
         sigma = max(sigma, resolution / np.sqrt(12.0))
+    if best > MODEL_ERROR:
+        # What is left is not noise but error of the model; filtered, it would be fitted by its
+        # kinks. Rows count equally then.
+        rough = max(float(np.sqrt(left @ left / freedom)), 1e-12)
+        return Noise(rough, 0.0, best, np.inf, 0.0, freedom, gap, rough, structured=True)
     return Noise(sigma, upper, best, tail, 0.0, freedom, gap)
 
 
@@ -192,7 +210,7 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
     start = rows[alone].T @ rows[alone]
     k = basis.shape[1]
     freedom = len(left) - k
-    grid = np.r_[0.0:0.985:0.015]
+    grid = np.r_[0.0:0.985:0.01]
     value = np.empty(len(grid))
     for index, rho in enumerate(grid):
         gram = start + (current - rho * crossed + rho**2 * earlier) / (1 - rho**2)
@@ -204,7 +222,7 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
         if sign <= 0:
             value[index] = -np.inf
     best = int(np.argmax(value))
-    within = np.flatnonzero(value > value[best] - 0.5)
+    within = np.flatnonzero(value > value[best] - 1.0)
     if best == 0 and value[0] - value[1] > 1.0:
         return 0.0, 0.0
     return float(grid[best]), float(grid[within[-1]])
@@ -231,12 +249,18 @@ def _size(noise: Noise, left: Floats, basis: Floats, freedom: float) -> tuple[fl
             for _ in range(30):
                 factor = (tail + 1) / (tail + (white * inflate / trial) ** 2)
                 trial = float(np.sqrt(np.mean(factor * (white * inflate) ** 2)))
-            value = float(student.logpdf(white * inflate, tail, scale=trial).sum())
+            value = _student_likelihood(white * inflate / trial, tail) - count * np.log(trial)
             value += count * np.log(inflate) - 3.0
             trial *= np.sqrt(tail / (tail - 2.0))
         if value > best_value:
             best_tail, best_value, best_sigma = tail, value, trial
     return best_sigma, best_tail
+
+
+def _student_likelihood(values: Floats, tail: float) -> float:
+    """Log likelihood of values under Student's distribution of unit scale."""
+    front = gammaln(0.5 * (tail + 1)) - gammaln(0.5 * tail) - 0.5 * np.log(np.pi * tail)
+    return float(len(values) * front - 0.5 * (tail + 1) * np.log1p(values**2 / tail).sum())
 
 
 def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float) -> Floats:

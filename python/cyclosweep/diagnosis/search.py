@@ -21,7 +21,7 @@ FLOOR = 5.2
 """Smallest threshold of evidence: a thousand draws wander by about this much less."""
 EXTRA_TERM = 3.0
 """Log prior odds against every further effect."""
-WITHOUT_NAME = 3.0
+WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
@@ -133,6 +133,12 @@ class Search:
         drop = before.chi2 - after.chi2
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
+    def adopt(self, fitted: Fit, gain: float) -> Node:
+        """Take in a structure that was fitted elsewhere."""
+        node = self._node(fitted, gain, 0.0)
+        self.nodes[node.names] = node
+        return node
+
     def refit(self, terms: tuple[Term, ...]) -> Node:
         """Fit a structure that was not visited on its own."""
         return self._node(fit(self.problem, self.noise, terms, self.root.fit), 0.0, 0.0)
@@ -150,7 +156,7 @@ class Search:
         each = evidence(rest.observed[members], rest.ranks[members])
         average = rest.by_hypothesis[hypothesis]
         order = members[np.argsort(-each)]
-        price = float(np.clip(each.max() - average, 0.0, 5.0))
+        price = float(np.clip(each.max() - average, 0.0, 1.5))
         first = rest.library.blocks[order[0]]
         slips = first.effect is not None and first.effect.slips
         tried = 0

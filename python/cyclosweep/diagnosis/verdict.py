@@ -73,6 +73,18 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explained, False)
 
 
+def decide_structured(search: Search, plain: Decision, repeats: bool) -> Decision:
+    """Verdict where the residual is error of the model: only what repeats counts as physics left.
+
+    Effects that paid for themselves are named; whether they are all is told by the replicates.
+    """
+    if not search.nodes:
+        return Decision("INSUFFICIENT_DATA", None, [], False)
+    best = max(search.nodes.values(), key=lambda n: len(n.fit.terms))
+    verdict: Verdict = "UNKNOWN_PHYSICS" if repeats else "IDENTIFIED"
+    return Decision(verdict, best, [(best, 1.0)], repeats)
+
+
 def unit_slip(ratio: float, gear_ratio: float) -> str | None:
     """Name the mistake behind a compliance so many times its nominal value."""
     known = (

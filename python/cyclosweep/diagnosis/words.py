@@ -105,6 +105,12 @@ def statement(
             f"at {where}.{repaired} {calibration}"
         )
     remains = numbers["remains"]
+    if not numbers["stationary"]:
+        calibration = (
+            "The recording is not stationary: a model of the fitted runs misses the others by "
+            f"{degrees(numbers['held_after'])} against {degrees(numbers['after'])} on its own. "
+            "It is unfit for a stiffness; warm-up, wear or creep have to settle first."
+        )
     known = ""
     if effects:
         known = f" Beside {listed([e['name'] for e in effects])} ({sizes}),"

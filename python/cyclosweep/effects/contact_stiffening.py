@@ -12,7 +12,8 @@ class ContactStiffening(Effect):
     """Extra compliance ``dC/(1 + |T|/T0)`` or a Hertzian power of the load, alike on both flanks.
 
     `turn_nm` is the load at which half of the extra compliance is gone; a Hertzian contact
-    (``T**(2/3)``) lies within the range of shapes after calibration of the linear part.
+    (``T**(2/3)``) lies within the range of shapes after calibration of the linear part. A contact
+    is stiff long before the largest load, so `turn_nm` stays below a quarter of it.
     """
 
     name = "contact_stiffening"
@@ -31,7 +32,7 @@ class ContactStiffening(Effect):
         """Power laws of Hertz and turning loads up to the largest load."""
         top = history.largest_torque_nm
         powers: list[Shape] = [{"power": p} for p in (0.5, 2 / 3, 0.8)]
-        return powers + [{"turn_nm": share * top} for share in (0.02, 0.06, 0.2, 0.6)]
+        return powers + [{"turn_nm": share * top} for share in (0.02, 0.06, 0.2)]
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""

@@ -110,11 +110,16 @@ class History:
         """Rate of twist under contact, by differences of the torque [deg/s]."""
         if self.time_s is None:
             raise ValueError("a rate of twist needs a clock")
-        step = np.diff(self.time_s)
         rate = np.zeros(len(self))
-        moving = step > 0
-        rate[1:][moving] = np.diff(self.applied_nm)[moving] / step[moving]
-        starts = self.run_starts
-        follows = np.minimum(starts + 1, len(self) - 1)
-        rate[starts] = rate[follows]
+        stops = np.r_[self.run_starts[1:], len(self)]
+        for start, stop in zip(self.run_starts, stops, strict=True):
+            torque, time = self.applied_nm[start:stop], self.time_s[start:stop]
+            back = max((stop - start) // 250, 1)
+            if len(torque) <= back:
+                continue
+            step = time[back:] - time[:-back]
+            moved = torque[back:] - torque[:-back]
+            part = np.divide(moved, step, out=np.zeros_like(moved), where=step > 0)
+            rate[start + back : stop] = part
+            rate[start : start + back] = part[0]
         return rate * self.compliance_deg_per_nm

@@ -4,6 +4,7 @@ from cyclosweep.report.data import HeldOut, Hypothesis, ReportData
 from cyclosweep.report.html import write_html
 from cyclosweep.report.png import write_png
 from cyclosweep.report.terminal import print_summary, summary
+from cyclosweep.report.write import write_report
 
 __all__ = [
     "HeldOut",
@@ -13,4 +14,5 @@ __all__ = [
     "summary",
     "write_html",
     "write_png",
+    "write_report",
 ]

@@ -123,6 +123,17 @@ class ReportData:
         """Samples that count: all but the conditioning runs."""
         return ~self.recording.in_runs(self.recording.conditioning_runs)
 
+    @property
+    def noise(self) -> tuple[float, float]:
+        """Standard deviation [deg] and lag-one autocorrelation of the noise."""
+        told: Mapping[str, Any] = self.result.get("noise") or {}
+        sigma, rho = told.get("sigma_deg"), told.get("autocorrelation")
+        if not isinstance(sigma, int | float) or not np.isfinite(sigma) or sigma <= 0:
+            residual = self.residual_after_deg
+            sigma = 0.0 if residual is None else 1.4826 * float(np.median(np.abs(residual)))
+        known = isinstance(rho, int | float) and bool(np.isfinite(rho))
+        return float(sigma), float(rho or 0.0) if known else 0.0
+
     def _residual(self, predicted: Floats | None) -> Floats | None:
         measured = self.recording.angle_deg
         return None if predicted is None or measured is None else measured - predicted

@@ -10,7 +10,7 @@ from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.tables import Table
-from cyclosweep.report.wording import VERDICTS, number, plain, probability
+from cyclosweep.report.wording import number, probability, verdict_words
 
 
 def write_html(data: ReportData, path: str | Path) -> Path:
@@ -99,8 +99,7 @@ def _top(data: ReportData) -> str:
 
 def _verdict(data: ReportData) -> str:
     """Verdict line with its evidence."""
-    code = str(data.result.get("verdict") or "")
-    words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
+    code, words, tone = verdict_words(data.result)
     figures = "".join(
         f'<div class="figure-value"><b>{escape(value)}</b><span>{escape(label)}</span>'
         f"<span>{escape(remark)}</span></div>"

@@ -118,7 +118,7 @@ def _slope(torque: Floats, angle: Floats, chosen: NDArray[np.bool_]) -> float | 
     slopes = []
     for side in (torque > 0, torque < 0):
         rows = chosen & side
-        if np.count_nonzero(rows) >= 5 and np.ptp(torque[rows]) > 0:
+        if np.count_nonzero(rows) >= 3 and np.ptp(torque[rows]) > 0:
             t, a = torque[rows], angle[rows]
             compliance = np.cov(t, a)[0, 1] / np.var(t, ddof=1)
             if compliance > 0:

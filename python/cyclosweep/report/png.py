@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cyclosweep.errors import InputError
 from cyclosweep.report.charts import (
     REGION,
     Band,
@@ -48,6 +49,20 @@ def write_png(data: ReportData, folder: str | Path) -> list[Path]:
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     return [_write(figure, folder / f"{figure.key}.png") for figure in all_figures(data)]
+
+
+def write_main_png(data: ReportData, path: str | Path) -> Path:
+    """Write the main picture as a PNG file.
+
+    Raises
+    ------
+    InputError
+        The recording has no samples to draw.
+    """
+    figures = all_figures(data)
+    if not figures:
+        raise InputError(f"{path}: no picture, as {data.recording.name} has no angles to draw")
+    return _write(figures[0], Path(path))
 
 
 def _write(figure: Figure, path: Path) -> Path:

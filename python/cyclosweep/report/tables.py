@@ -239,8 +239,10 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
         before, after = base.get(key), repaired.get(key)
         if before is None and after is None:
             continue
-        value = number(before) if after is None else f"{number(before)} → {number(after)}"
-        rows.append((f"{value} deg", label, "before → after" if after is not None else "before"))
+        if data.is_repaired and after is not None:
+            rows.append((f"{number(before)} → {number(after)} deg", label, "before → after"))
+        else:
+            rows.append((f"{number(before)} deg", label, "calibrated model"))
     if noise.get("sigma_deg") is not None:
         rows.append((f"{number(noise['sigma_deg'])} deg", "noise", "standard deviation"))
     return rows

@@ -9,7 +9,14 @@ from rich.text import Text
 
 from cyclosweep.report import tables
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.wording import VERDICTS, angle, interval, number, plain, probability
+from cyclosweep.report.wording import (
+    angle,
+    interval,
+    number,
+    plain,
+    probability,
+    verdict_words,
+)
 
 _STYLES = {
     "IDENTIFIED": "green",
@@ -42,8 +49,7 @@ def summary(data: ReportData) -> RenderableType:
 def _parts(data: ReportData) -> Iterator[RenderableType]:
     """Parts of the summary from top to bottom."""
     result = data.result
-    code = str(result.get("verdict") or "")
-    words = VERDICTS.get(code, (plain(code.lower()), ""))[0]
+    code, words, _ = verdict_words(result)
     style = _STYLES.get(code, "cyan")
     statement = Text(str(result.get("statement") or ""))
     title = Text(f"{words} ({code})", style=f"bold {style}")

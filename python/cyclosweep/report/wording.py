@@ -1,5 +1,6 @@
 """Numbers and names as a test engineer reads them."""
 
+from collections.abc import Mapping
 from typing import Any
 
 ARCMIN = 60.0
@@ -14,6 +15,16 @@ VERDICTS = {
     "DATA_FAULT": ("The recording is faulty", "#a61b1b"),
 }
 """Verdict in plain words, and its colour."""
+
+
+def verdict_words(result: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Return verdict, its plain words and its colour."""
+    code = str(result.get("verdict") or "")
+    words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
+    if code == "UNKNOWN_PHYSICS" and result.get("effects"):
+        words = "Known effects found, and something without a name"
+    return code, words, tone
+
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
