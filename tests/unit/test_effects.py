@@ -6,7 +6,21 @@ import pytest
 from cyclosweep import effects
 from cyclosweep.effects import VOCABULARY, Effect, History, Parameter
 
-NAMES = ["friction_hysteresis", "load_dependent_friction", "contact_stiffening", "clearance_takeup", "overload_softening", "datum_drift", "creep", "phase_dependent_compliance", "transmission_error", "thermal_drift", "viscous_drag", "load_asymmetry", "dial_eccentricity"]
+NAMES = [
+    "friction_hysteresis",
+    "load_dependent_friction",
+    "contact_stiffening",
+    "clearance_takeup",
+    "overload_softening",
+    "datum_drift",
+    "creep",
+    "phase_dependent_compliance",
+    "transmission_error",
+    "thermal_drift",
+    "viscous_drag",
+    "load_asymmetry",
+    "dial_eccentricity",
+]
 
 
 def history(**changes):

@@ -25,7 +25,9 @@ def full_model():
         free_play_deg=28.0,
         datum_deg=0.4,
         effects=(
-            EffectValue("friction_hysteresis", {"slip_deg": 1.0, "scatter": 0.6, "slack": 0.0}, (0.5,)),
+            EffectValue(
+                "friction_hysteresis", {"slip_deg": 1.0, "scatter": 0.6, "slack": 0.0}, (0.5,)
+            ),
             EffectValue("overload_softening", {"onset_nm": 12.0, "power": 2.0}, (0.8,)),
             EffectValue("creep", {"time_constant_s": 20.0}, (0.05,)),
         ),

@@ -12,7 +12,7 @@ from cyclosweep.diagnosis.fit import Fit
 from cyclosweep.diagnosis.holdout import HeldOutResult, judge
 from cyclosweep.diagnosis.library import Library, build_library
 from cyclosweep.diagnosis.locate import Region, find_regions
-from cyclosweep.diagnosis.noise import Noise, estimate_noise
+from cyclosweep.diagnosis.noise import Noise, estimate_noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem, prepare
 from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.rich import rich_basis
@@ -342,8 +342,6 @@ def _strength(search: Search, node: Node, index: int) -> float:
     fitted = node.fit
     _, weight = search.noise.residual(search.problem.angle_deg[use], fitted.mean_deg[use])
     signal = search.noise.design(fitted.contribution(index)[use], weight)
-    from cyclosweep.diagnosis.noise import orthonormal
-
     first = 2 if search.problem.one_sided else 3
     keep = list(range(first))
     for k, term in enumerate(fitted.terms):

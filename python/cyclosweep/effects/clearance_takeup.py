@@ -22,7 +22,7 @@ class ClearanceTakeup(Effect):
         "Pins or teeth with larger clearance join in only after some twist. Each one that engages "
         "drops the slope of the curve by a step."
     )
-    source = "Kumar et al. 2016, section 4; Xu, Zhong, Mech. Mach. Theory 2019"
+    source = "Kumar et al. 2016, section 4 (pins that come to carry one after another)"
     tell_tale = "slope drops in steps at certain twists"
     family = "smooth odd curve"
     shape_parameters = (

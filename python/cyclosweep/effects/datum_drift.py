@@ -63,7 +63,7 @@ class DatumDrift(Effect):
         "Rollers, bushes and pins do not return to where they were: the zero remembers what the "
         "runs before have done. Turning the rig beyond both dead centres resets it."
     )
-    source = "Kumar et al. 2016, section 5 (datum drift of up to 1 deg over repeated runs)"
+    source = "Kumar et al. 2016 (datum drift of up to 1 deg over repeated runs)"
     tell_tale = "offset differs by run, tied to what the last run did"
     family = "run offsets"
     shape_parameters = (
