@@ -12,7 +12,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from cyclosweep.challenge.aliens import ALIASES, ALIENS
-from cyclosweep.challenge.concealment import Concealed, alias_amplitude, conceal
+from cyclosweep.challenge.concealment import Concealed, alias_amplitude, conceal, opposed_signs
 from cyclosweep.challenge.dial import divided
 from cyclosweep.challenge.noise import Noise
 from cyclosweep.challenge.nominal import COMPLIANCE_DEG_PER_NM
@@ -77,13 +77,13 @@ def _frame(programme: Programme, torque_nm: Array, angle_deg: Array | None) -> p
     return pl.DataFrame(columns)
 
 
-def _causes(found: Concealed) -> list[dict[str, Any]]:
+def _causes(found: Concealed, aliases: set[str]) -> list[dict[str, Any]]:
     """Answer's entry of every cause."""
     view = found.visibility
     return [
         {
             "name": name,
-            "kind": "alias" if name in ALIASES else "alien" if name in ALIENS else "effect",
+            "kind": "alias" if name in aliases else "alien" if name in ALIENS else "effect",
             "amplitude": amplitude,
             "d": float(view.d[k]),
             "d_alone": float(view.d_alone[k]),
@@ -109,6 +109,8 @@ def make_case(
     sigma_deg: float = 0.2,
     resolution_deg: float = 0.0,
     signs: Sequence[float] | None = None,
+    pulling_apart: bool = False,
+    fixed_amplitudes: dict[str, float] | None = None,
     tier: str = "",
 ) -> Case:
     """Make a concealed recording.
@@ -131,6 +133,11 @@ def make_case(
         Noise of one reading and division of the dial [deg]; the family ``resolution`` draws both.
     signs : sequence of float, optional
         Signs of the causes that may have either; drawn if absent.
+    pulling_apart : bool
+        Turn signs so that the causes' projected signatures cancel where physics lets them.
+    fixed_amplitudes : dict, optional
+        Further causes at amplitudes given outright, whatever their visibility; they count as
+        exact aliases in the answer.
     tier : str
         Label of the concealment, kept in the answer.
 
@@ -160,7 +167,12 @@ def make_case(
         drawn = np.asarray(signs, dtype=float)
     either = [s if n in EITHER_SIGN else 1.0 for n, s in zip(visible, drawn, strict=True)]
     aliases = {n: alias_amplitude(n, streams[4]) for n in effects if n in ALIASES}
+    aliases |= fixed_amplitudes or {}
     found = conceal(specimen, first, law, visible, wanted, either, lost, aliases)
+    if pulling_apart:
+        turned = opposed_signs(found, visible, either)
+        if turned != either:
+            found = conceal(specimen, first, law, visible, wanted, turned, lost, aliases)
 
     recorded = first.take(found.seen)
     clean = found.response.angle_deg[found.seen]
@@ -172,7 +184,7 @@ def make_case(
     later_read = divided(
         later_clean + law.errors(later_seen, slope, streams[5]), law.resolution_deg
     )
-    causes = _causes(found)
+    causes = _causes(found, set(aliases))
     for k, cause in enumerate(causes):
         if cause["kind"] == "alias":
             continue

@@ -13,7 +13,7 @@ from cyclosweep.challenge.noise import Noise
 from cyclosweep.challenge.programme import Programme
 from cyclosweep.challenge.rig import Response, measure
 from cyclosweep.challenge.signature import Visibility, visibility
-from cyclosweep.challenge.specimen import Specimen
+from cyclosweep.challenge.specimen import EITHER_SIGN, Specimen
 
 Array = NDArray[np.float64]
 
@@ -138,6 +138,17 @@ def conceal(
         if np.any(sizes > 1e4):
             raise ConcealmentError("a cause stays invisible on this programme")
     raise ConcealmentError("no amplitude gives the wanted visibility")
+
+
+def opposed_signs(found: Concealed, names: Sequence[str], signs: Sequence[float]) -> list[float]:
+    """Signs with which each free cause pulls against the sum of those before it."""
+    turned = list(signs)
+    overlap = found.visibility.cosine
+    for k in range(1, len(names)):
+        pull = sum(turned[j] * signs[j] * float(overlap[j, k]) for j in range(k))
+        if names[k] in EITHER_SIGN and pull > 0.0:
+            turned[k] = -signs[k]
+    return turned
 
 
 def alias_amplitude(name: str, rng: np.random.Generator) -> float:
