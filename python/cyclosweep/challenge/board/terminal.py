@@ -22,7 +22,7 @@ def as_text(estimate: Estimate) -> str:
 def _mark(figure: Figure) -> str:
     """Words for whether a figure is reached."""
     if figure.met is None:
-        return "" if figure.target == "none" else "no cases"
+        return "" if figure.target == "none" else "too few cases"
     if figure.met:
         return "[green]reached[/green]"
     if figure.met_required:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from sklearn.linear_model import LassoCV
 
@@ -12,7 +14,9 @@ def lasso_cv(seen: Seen) -> Said:
     """Five-fold LassoCV on the library; its statistic is the fit's share of the variance."""
     table, names = seen.library
     scale = float(np.std(seen.residual))
-    model = LassoCV(cv=5, max_iter=5000).fit(table, seen.residual / scale)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        model = LassoCV(cv=5).fit(table, seen.residual / scale)
     chosen = np.flatnonzero(model.coef_)
     share = float(np.var(table @ model.coef_))
     return Said(share, chosen.size > 0, effects_of(names, list(chosen)))

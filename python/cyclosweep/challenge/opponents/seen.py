@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+ALIKE = 0.95
+"""Correlation above which one of two columns is left out."""
+
 
 @dataclass(frozen=True)
 class Said:
@@ -103,16 +106,23 @@ class Seen:
         """Textbook columns, baseline taken out, of unit rms; and the effect each stands for.
 
         Taking the baseline out of the columns makes every regression a joint one, which is
-        kinder to the opponents than regressing the residual on the raw columns.
+        kinder to the opponents than regressing the residual on the raw columns. Columns that
+        hardly differ from one before them are left out, as a careful engineer would.
         """
         raw = _textbook(self)
         table = np.column_stack([column for _, column in raw])
         free = table - self.baseline @ (self.baseline.T @ table)
         size = np.sqrt(np.mean(free**2, axis=0))
         before = np.sqrt(np.mean(table**2, axis=0))
-        kept = size > 1e-3 * np.maximum(before, 1e-12)
-        names = [name for (name, _), keep in zip(raw, kept, strict=True) if keep]
-        return free[:, kept] / size[kept], names
+        chosen: list[int] = []
+        for k in range(len(raw)):
+            if size[k] <= 1e-3 * max(float(before[k]), 1e-12):
+                continue
+            unit = free[:, k] / size[k]
+            alike = [abs(float(np.mean(unit * free[:, j] / size[j]))) for j in chosen]
+            if max(alike, default=0.0) < ALIKE:
+                chosen.append(k)
+        return free[:, chosen] / size[chosen], [raw[k][0] for k in chosen]
 
 
 def _relaxing(seen: Seen, time_constant_s: float) -> Array:
@@ -172,7 +182,8 @@ def _textbook(seen: Seen) -> list[tuple[str, Array]]:
             ("phase_dependent_compliance", torque * np.cos(phase)),
             ("phase_dependent_compliance", torque * np.sin(phase)),
         ]
-    turn = np.deg2rad(seen.angle_deg)
+    # The fitted angle, not the read one: that carries the very noise it would have to explain.
+    turn = np.deg2rad(seen.angle_deg - seen.residual)
     columns += [("dial_eccentricity", np.cos(turn)), ("dial_eccentricity", np.sin(turn))]
     return columns
 

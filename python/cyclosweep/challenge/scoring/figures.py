@@ -12,7 +12,7 @@ import numpy as np
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import calibration_error, stated_and_true
-from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share_of
+from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
 
@@ -34,7 +34,7 @@ class Figure:
     required : str
         What must be reached, where that is less; empty where nothing is.
     met, met_required : bool or None
-        Whether value or bound is on the right side; None where there are no cases.
+        Whether value or bound is on the right side; None where there are too few cases to say.
     """
 
     name: str
@@ -63,6 +63,8 @@ def _figure(
 
     def judge(low: float | None, high: float | None) -> bool | None:
         if estimate.count == 0 or math.isnan(estimate.value):
+            return None
+        if by_upper_bound and share(0, estimate.count).high > (high or 1.0):
             return None
         seen = estimate.high if by_upper_bound else estimate.value
         return (low is None or seen >= low) and (high is None or seen <= high)
