@@ -12,7 +12,13 @@ import polars as pl
 from numpy.typing import NDArray
 
 from cyclosweep.challenge.aliens import ALIASES, ALIENS
-from cyclosweep.challenge.concealment import Concealed, alias_amplitude, conceal, opposed_signs
+from cyclosweep.challenge.concealment import (
+    Concealed,
+    alias_amplitude,
+    conceal,
+    opposed_signs,
+    rival_overlaps,
+)
 from cyclosweep.challenge.dial import divided
 from cyclosweep.challenge.noise import Noise
 from cyclosweep.challenge.nominal import COMPLIANCE_DEG_PER_NM
@@ -111,6 +117,7 @@ def make_case(
     signs: Sequence[float] | None = None,
     pulling_apart: bool = False,
     fixed_amplitudes: dict[str, float] | None = None,
+    rivals: bool = False,
     tier: str = "",
 ) -> Case:
     """Make a concealed recording.
@@ -138,6 +145,8 @@ def make_case(
     fixed_amplitudes : dict, optional
         Further causes at amplitudes given outright, whatever their visibility; they count as
         exact aliases in the answer.
+    rivals : bool
+        Add to the answer how much each other effect resembles the first cause.
     tier : str
         Label of the concealment, kept in the answer.
 
@@ -215,6 +224,8 @@ def make_case(
         "noise_rms_deg": float(np.sqrt(np.mean((read - clean) ** 2))),
         "held_out_noise_rms_deg": float(np.sqrt(np.mean((later_read - later_clean) ** 2))),
     }
+    if rivals and visible:
+        truth["rivals"] = rival_overlaps(specimen, first, law, found)
     return Case(
         recording=_frame(recorded, found.response.shown_torque_nm[found.seen], read),
         program=_frame(later_seen, later.shown_torque_nm[later.recorded], None),

@@ -13,7 +13,7 @@ from cyclosweep.challenge.noise import Noise
 from cyclosweep.challenge.programme import Programme
 from cyclosweep.challenge.rig import Response, measure
 from cyclosweep.challenge.signature import Visibility, visibility
-from cyclosweep.challenge.specimen import EITHER_SIGN, Specimen
+from cyclosweep.challenge.specimen import EITHER_SIGN, VOCABULARY, Specimen
 
 Array = NDArray[np.float64]
 
@@ -138,6 +138,33 @@ def conceal(
         if np.any(sizes > 1e4):
             raise ConcealmentError("a cause stays invisible on this programme")
     raise ConcealmentError("no amplitude gives the wanted visibility")
+
+
+def rival_overlaps(
+    specimen: Specimen, programme: Programme, noise: Noise, found: Concealed
+) -> dict[str, float]:
+    """Overlap of the first cause's signature with that of every other effect on this specimen.
+
+    Returns
+    -------
+    dict
+        Magnitude of the cosine of the projected, whitened signatures, by effect; effects that
+        this programme cannot show are left out. Rivals have the specimen's own shapes, so a
+        rival free to change its shape may come closer still.
+    """
+    recorded = programme.take(found.seen)
+    first = next(iter(found.amplitudes))
+    base = measure(specimen, programme, {}).angle_deg
+    overlaps = {}
+    for name in VOCABULARY:
+        if name == first:
+            continue
+        small = measure(specimen, programme, {name: 0.2 * FIRST_GUESS.get(name, 0.3)})
+        pair = np.column_stack([found.signatures_deg[:, 0], (small.angle_deg - base)[found.seen]])
+        view = visibility(pair, recorded, noise, specimen.compliance_deg_per_nm)
+        if view.d_alone[1] > 1e-3:
+            overlaps[name] = abs(float(view.cosine[0, 1]))
+    return overlaps
 
 
 def opposed_signs(found: Concealed, names: Sequence[str], signs: Sequence[float]) -> list[float]:

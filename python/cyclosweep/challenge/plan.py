@@ -205,6 +205,7 @@ def _attempt(entry: Entry, attempt: int) -> Case:
         stratum.noise,
         resolution_deg=0.5 if stratum.tier == "C2" else 0.0,
         signs=signs,
+        rivals=stratum.tier == "C0",
         pulling_apart=stratum.tier == "C4" and entry.turn % 2 == 0,
         tier=stratum.tier,
     )

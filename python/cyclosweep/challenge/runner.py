@@ -22,7 +22,7 @@ from cyclosweep.challenge.board.terminal import print_board
 from cyclosweep.challenge.diagnosing import command, diagnose_batch, predict, read_diagnosis
 from cyclosweep.challenge.opponents.contest import meet_opponents
 from cyclosweep.challenge.plan import Entry, make_entry, make_plan
-from cyclosweep.challenge.scoring.outcome import Outcome, make_outcome
+from cyclosweep.challenge.scoring.outcome import Outcome, make_outcome, stated_scale
 from cyclosweep.challenge.scoring.score import Score, make_score
 from cyclosweep.challenge.seal import new_passphrase, root_hash, seal, unseal
 
@@ -241,12 +241,17 @@ def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> l
     """Open the answers, check their hashes and lay them beside the diagnoses."""
     passphrase = folders.passphrase(options.passphrase)
     hashes = folders.hashes()
-    outcomes = []
+    opened = []
     for entry in plan:
         answer = unseal(folders.answers / f"{entry.key}.sealed", passphrase, hashes[entry.key])
         ratio = held_out_ratio(answer, folders.diagnoses / entry.key / "prediction.csv")
-        outcomes.append(make_outcome(answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
-    return outcomes
+        for column in ("held_out_clean_deg", "held_out_read_deg"):
+            del answer[column]
+        opened.append((answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
+    plain = [stated_scale(truth, said) for truth, said, _ in opened if truth["tier"] == "C6"]
+    known = [scale for scale in plain if math.isfinite(scale)]
+    nominal = float(np.median(known)) if known else 1.0
+    return [make_outcome(truth, said, ratio, nominal) for truth, said, ratio in opened]
 
 
 def run_challenge(

@@ -151,6 +151,12 @@ def naming(outcomes: Chosen) -> list[Figure]:
                     must=must,
                 )
             )
+            figures.append(
+                _figure(
+                    f"the same if only the nearest rival were in doubt, d = {d:g}, {programme}",
+                    bootstrapped([o.naming_bound for o in there]),
+                )
+            )
     for programme, size in (("rich", 1.3), ("poor", 1.8)):
         single = [o for o in outcomes if o.tier in {"C0", "C1", "C2"} and o.programme == programme]
         said = [o for o in single if o.explanations and o.alarm]

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from scipy.stats import norm
+
 from cyclosweep.challenge.specimen import VOCABULARY
 
 ALARMS = frozenset({"IDENTIFIED", "AMBIGUOUS", "UNKNOWN_PHYSICS"})
@@ -108,6 +110,15 @@ class Outcome:
         return self.verdict == "IDENTIFIED" and set(self.named) == set(self.causes)
 
     @property
+    def naming_bound(self) -> float:
+        """Chance that a test of the true effect against its nearest rival would be right [-].
+
+        For two known signatures of projected cosine c it is Phi(d sqrt((1 - c) / 2)).
+        """
+        nearest = max(self.rivals.values(), default=0.0)
+        return float(norm.cdf(self.d * math.sqrt(max(0.0, 0.5 * (1.0 - nearest)))))
+
+    @property
     def covered(self) -> bool:
         """Whether the explanation set holds the true set."""
         return any(set(names) == set(self.causes) for names, _ in self.explanations)
@@ -154,7 +165,19 @@ def _sizes(truth: dict[str, Any], said: dict[str, Any]) -> tuple[Sized, ...]:
     return tuple(found)
 
 
-def _pulls(truth: dict[str, Any], said: dict[str, Any]) -> dict[str, float]:
+def stated_scale(truth: dict[str, Any], said: dict[str, Any]) -> float:
+    """Stated compliance scale over the true one; not-a-number where none is stated [-].
+
+    On recordings with nothing missing this is the ratio of the two nominal compliances, because
+    a scale is stated relative to a drive file that the rig does not read.
+    """
+    entry = ((said.get("baseline") or {}).get("parameters") or {}).get("compliance_scale")
+    if not isinstance(entry, dict):
+        return math.nan
+    return _number(entry.get("estimate")) / float(truth["calibration"]["compliance_scale"])
+
+
+def _pulls(truth: dict[str, Any], said: dict[str, Any], nominal: float) -> dict[str, float]:
     """Departure of each repaired calibration parameter from its true value, in standard errors."""
     repaired = (said.get("repaired") or {}).get("parameters") or {}
     pulls = {}
@@ -162,12 +185,16 @@ def _pulls(truth: dict[str, Any], said: dict[str, Any]) -> dict[str, float]:
         entry = repaired.get(name)
         if isinstance(entry, dict):
             estimate, error = _number(entry.get("estimate")), _number(entry.get("std_error"))
+            if name == "compliance_scale":
+                value = value * nominal
             if error > 0.0:
                 pulls[name] = (estimate - value) / error
     return pulls
 
 
-def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: float) -> Outcome:
+def make_outcome(
+    truth: dict[str, Any], said: dict[str, Any], held_out: float, nominal: float = 1.0
+) -> Outcome:
     """Lay one answer beside one diagnosis.
 
     Parameters
@@ -178,6 +205,8 @@ def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: float) -
         The diagnosis as read from ``diagnosis.json``, or ``{"failure": message}``.
     held_out : float
         Held-out error over that of the true model [-].
+    nominal : float
+        Compliance that the diagnosis calls nominal, over the rig's [-].
     """
     visible = [c for c in truth["causes"] if c["kind"] != "alias"]
     least = min(visible, key=lambda c: c["d"], default=None)
@@ -204,7 +233,7 @@ def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: float) -
         untestable=tuple(str(e.get("name")) for e in said.get("not_testable") or []),
         p_mismatch=_number((said.get("mismatch") or {}).get("p_value")),
         sizes=_sizes(truth, said),
-        pulls=_pulls(truth, said),
+        pulls=_pulls(truth, said, nominal),
         held_out=held_out,
         elapsed_s=_number(said.get("challenge_elapsed_s")),
         failure=str(said.get("failure", "")),
