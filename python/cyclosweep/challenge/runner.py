@@ -17,6 +17,7 @@ import polars as pl
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from cyclosweep.challenge.board.gallery import Exhibit, choose, exhibit
 from cyclosweep.challenge.board.page import write_page
 from cyclosweep.challenge.board.terminal import print_board
 from cyclosweep.challenge.diagnosing import command, diagnose_batch, predict, read_diagnosis
@@ -254,6 +255,23 @@ def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> l
     return [make_outcome(truth, said, ratio, nominal) for truth, said, ratio in opened]
 
 
+def gallery(outcomes: list[Outcome], folders: Folders, options: Options) -> list[Exhibit]:
+    """Let the repaired models of some cases predict their own recordings, and lay them out."""
+    program = options.program or tuple(command())
+    items = []
+    for outcome in choose(outcomes):
+        kept = folders.diagnoses / outcome.key
+        recording = folders.recordings / outcome.key / "recording.csv"
+        again = kept / "again.csv"
+        if (kept / "model.json").exists() and not again.exists():
+            loads = kept / "loads.csv"
+            pl.read_csv(recording).drop("angle_deg").write_csv(loads)
+            predict(kept / "model.json", loads, again, options.limit_s, program)
+        statement = str(read_diagnosis(folders.diagnoses, outcome.key).get("statement", ""))
+        items.append(exhibit(outcome, statement, recording, again))
+    return items
+
+
 def run_challenge(
     cases: int,
     seed: int,
@@ -313,7 +331,8 @@ def run_challenge(
     score = make_score(outcomes, folders.opponents, {"seed": seed, "mix": mix, "root": root})
     (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
     (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))
-    write_page(score, folders.out / "score.html")
+    exhibits = gallery(outcomes, folders, chosen)
+    write_page(score, exhibits, folders.out / "score.html")
     print_board(score, screen)
     return score
 
