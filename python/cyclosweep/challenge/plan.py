@@ -190,7 +190,8 @@ def _attempt(entry: Entry, attempt: int) -> Case:
     rng = np.random.default_rng([seed, 11])
     menu = _candidates(entry)
     # A cause that this programme cannot show gives way to the next after a few specimens.
-    first = menu[(entry.turn + attempt // 3) % len(menu)]
+    # The stride spreads those turns over the others instead of giving them all to one.
+    first = menu[(entry.turn + 5 * (attempt // 3)) % len(menu)]
     others = [n for n in VOCABULARY if n != first]
     names = [first, *rng.choice(others, len(stratum.d) - 1, replace=False)]
     if stratum.tier == "C3":

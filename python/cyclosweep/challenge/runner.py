@@ -21,7 +21,7 @@ from cyclosweep.challenge.board.gallery import Exhibit, choose, exhibit
 from cyclosweep.challenge.board.page import write_page
 from cyclosweep.challenge.board.terminal import print_board
 from cyclosweep.challenge.diagnosing import command, diagnose_batch, predict, read_diagnosis
-from cyclosweep.challenge.opponents.contest import meet_opponents
+from cyclosweep.challenge.opponents.contest import absent, meet_opponents
 from cyclosweep.challenge.plan import Entry, make_entry, make_plan
 from cyclosweep.challenge.scoring.outcome import Outcome, make_outcome, stated_scale
 from cyclosweep.challenge.scoring.score import Score, make_score
@@ -322,6 +322,8 @@ def run_challenge(
     screen.print(f"answers sealed: SHA-256 {root} over {len(folders.hashes())} answers")
     diagnose(plan, folders, chosen, screen)
     predict_all(plan, folders, chosen, screen)
+    if chosen.opponents != "none" and absent():
+        screen.print(f"without their libraries (extra: challenge): {', '.join(absent())}")
     with _pool(chosen.workers) as pool:
         jobs = meet_opponents(
             plan, folders.recordings, folders.opponents, chosen.opponents, chosen.costly_limit

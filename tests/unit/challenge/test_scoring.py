@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from challenge_answers import outcome, said, truth
 from scipy import stats
 
 from cyclosweep.challenge.oracle import oracle_d
@@ -13,32 +14,6 @@ from cyclosweep.challenge.scoring.figures import all_figures
 from cyclosweep.challenge.scoring.intervals import bootstrapped, share
 from cyclosweep.challenge.scoring.outcome import Outcome, make_outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
-
-
-def truth(*names: str, tier: str = "C0", kind: str = "effect", **more: object) -> dict:
-    causes = [{"name": n, "kind": kind, "d": 10.0, "size_deg": 0.5, "oracle_z": 9.0} for n in names]
-    return {
-        "key": "case-1",
-        "stratum": "s",
-        "tier": tier,
-        "programme": "rich",
-        "noise": {"family": "white"},
-        "effects": [c["name"] for c in causes if kind == "effect"],
-        "aliens": [c["name"] for c in causes if kind == "alien"],
-        "aliases": [c["name"] for c in causes if kind == "alias"],
-        "causes": causes,
-        "calibration": {"compliance_scale": 1.1, "free_play_deg": 27.0},
-        **more,
-    }
-
-
-def said(verdict: str, *names: str, **more: object) -> dict:
-    effects = [{"name": n, "size_deg": {"estimate": 0.55, "ci95": [0.45, 0.65]}} for n in names]
-    return {"verdict": verdict, "effects": effects, **more}
-
-
-def outcome(t: dict, s: dict) -> Outcome:
-    return make_outcome(t, s, math.nan)
 
 
 def test_named_right_takes_exactly_the_true_set() -> None:

@@ -24,7 +24,7 @@ table{border-collapse:collapse;font-size:.88rem}td,th{padding:.22rem .55rem;text
 border-bottom:1px solid #e3e3e3;vertical-align:top}
 td.n{text-align:right;font-variant-numeric:tabular-nums}
 .ok{color:#15803d}.part{color:#a16207}.no{color:#b91c1c}.row{display:flex;flex-wrap:wrap;gap:1rem}
-.row>div{flex:1 1 440px;min-width:0}svg{width:100%;height:auto;font-size:10px}
+.row>div{flex:1 1 440px;min-width:0}svg{width:100%;max-width:540px;height:auto;font-size:10px}
 svg .title{font-size:12px;font-weight:600}svg .grid{stroke:#e6e6e6}
 .legend{font-size:.8rem}.legend span{margin-right:.9rem;white-space:nowrap}
 .legend i{display:inline-block;width:.7rem;height:.7rem;margin-right:.3rem}

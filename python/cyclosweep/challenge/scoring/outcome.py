@@ -134,7 +134,8 @@ class Outcome:
         known = {n for n in self.named if n in VOCABULARY}
         if known - set(self.effects):
             return False
-        class_only = bool(self.named) and not known and self.verdict in ALARMS
+        told = set(self.named) | {name for names, _ in self.explanations for name in names}
+        class_only = self.alarm and bool(told) and not told & set(VOCABULARY)
         return self.verdict == "UNKNOWN_PHYSICS" or class_only
 
 
