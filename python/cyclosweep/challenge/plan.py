@@ -102,12 +102,15 @@ class Entry:
         How many cases of this stratum came before; effects take turns by it.
     seed : int
         Seed of the challenge.
+    samples : int
+        Readings wanted.
     """
 
     number: int
     stratum: Stratum
     turn: int
     seed: int
+    samples: int = 3000
 
     @property
     def key(self) -> str:
@@ -120,7 +123,7 @@ class Entry:
         return int(state[0]) << 31 | int(state[1]) >> 1
 
 
-def make_plan(cases: int, seed: int, mix: str = "all") -> list[Entry]:
+def make_plan(cases: int, seed: int, mix: str = "all", samples: int = 3000) -> list[Entry]:
     """Lay out a challenge.
 
     Parameters
@@ -131,6 +134,8 @@ def make_plan(cases: int, seed: int, mix: str = "all") -> list[Entry]:
         Seed of the challenge; shuffles the strata within every turn of the plan.
     mix : {"all", "null", "open", "concealed", "contest"}
         Which strata take part.
+    samples : int
+        Readings of each recording.
 
     Returns
     -------
@@ -154,7 +159,7 @@ def make_plan(cases: int, seed: int, mix: str = "all") -> list[Entry]:
     while len(entries) < cases:
         order = np.random.default_rng([seed, 7, cycle]).permutation(one_turn)
         for k in order[: cases - len(entries)]:
-            entries.append(Entry(len(entries), strata[k], seen[k], seed))
+            entries.append(Entry(len(entries), strata[k], seen[k], seed, samples))
             seen[k] += 1
         cycle += 1
     return entries
@@ -178,6 +183,7 @@ def _alias_case(entry: Entry) -> Case:
         () if fixed else (name,),
         programme=programme,
         noise=entry.stratum.noise,
+        samples=entry.samples,
         fixed_amplitudes=fixed,
         tier="C7",
     )
@@ -204,6 +210,7 @@ def _attempt(entry: Entry, attempt: int) -> Case:
         stratum.d,
         stratum.programme,
         stratum.noise,
+        samples=entry.samples,
         resolution_deg=0.5 if stratum.tier == "C2" else 0.0,
         signs=signs,
         rivals=stratum.tier == "C0",
@@ -228,7 +235,12 @@ def make_entry(entry: Entry) -> Case:
         case = _alias_case(entry)
     elif not stratum.d:
         case = make_case(
-            entry.case_seed(0), (), programme=stratum.programme, noise=stratum.noise, tier="C6"
+            entry.case_seed(0),
+            (),
+            programme=stratum.programme,
+            noise=stratum.noise,
+            samples=entry.samples,
+            tier="C6",
         )
     else:
         case = _first_possible(entry)

@@ -6,7 +6,7 @@ import json
 import math
 import multiprocessing
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -120,27 +120,47 @@ def _prepare(entry: Entry, recordings: Path, answers: Path, passphrase: str) -> 
     return entry.key, seal(answer, answers / f"{entry.key}.sealed", passphrase)
 
 
-def _pool(workers: int) -> ProcessPoolExecutor:
-    """Return a process pool that does not fork; linear algebra gets one thread a process."""
+def _pool(workers: int, processes: bool) -> Executor:
+    """Return threads, or processes that do not fork with one linear-algebra thread each."""
+    if not processes:
+        return ThreadPoolExecutor(workers)
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
 
 
+def _results(
+    workers: int, processes: bool, jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]]
+) -> Iterator[T]:
+    """Results of jobs as they come; a single worker is this process itself."""
+    if workers == 1:
+        for function, arguments in jobs:
+            yield function(*arguments)
+        return
+    pool = _pool(workers, processes)
+    try:
+        futures = [pool.submit(function, *arguments) for function, arguments in jobs]
+        for future in as_completed(futures):
+            yield future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
 def _work(
     title: str,
-    pool: Executor,
-    jobs: Iterable[tuple[Callable[..., T], tuple[Any, ...]]],
+    workers: int,
+    jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]],
     console: Console,
-    done: Callable[[T], None],
+    done: Callable[[T], None] = lambda _: None,
+    *,
+    processes: bool = True,
 ) -> None:
-    """Run jobs in a pool, showing progress; ``done`` takes each result as it comes."""
-    futures = [pool.submit(function, *arguments) for function, arguments in jobs]
+    """Run jobs, showing progress; ``done`` takes each result as it comes."""
     columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(title, total=len(futures))
-        for future in as_completed(futures):
-            done(future.result())
+        task = progress.add_task(title, total=len(jobs))
+        for result in _results(workers, processes, jobs):
+            done(result)
             progress.advance(task)
 
 
@@ -149,27 +169,19 @@ def prepare(plan: Sequence[Entry], folders: Folders, options: Options, console: 
     passphrase = folders.passphrase(options.passphrase)
     hashes = folders.hashes()
     missing = [entry for entry in plan if entry.key not in hashes]
-    if missing:
-        with _pool(options.workers) as pool:
-            pending = 0
+    made = 0
 
-            def keep(result: tuple[str, str]) -> None:
-                nonlocal pending
-                hashes[result[0]] = result[1]
-                pending += 1
-                if pending % 200 == 0:
-                    folders.publish(hashes)
+    def keep(result: tuple[str, str]) -> None:
+        nonlocal made
+        hashes[result[0]] = result[1]
+        made += 1
+        if made % 200 == 0:
+            folders.publish(hashes)
 
-            _work(
-                "recordings",
-                pool,
-                [
-                    (_prepare, (entry, folders.recordings, folders.answers, passphrase))
-                    for entry in missing
-                ],
-                console,
-                keep,
-            )
+    jobs = [
+        (_prepare, (entry, folders.recordings, folders.answers, passphrase)) for entry in missing
+    ]
+    _work("recordings", options.workers, jobs, console, keep)
     return folders.publish(hashes)
 
 
@@ -202,8 +214,7 @@ def diagnose(plan: Sequence[Entry], folders: Folders, options: Options, console:
             jobs.append(
                 (diagnose_batch, (some, folders.diagnoses, every, options.limit_s, program))
             )
-    with ThreadPoolExecutor(options.workers) as pool:
-        _work("diagnoses", pool, jobs, console, lambda _: None)
+    _work("diagnoses", options.workers, jobs, console, processes=False)
 
 
 def predict_all(
@@ -219,8 +230,7 @@ def predict_all(
         if named and model.exists() and not done.exists():
             later = folders.recordings / entry.key / "program.csv"
             jobs.append((predict, (model, later, done, options.limit_s, program)))
-    with ThreadPoolExecutor(options.workers) as pool:
-        _work("predictions", pool, jobs, console, lambda _: None)
+    _work("predictions", options.workers, jobs, console, processes=False)
 
 
 def held_out_ratio(answer: dict[str, Any], prediction: Path) -> float:
@@ -279,6 +289,7 @@ def run_challenge(
     workers: int = 1,
     *,
     mix: str = "all",
+    samples: int = 3000,
     options: Options | None = None,
     console: Console | None = None,
 ) -> Score:
@@ -296,6 +307,8 @@ def run_challenge(
         Processes at a time.
     mix : {"all", "null", "open", "concealed", "contest"}
         Which strata take part.
+    samples : int
+        Readings of each recording.
     options : Options, optional
         Everything else; ``workers`` above wins.
     console : rich.console.Console, optional
@@ -311,26 +324,26 @@ def run_challenge(
     SealError
         If an answer was changed after it was sealed.
     ValueError
-        If the folder holds a challenge of another seed or mix.
+        If the folder holds a challenge of another seed, mix or size.
     """
     chosen = Options(**(vars(options or Options()) | {"workers": max(1, workers)}))
     screen = console or Console(stderr=True)
     folders = Folders(Path(out))
-    _claim(folders.out, seed, mix)
-    plan = make_plan(cases, seed, mix)
+    about = {"seed": seed, "mix": mix, "samples": samples}
+    _claim(folders.out, about)
+    plan = make_plan(cases, seed, mix, samples)
     root = prepare(plan, folders, chosen, screen)
     screen.print(f"answers sealed: SHA-256 {root} over {len(folders.hashes())} answers")
     diagnose(plan, folders, chosen, screen)
     predict_all(plan, folders, chosen, screen)
     if chosen.opponents != "none" and absent():
         screen.print(f"without their libraries (extra: challenge): {', '.join(absent())}")
-    with _pool(chosen.workers) as pool:
-        jobs = meet_opponents(
-            plan, folders.recordings, folders.opponents, chosen.opponents, chosen.costly_limit
-        )
-        _work("opponents", pool, jobs, screen, lambda _: None)
+    meetings = meet_opponents(
+        plan, folders.recordings, folders.opponents, chosen.opponents, chosen.costly_limit
+    )
+    _work("opponents", chosen.workers, meetings, screen)
     outcomes = open_answers(plan, folders, chosen)
-    score = make_score(outcomes, folders.opponents, {"seed": seed, "mix": mix, "root": root})
+    score = make_score(outcomes, folders.opponents, about | {"root": root})
     (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
     (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))
     exhibits = gallery(outcomes, folders, chosen)
@@ -339,10 +352,9 @@ def run_challenge(
     return score
 
 
-def _claim(out: Path, seed: int, mix: str) -> None:
+def _claim(out: Path, own: dict[str, Any]) -> None:
     """Make sure that a folder holds one challenge only."""
     file = out / "challenge.json"
-    own = {"seed": seed, "mix": mix}
     if file.exists():
         found = json.loads(file.read_text())
         if found != own:

@@ -33,7 +33,7 @@ def test_keys_tell_nothing() -> None:
 
 def test_strata_keep_their_promises() -> None:
     seen = set()
-    for entry in make_plan(400, 3, "concealed"):
+    for entry in make_plan(400, 3, "concealed", 2000):
         tier = entry.stratum.tier
         if tier in seen:
             continue

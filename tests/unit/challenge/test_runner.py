@@ -10,6 +10,7 @@ from rich.console import Console
 
 from cyclosweep.challenge.runner import Options, run_challenge
 from cyclosweep.challenge.seal import SealError
+from cyclosweep.challenge.verify import verify_run
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
@@ -18,7 +19,7 @@ OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", bat
 def run(cases: int, out: Path, options: Options = OPTIONS) -> tuple[dict, str]:
     text = io.StringIO()
     console = Console(file=text, width=160)
-    run_challenge(cases, 17, out, 1, mix="open", options=options, console=console)
+    run_challenge(cases, 17, out, 1, mix="open", samples=500, options=options, console=console)
     return json.loads((out / "score.json").read_text()), text.getvalue()
 
 
@@ -43,10 +44,19 @@ def test_runs_goes_on_and_notices_a_changed_answer(tmp_path: Path) -> None:
         run(8, tmp_path)
 
 
+def test_a_finished_run_can_be_checked_from_its_folder(tmp_path: Path) -> None:
+    run(3, tmp_path)
+    assert verify_run(tmp_path) == []
+    recording = tmp_path / "recordings" / "case-000001" / "recording.csv"
+    recording.write_text(recording.read_text().replace("1", "2", 1))
+    (complaint,) = verify_run(tmp_path)
+    assert complaint == "case-000001/recording.csv: not what the seed gives"
+
+
 def test_a_folder_holds_one_challenge_only(tmp_path: Path) -> None:
     run(1, tmp_path)
     with pytest.raises(ValueError, match="another folder"):
-        run_challenge(1, 18, tmp_path, 1, mix="open", options=OPTIONS)
+        run_challenge(1, 18, tmp_path, 1, mix="open", samples=500, options=OPTIONS)
 
 
 def test_a_diagnosis_that_breaks_is_counted_not_hidden(tmp_path: Path) -> None:
