@@ -27,6 +27,8 @@ FIRST_GUESS = {
 }
 LARGEST_DEG = 8.0
 LARGEST_OFFSET_DEG = 3.0
+LARGEST_WARMING_DEG = 8.0
+"""Largest change of datum or play over ten kelvins that a bench could show [deg]."""
 OFFSETS = frozenset({"datum_drift", "transmission_error", "thermal_drift", "dial_eccentricity"})
 TOLERANCE = 2e-3
 
@@ -127,6 +129,8 @@ def conceal(
             raise ConcealmentError(str(error)) from error
         reached = found.visibility.d[: len(names)]
         if len(names) == 0 or np.all(np.abs(reached / target - 1.0) < TOLERANCE):
+            if abs(amplitudes.get("thermal_drift", 0.0)) > LARGEST_WARMING_DEG:
+                raise ConcealmentError("the drive would have to warm up more than this one does")
             bounds = [LARGEST_OFFSET_DEG if name in OFFSETS else LARGEST_DEG for name in names]
             if np.any(found.visibility.raw_peak_deg[: len(names)] > bounds):
                 raise ConcealmentError("a cause would have to be larger than any bench shows")
