@@ -55,6 +55,7 @@ def diagnose_batch(
     flags: Sequence[str],
     limit_s: float,
     program: Sequence[str],
+    beside: Path | None = None,
 ) -> None:
     """Diagnose recordings in one process and keep what it wrote.
 
@@ -72,12 +73,16 @@ def diagnose_batch(
         Time allowed for each recording [s].
     program : sequence of str
         Command that starts ``cyclosweep``.
+    beside : pathlib.Path, optional
+        Drive file that the recordings name, to be put beside them.
     """
     with tempfile.TemporaryDirectory(prefix="diagnosis-") as scratch:
         work = Path(scratch)
         for key, folder in recordings.items():
             shutil.copy(folder / "recording.csv", work / f"{key}.csv")
             shutil.copy(folder / "recording.toml", work / f"{key}.toml")
+        if beside is not None:
+            shutil.copy(beside, work / beside.name)
         start = time.perf_counter()
         files = [f"{key}.csv" for key in recordings]
         message = _run(
@@ -94,7 +99,7 @@ def diagnose_batch(
     if failed and len(recordings) > 1:
         # One bad recording must not cost its neighbours theirs.
         for key, folder in failed.items():
-            diagnose_batch({key: folder}, results, flags, limit_s, program)
+            diagnose_batch({key: folder}, results, flags, limit_s, program, beside)
 
 
 def _keep(found: Path, target: Path, elapsed_s: float, message: str) -> None:
