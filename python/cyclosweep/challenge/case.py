@@ -55,12 +55,16 @@ class Case:
     resolution_deg: float
     truth: dict[str, Any]
 
-    def write(self, folder: str | Path) -> Path:
-        """Write ``recording.csv``, ``recording.toml`` and ``program.csv``; no answer among them."""
+    def write(self, folder: str | Path, *, program: bool = True) -> Path:
+        """Write ``recording.csv``, ``recording.toml`` and ``program.csv``; no answer among them.
+
+        Without ``program`` the held-out programme is left out.
+        """
         target = Path(folder)
         target.mkdir(parents=True, exist_ok=True)
         self.recording.write_csv(target / "recording.csv")
-        self.program.write_csv(target / "program.csv")
+        if program:
+            self.program.write_csv(target / "program.csv")
         (target / "recording.toml").write_text(
             'side = "input"\n'
             'drive = "reference-87"\n'

@@ -112,11 +112,14 @@ class Folders:
 def _prepare(entry: Entry, recordings: Path, answers: Path, passphrase: str) -> tuple[str, str]:
     """Make one case, write its recording, seal its answer; return key and hash."""
     case = make_entry(entry)
-    case.write(recordings / entry.key)
-    answer = case.truth | {
-        "held_out_clean_deg": case.held_out_clean_deg.round(5).tolist(),
-        "held_out_read_deg": case.held_out_read_deg.round(5).tolist(),
-    }
+    # With nothing missing there is no repaired model whose predictions would be scored, and a
+    # programme for each of ten thousand nulls would take gigabytes.
+    predicted = entry.stratum.tier != "C6"
+    case.write(recordings / entry.key, program=predicted)
+    answer = dict(case.truth)
+    if predicted:
+        answer["held_out_clean_deg"] = case.held_out_clean_deg.round(5).tolist()
+        answer["held_out_read_deg"] = case.held_out_read_deg.round(5).tolist()
     return entry.key, seal(answer, answers / f"{entry.key}.sealed", passphrase)
 
 
@@ -227,8 +230,8 @@ def predict_all(
         target = folders.diagnoses / entry.key
         model, done = target / "model.json", target / "prediction.csv"
         named = read_diagnosis(folders.diagnoses, entry.key).get("verdict") == "IDENTIFIED"
-        if named and model.exists() and not done.exists():
-            later = folders.recordings / entry.key / "program.csv"
+        later = folders.recordings / entry.key / "program.csv"
+        if named and model.exists() and later.exists() and not done.exists():
             jobs.append((predict, (model, later, done, options.limit_s, program)))
     _work("predictions", options.workers, jobs, console, processes=False)
 
@@ -257,7 +260,7 @@ def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> l
         answer = unseal(folders.answers / f"{entry.key}.sealed", passphrase, hashes[entry.key])
         ratio = held_out_ratio(answer, folders.diagnoses / entry.key / "prediction.csv")
         for column in ("held_out_clean_deg", "held_out_read_deg"):
-            del answer[column]
+            answer.pop(column, None)
         opened.append((answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
     plain = [stated_scale(truth, said) for truth, said, _ in opened if truth["tier"] == "C6"]
     known = [scale for scale in plain if math.isfinite(scale)]
