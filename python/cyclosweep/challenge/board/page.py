@@ -11,7 +11,7 @@ import polars as pl
 
 from cyclosweep.challenge.board.gallery import Exhibit
 from cyclosweep.challenge.board.svg import PALETTE, Series, chart
-from cyclosweep.challenge.board.terminal import as_text
+from cyclosweep.challenge.board.terminal import as_text, needed_by, within_reach
 from cyclosweep.challenge.scoring.figures import Figure
 from cyclosweep.challenge.scoring.score import Score
 from cyclosweep.challenge.tiers import TIERS
@@ -87,6 +87,24 @@ def _power(score: Score, programme: str) -> str:
         x_range=(0.0, reach * 1.04),
         y_range=(0.0, 1.0),
     )
+
+
+def _opponents(score: Score) -> str:
+    """Table of who needs how much, on the same recordings."""
+    rows = "".join(
+        f"<tr><td>{escape(c.who)}</td><td>{c.programme}</td><td></td>"
+        f"<td class=n>{needed_by(score, c)}</td></tr>"
+        for c in score.curves
+        if needed_by(score, c)
+    )
+    rows += "".join(
+        f"<tr><td>{escape(o.who)}</td><td>{o.programme}</td>"
+        f"<td class=n>{as_text(o.default_alarms)}</td>"
+        f"<td class=n>{within_reach(o.needed)}</td></tr>"
+        for o in score.opponents
+    )
+    head = "<th>who<th>programme<th>false alarms at defaults<th>d for 90 % power at 1 %"
+    return f"<table><tr>{head}</tr>{rows}</table>"
 
 
 def _calibration(score: Score) -> str:
@@ -193,6 +211,7 @@ def write_page(score: Score, exhibits: Sequence[Exhibit], path: Path) -> None:
         f"any diagnosis ran; SHA-256 over all their hashes: <code>{about['root']}</code></p>"
         f"<h2>Figures and targets</h2>{_figures(score)}"
         f'<h2>Power, naming, probabilities</h2><div class="row">{charts}</div>'
+        f"<h2>Opponents on the same recordings</h2>{_opponents(score)}"
         f"<h2>Who is taken for whom (d above 9)</h2>{matrices}"
         f"<h2>Gallery</h2><p>The first cases of every tier, not the best ones.</p>{gallery}"
         "</body></html>",

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from cyclosweep.challenge.scoring.figures import Figure
 from cyclosweep.challenge.scoring.intervals import Estimate
-from cyclosweep.challenge.scoring.score import Score
+from cyclosweep.challenge.scoring.score import Curve, Score
 
 
 def as_text(estimate: Estimate) -> str:
@@ -17,6 +17,23 @@ def as_text(estimate: Estimate) -> str:
     if estimate.count == 0 or math.isnan(estimate.value):
         return "-"
     return f"{estimate.value:.3g} [{estimate.low:.3g}, {estimate.high:.3g}]"
+
+
+def within_reach(needed: Estimate) -> str:
+    """Visibility needed, or that it lies beyond what was tried."""
+    return "> 20" if needed.value > 20.0 else as_text(needed)
+
+
+def needed_by(score: Score, curve: Curve) -> str:
+    """Visibility that the diagnosis, or the test that knows the effect, needs."""
+    names = {
+        "detected": f"d for 90 % power, {curve.programme}",
+        "test that knows the effect": (
+            f"the same of the test that knows the effect, {curve.programme}"
+        ),
+    }
+    found = [f.estimate for f in score.figures if f.name == names.get(curve.who)]
+    return as_text(found[0]) if found else ""
 
 
 def _mark(figure: Figure) -> str:
@@ -57,14 +74,21 @@ def _opponents(score: Score) -> Table:
     table.add_column("who")
     table.add_column("programme")
     table.add_column("false alarms at defaults")
+    table.add_column("d for 90 %")
     for d in levels:
         table.add_column(f"{d:g}")
     for curve in score.curves:
         shares = dict(curve.points)
         cells = [f"{shares[d].value:.2f}" if d in shares else "" for d in levels]
-        table.add_row(curve.who, curve.programme, "", *cells)
+        table.add_row(curve.who, curve.programme, "", needed_by(score, curve), *cells)
     for opponent in score.opponents:
         shares = dict(opponent.tuned_power)
         cells = [f"{shares[d].value:.2f}" if d in shares else "" for d in levels]
-        table.add_row(opponent.who, opponent.programme, as_text(opponent.default_alarms), *cells)
+        table.add_row(
+            opponent.who,
+            opponent.programme,
+            as_text(opponent.default_alarms),
+            within_reach(opponent.needed),
+            *cells,
+        )
     return table

@@ -10,6 +10,7 @@ import numpy as np
 
 from cyclosweep.challenge.scoring.intervals import Estimate, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
+from cyclosweep.challenge.scoring.power import d_for_power
 
 LEVEL = 0.01
 
@@ -28,6 +29,8 @@ class OpponentCurve:
         Statistic exceeded by one in a hundred of those recordings, in the opponent's units.
     tuned_alarms : Estimate
         False alarms at that threshold, on the same recordings.
+    needed : Estimate
+        Visibility for 90 % power at that threshold; beyond 20, none is to be read from it [-].
     default_power, tuned_power, tuned_naming : tuple of (float, Estimate)
         Visibility and share found, or named right, at defaults and at that threshold; naming
         is empty for opponents that name nothing.
@@ -38,6 +41,7 @@ class OpponentCurve:
     default_alarms: Estimate
     threshold: float
     tuned_alarms: Estimate
+    needed: Estimate
     default_power: tuple[tuple[float, Estimate], ...]
     tuned_power: tuple[tuple[float, Estimate], ...]
     tuned_naming: tuple[tuple[float, Estimate], ...]
@@ -54,6 +58,7 @@ class OpponentCurve:
             "default_alarms": vars(self.default_alarms),
             "threshold": self.threshold,
             "tuned_alarms": vars(self.tuned_alarms),
+            "needed": vars(self.needed),
             "default_power": listed(self.default_power),
             "tuned_power": listed(self.tuned_power),
             "tuned_naming": listed(self.tuned_naming),
@@ -88,6 +93,12 @@ def _curve(
         default_alarms=share_of([n["flagged"] for n in nulls]),
         threshold=threshold,
         tuned_alarms=share_of(statistics > threshold),
+        needed=d_for_power(
+            [o.d for o in single],
+            [said[o.key][who]["score"] > threshold for o in single],
+            LEVEL,
+            draws=100,
+        ),
         default_power=tuple(flagged),
         tuned_power=tuple(found),
         tuned_naming=tuple(named),
