@@ -1,7 +1,6 @@
 """Measured loops: read as they are, turned into a null, and with effects laid over them."""
 
 import gzip
-import os
 import sys
 from pathlib import Path
 
@@ -20,7 +19,6 @@ from cyclosweep.challenge.measured import (
 )
 from cyclosweep.challenge.measured_run import run_measured
 
-SHARED = Path(os.environ.get("CYCLOSWEEP_RECORDINGS", "recordings")) / "cycloidal-13-to-1"
 STAND_IN = Path(__file__).parent / "stand_in.py"
 
 
@@ -93,9 +91,8 @@ def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: P
 
 
 @pytest.mark.shared
-@pytest.mark.skipif(not SHARED.exists(), reason="measured recordings are not here")
-def test_all_real_files_repeat_but_the_one_that_drifts() -> None:
-    for path in sorted(SHARED.glob("*.csv.gz")):
+def test_all_real_files_repeat_but_the_one_that_drifts(shared_recordings: Path) -> None:
+    for path in sorted((shared_recordings / "cycloidal-13-to-1").glob("*.csv.gz")):
         null = repeated_null(read_loops(path))
         assert null.torque_nm.size > 400
         assert repeats(null) is ("910_unr_runin1" not in path.name)

@@ -1,0 +1,260 @@
+//! Why a design cannot be built: one variant per physical refusal, with the numbers that show it.
+
+use thiserror::Error;
+
+/// A physical or formal reason to refuse a design.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum DesignError {
+    /// An input is NaN or infinite.
+    #[error("{parameter} is not a finite number")]
+    NonFinite {
+        /// Name of the input.
+        parameter: &'static str,
+    },
+    /// A dimension, modulus or rating that must be above zero is not.
+    #[error("{parameter} must be above zero, found {value}")]
+    NonPositive {
+        /// Name of the input.
+        parameter: &'static str,
+        /// The value found, SI.
+        value: f64,
+    },
+    /// A dimension that may be zero is negative.
+    #[error("{parameter} must not be negative, found {value}")]
+    Negative {
+        /// Name of the input.
+        parameter: &'static str,
+        /// The value found, SI.
+        value: f64,
+    },
+    /// The ratio is not a whole number from 3 to 300.
+    #[error("ratio must be a whole number from 3 to 300, found {ratio}")]
+    RatioOutOfRange {
+        /// The ratio found.
+        ratio: f64,
+    },
+    /// The number of discs is not a whole number from 1 to 4.
+    #[error("disc_count must be a whole number from 1 to 4, found {discs}")]
+    DiscCountOutOfRange {
+        /// The number found.
+        discs: f64,
+    },
+    /// The number of output pins is not a whole number from 3 to 64.
+    #[error("output_pin_count must be a whole number from 3 to 64, found {pins}")]
+    PinCountOutOfRange {
+        /// The number found.
+        pins: f64,
+    },
+    /// The short-width coefficient K1 = e (i + 1) / R_ring reaches one: the profile loops.
+    #[error(
+        "eccentricity too large for the ring: K1 = e (i + 1) / R_ring = {k1:.4}, must stay below 1"
+    )]
+    EccentricityTooLargeForRing {
+        /// Short-width coefficient K1.
+        k1: f64,
+    },
+    /// The disc does not fit inside the circle of the ring pins.
+    #[error(
+        "disc of radius {disc_radius} m does not fit inside the ring-pin circle of radius {ring_radius} m"
+    )]
+    DiscExceedsRing {
+        /// Disc's outer radius (m).
+        disc_radius: f64,
+        /// Radius of the ring pins' circle (m).
+        ring_radius: f64,
+    },
+    /// The hole's centre never crosses the pins' pitch circle (e >= 2 R_OP).
+    #[error(
+        "hole centre never crosses the pitch circle: e / (2 R_OP) = {ratio:.4}, must stay below 1"
+    )]
+    HoleNeverCrossesPitchCircle {
+        /// e / (2 R_OP).
+        ratio: f64,
+    },
+    /// The pin's bore leaves no wall.
+    #[error("output pin bore {bore} m leaves no wall in a pin of {diameter} m")]
+    PinBoreTooLarge {
+        /// Bore diameter (m).
+        bore: f64,
+        /// Pin diameter (m).
+        diameter: f64,
+    },
+    /// Neighbouring holes of a disc overlap.
+    #[error("neighbouring holes overlap: web {web} m")]
+    HolesOverlap {
+        /// Material between two holes (m), zero or negative here.
+        web: f64,
+    },
+    /// The holes break through the disc's rim.
+    #[error("holes break through the disc's rim: web {web} m")]
+    HoleBreaksRim {
+        /// Material between hole and rim (m), zero or negative here.
+        web: f64,
+    },
+    /// The holes break into the disc's bore.
+    #[error("holes break into the disc's bore: web {web} m")]
+    HoleBreaksBore {
+        /// Material between hole and bore (m), zero or negative here.
+        web: f64,
+    },
+    /// Poisson's ratio is outside what an isotropic solid can have.
+    #[error("poisson_ratio must lie above -1 and not above 0.5, found {poisson}")]
+    PoissonOutOfRange {
+        /// The value found.
+        poisson: f64,
+    },
+    /// The shaft's diameter falls on the way from the free end to the flange.
+    #[error("shaft steps down from {from} m to {to} m towards the flange; Eq. (6) needs d < D")]
+    ShaftStepNotAscending {
+        /// Diameter before the step (m).
+        from: f64,
+        /// Diameter after the step (m).
+        to: f64,
+    },
+    /// The keyway reaches the shaft's axis.
+    #[error("keyway of depth {depth} m reaches the axis of a shaft of {diameter} m")]
+    KeywayTooDeep {
+        /// Depth of the keyway (m).
+        depth: f64,
+        /// Shaft diameter (m).
+        diameter: f64,
+    },
+}
+
+/// What the `status` column of a sweep says of one variant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+#[expect(
+    missing_docs,
+    reason = "each is the batch form of the DesignError of the same name"
+)]
+pub enum Status {
+    Ok = 0,
+    NonFiniteInput,
+    NonPositiveDimension,
+    NegativeDimension,
+    RatioOutOfRange,
+    DiscCountOutOfRange,
+    PinCountOutOfRange,
+    EccentricityTooLargeForRing,
+    DiscExceedsRing,
+    HoleNeverCrossesPitchCircle,
+    PinBoreTooLarge,
+    HolesOverlap,
+    HoleBreaksRim,
+    HoleBreaksBore,
+    PoissonOutOfRange,
+    ShaftStepNotAscending,
+    KeywayTooDeep,
+}
+
+impl Status {
+    /// Every status, in the order of its code.
+    pub const ALL: [Status; 17] = [
+        Status::Ok,
+        Status::NonFiniteInput,
+        Status::NonPositiveDimension,
+        Status::NegativeDimension,
+        Status::RatioOutOfRange,
+        Status::DiscCountOutOfRange,
+        Status::PinCountOutOfRange,
+        Status::EccentricityTooLargeForRing,
+        Status::DiscExceedsRing,
+        Status::HoleNeverCrossesPitchCircle,
+        Status::PinBoreTooLarge,
+        Status::HolesOverlap,
+        Status::HoleBreaksRim,
+        Status::HoleBreaksBore,
+        Status::PoissonOutOfRange,
+        Status::ShaftStepNotAscending,
+        Status::KeywayTooDeep,
+    ];
+
+    /// The word that stands in the table.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Status::Ok => "ok",
+            Status::NonFiniteInput => "non_finite_input",
+            Status::NonPositiveDimension => "non_positive_dimension",
+            Status::NegativeDimension => "negative_dimension",
+            Status::RatioOutOfRange => "ratio_out_of_range",
+            Status::DiscCountOutOfRange => "disc_count_out_of_range",
+            Status::PinCountOutOfRange => "pin_count_out_of_range",
+            Status::EccentricityTooLargeForRing => "eccentricity_too_large_for_ring",
+            Status::DiscExceedsRing => "disc_exceeds_ring",
+            Status::HoleNeverCrossesPitchCircle => "hole_never_crosses_pitch_circle",
+            Status::PinBoreTooLarge => "pin_bore_too_large",
+            Status::HolesOverlap => "holes_overlap",
+            Status::HoleBreaksRim => "hole_breaks_rim",
+            Status::HoleBreaksBore => "hole_breaks_bore",
+            Status::PoissonOutOfRange => "poisson_out_of_range",
+            Status::ShaftStepNotAscending => "shaft_step_not_ascending",
+            Status::KeywayTooDeep => "keyway_too_deep",
+        }
+    }
+}
+
+impl DesignError {
+    /// The status under which a sweep files this refusal.
+    #[must_use]
+    pub const fn status(&self) -> Status {
+        match self {
+            Self::NonFinite { .. } => Status::NonFiniteInput,
+            Self::NonPositive { .. } => Status::NonPositiveDimension,
+            Self::Negative { .. } => Status::NegativeDimension,
+            Self::RatioOutOfRange { .. } => Status::RatioOutOfRange,
+            Self::DiscCountOutOfRange { .. } => Status::DiscCountOutOfRange,
+            Self::PinCountOutOfRange { .. } => Status::PinCountOutOfRange,
+            Self::EccentricityTooLargeForRing { .. } => Status::EccentricityTooLargeForRing,
+            Self::DiscExceedsRing { .. } => Status::DiscExceedsRing,
+            Self::HoleNeverCrossesPitchCircle { .. } => Status::HoleNeverCrossesPitchCircle,
+            Self::PinBoreTooLarge { .. } => Status::PinBoreTooLarge,
+            Self::HolesOverlap { .. } => Status::HolesOverlap,
+            Self::HoleBreaksRim { .. } => Status::HoleBreaksRim,
+            Self::HoleBreaksBore { .. } => Status::HoleBreaksBore,
+            Self::PoissonOutOfRange { .. } => Status::PoissonOutOfRange,
+            Self::ShaftStepNotAscending { .. } => Status::ShaftStepNotAscending,
+            Self::KeywayTooDeep { .. } => Status::KeywayTooDeep,
+        }
+    }
+}
+
+/// Refuses a value that is not finite.
+///
+/// # Errors
+/// [`DesignError::NonFinite`] with the parameter's name.
+#[inline]
+pub fn finite(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(DesignError::NonFinite { parameter })
+    }
+}
+
+/// Refuses a value that is not finite or not above zero.
+///
+/// # Errors
+/// [`DesignError::NonFinite`] or [`DesignError::NonPositive`].
+#[inline]
+pub fn positive(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
+    if finite(parameter, value)? > 0.0 {
+        Ok(value)
+    } else {
+        Err(DesignError::NonPositive { parameter, value })
+    }
+}
+
+/// Refuses a value that is not finite or is below zero.
+///
+/// # Errors
+/// [`DesignError::NonFinite`] or [`DesignError::Negative`].
+#[inline]
+pub fn non_negative(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
+    if finite(parameter, value)? >= 0.0 {
+        Ok(value)
+    } else {
+        Err(DesignError::Negative { parameter, value })
+    }
+}

@@ -1,0 +1,157 @@
+//! Single formulas for validation and for looking at one drive. SI, but turns for map angles.
+
+use std::f64::consts::PI;
+
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::active_pins::{Criterion, PinMap};
+use crate::error::DesignError;
+use crate::hypotrochoid::hole_centre;
+use crate::shaft::{frustum_factor, keyway_factor, step_factor};
+
+/// Eq. (5) (rad/(N m)).
+#[pyfunction]
+pub fn keyway_compliance(
+    length: f64,
+    diameter: f64,
+    depth: f64,
+    coefficient: f64,
+    shear_modulus: f64,
+) -> f64 {
+    32.0 / (PI * shear_modulus) * keyway_factor(length, diameter, depth, coefficient)
+}
+
+/// Eq. (6) (rad/(N m)).
+#[pyfunction]
+pub fn step_compliance(
+    length: f64,
+    diameter: f64,
+    larger_length: f64,
+    larger_diameter: f64,
+    shear_modulus: f64,
+) -> PyResult<f64> {
+    let factor = step_factor(length, diameter, larger_length, larger_diameter)?;
+    Ok(32.0 / (PI * shear_modulus) * factor)
+}
+
+/// Eq. (7) (rad/(N m)).
+#[pyfunction]
+pub fn frustum_compliance(
+    length: f64,
+    diameter: f64,
+    end_diameter: f64,
+    shear_modulus: f64,
+) -> f64 {
+    32.0 / (PI * shear_modulus) * frustum_factor(length, diameter, end_diameter)
+}
+
+fn criterion_of(code: u8) -> Result<Criterion, DesignError> {
+    let found = Criterion::ALL.get(usize::from(code)).copied();
+    found.ok_or(DesignError::NonFinite {
+        parameter: "criterion",
+    })
+}
+
+fn checked(map: PinMap) -> Result<PinMap, DesignError> {
+    if !(1..=4).contains(&map.discs) {
+        return Err(DesignError::DiscCountOutOfRange {
+            discs: f64::from(map.discs),
+        });
+    }
+    if !(3..=64).contains(&map.pins) {
+        return Err(DesignError::PinCountOutOfRange {
+            pins: f64::from(map.pins),
+        });
+    }
+    if map.ratio.is_nan() || map.ratio < 3.0 {
+        return Err(DesignError::RatioOutOfRange { ratio: map.ratio });
+    }
+    Ok(map)
+}
+
+/// Figures of the active-pin map: mean, minimum, maximum of active contacts by a criterion
+/// (code), participation by statics (mean, minimum, maximum), window of hole H1 (turns).
+#[pyfunction]
+#[expect(
+    clippy::type_complexity,
+    reason = "three triples of one drive, unpacked in Python"
+)]
+pub fn active_pins(
+    criterion: u8,
+    ratio: f64,
+    discs: u32,
+    pins: u32,
+    delta: f64,
+    clocking: f64,
+) -> PyResult<((f64, u32, u32), (f64, f64, f64), (f64, f64))> {
+    let map = checked(PinMap {
+        ratio,
+        discs,
+        pins,
+        delta,
+        clocking,
+    })?;
+    let count = match criterion_of(criterion)? {
+        Criterion::PublishedMap => map.published_map(),
+        Criterion::Inside => map.inside(),
+        Criterion::Statics => map.statics(),
+    };
+    let p = map.participation();
+    Ok((
+        (count.mean, count.min, count.max),
+        (p.mean, p.min, p.max),
+        map.first_hole_window(),
+    ))
+}
+
+/// Sectors of one turn by a criterion (code): starts, ends (turns), active contacts.
+#[pyfunction]
+pub fn sectors(
+    criterion: u8,
+    ratio: f64,
+    discs: u32,
+    pins: u32,
+    delta: f64,
+    clocking: f64,
+) -> PyResult<Vec<(f64, f64, u32)>> {
+    let map = checked(PinMap {
+        ratio,
+        discs,
+        pins,
+        delta,
+        clocking,
+    })?;
+    let sectors = map.sectors(criterion_of(criterion)?);
+    Ok(sectors
+        .into_iter()
+        .map(|s| (s.start, s.end, s.active))
+        .collect())
+}
+
+/// Centres (m) of one hole at the mesh-zone positions `theta` (rad), shape (len(theta), 2).
+#[pyfunction]
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "an array from Python arrives by value"
+)]
+pub fn hole_locus<'py>(
+    py: Python<'py>,
+    eccentricity: f64,
+    pin_circle_radius: f64,
+    ratio: f64,
+    hole_angle: f64,
+    theta: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let centres: Vec<f64> = theta
+        .as_array()
+        .iter()
+        .flat_map(|t| {
+            let c = hole_centre(eccentricity, pin_circle_radius, ratio, hole_angle, *t);
+            [c.x, c.y]
+        })
+        .collect();
+    let rows = centres.len() / 2;
+    let flat: Bound<'py, PyArray1<f64>> = centres.into_pyarray(py);
+    numpy::PyArrayMethods::reshape(&flat, [rows, 2])
+}

@@ -1,0 +1,280 @@
+//! `_core.Study`: a study's definition in, columns as NumPy arrays out.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::columns::{Limit, Limited, Study};
+use crate::inputs::{SCALARS, SEGMENT_FIELDS, factor, input_index};
+use crate::outputs::Output;
+use crate::shaft::SegmentKind;
+use crate::space::{Axis, Layout, Rows, Space, Values};
+
+/// A study's definition, ready to evaluate.
+#[pyclass(name = "Study", frozen, module = "cyclosweep._core")]
+pub struct PyStudy {
+    study: Study,
+    outputs: Vec<(String, Output)>,
+}
+
+static VARIANTS: AtomicU64 = AtomicU64::new(0);
+static VALUES: AtomicU64 = AtomicU64::new(0);
+
+/// How many variants, and how many values of result columns, the kernel has computed in this
+/// process.
+#[pyfunction]
+pub fn kernel_evaluations() -> (u64, u64) {
+    (
+        VARIANTS.load(Ordering::Relaxed),
+        VALUES.load(Ordering::Relaxed),
+    )
+}
+
+/// One axis as Python describes it: (name, form, numbers).
+type AxisSpec<'py> = (String, String, PyReadonlyArray1<'py, f64>);
+/// The status codes, whether any variant is refused, and the columns asked for.
+type Evaluated<'py> = (
+    Bound<'py, PyArray1<u8>>,
+    bool,
+    Vec<Bound<'py, PyArray1<f64>>>,
+);
+
+fn values_of(form: &str, numbers: &[f64]) -> PyResult<Values> {
+    match (form, numbers) {
+        ("list", numbers) => Ok(Values::List(numbers.to_vec())),
+        ("linspace", [from, to, steps]) => Ok(Values::Linspace {
+            from: *from,
+            to: *to,
+            steps: *steps as u64,
+        }),
+        ("interval", [low, high]) => Ok(Values::Interval {
+            low: *low,
+            high: *high,
+        }),
+        ("whole", [low, high]) => Ok(Values::Whole {
+            low: *low,
+            high: *high,
+        }),
+        _ => Err(PyValueError::new_err(format!("unknown axis form {form}"))),
+    }
+}
+
+fn layout_of(name: &str) -> PyResult<Layout> {
+    match name {
+        "grid" => Ok(Layout::Grid),
+        "sobol" => Ok(Layout::Sobol),
+        "latin-hypercube" => Ok(Layout::LatinHypercube),
+        "random" => Ok(Layout::Random),
+        "table" => Ok(Layout::Table),
+        _ => Err(PyValueError::new_err(format!(
+            "unknown sampling method {name}"
+        ))),
+    }
+}
+
+fn kind_of(name: &str) -> PyResult<SegmentKind> {
+    match name {
+        "keyway" => Ok(SegmentKind::Keyway),
+        "cylinder" => Ok(SegmentKind::Cylinder),
+        "frustum" => Ok(SegmentKind::Frustum),
+        _ => Err(PyValueError::new_err(format!(
+            "unknown shaft segment {name}"
+        ))),
+    }
+}
+
+impl PyStudy {
+    fn axis_number(&self, name: &str) -> PyResult<usize> {
+        let index = input_index(name, self.study.segments());
+        let found = self
+            .study
+            .space()
+            .axes()
+            .iter()
+            .position(|axis| Some(axis.input) == index);
+        found.ok_or_else(|| PyValueError::new_err(format!("{name} does not vary in this study")))
+    }
+
+    fn chosen(&self, names: &[String]) -> PyResult<Vec<Output>> {
+        let find = |name: &String| {
+            let found = self.outputs.iter().find(|(known, _)| known == name);
+            let unknown = || PyValueError::new_err(format!("unknown result column {name}"));
+            found.map(|(_, output)| *output).ok_or_else(unknown)
+        };
+        names.iter().map(find).collect()
+    }
+
+    fn check_range(&self, start: u64, stop: u64) -> PyResult<usize> {
+        if start <= stop && stop <= self.study.space().len() {
+            Ok((stop - start) as usize)
+        } else {
+            let len = self.study.space().len();
+            Err(PyIndexError::new_err(format!(
+                "variants {start}..{stop} of {len}"
+            )))
+        }
+    }
+
+    fn check_indices(&self, indices: &[u64]) -> PyResult<()> {
+        let len = self.study.space().len();
+        match indices.iter().find(|index| **index >= len) {
+            None => Ok(()),
+            Some(index) => Err(PyIndexError::new_err(format!("variant {index} of {len}"))),
+        }
+    }
+
+    fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        rows: Rows<'_>,
+        len: usize,
+        outputs: &[String],
+    ) -> PyResult<Evaluated<'py>> {
+        let outputs = self.chosen(outputs)?;
+        VARIANTS.fetch_add(len as u64, Ordering::Relaxed);
+        VALUES.fetch_add((len * outputs.len()) as u64, Ordering::Relaxed);
+        let columns = py.detach(|| self.study.evaluate(rows, len, &outputs));
+        let values = columns
+            .values
+            .into_iter()
+            .map(|column| column.into_pyarray(py))
+            .collect();
+        Ok((columns.status.into_pyarray(py), columns.any_refused, values))
+    }
+}
+
+#[pymethods]
+impl PyStudy {
+    /// `base`: every input by name in the user's unit, NaN where left out. `axes`: (name, form,
+    /// numbers), form "list", "linspace" (from, to, steps), "interval" or "whole" (low, high).
+    #[new]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::needless_pass_by_value,
+        reason = "one call a study"
+    )]
+    fn new(
+        base: Vec<(String, f64)>,
+        kinds: Vec<String>,
+        axes: Vec<AxisSpec<'_>>,
+        layout: &str,
+        count: u64,
+        seed: u64,
+        loads: Vec<f64>,
+        limits: Vec<(String, f64, f64)>,
+    ) -> PyResult<Self> {
+        let kinds = kinds
+            .iter()
+            .map(|kind| kind_of(kind))
+            .collect::<PyResult<Vec<_>>>()?;
+        let index = |name: &str| {
+            let unknown = || PyValueError::new_err(format!("unknown input {name}"));
+            input_index(name, kinds.len()).ok_or_else(unknown)
+        };
+        let mut inputs = vec![f64::NAN; SCALARS + SEGMENT_FIELDS.len() * kinds.len()];
+        for (name, value) in &base {
+            let k = index(name)?;
+            inputs[k] = value * factor(k);
+        }
+        let outputs: Vec<(String, Output)> = Output::all(&loads)
+            .into_iter()
+            .map(|output| (output.name(&loads), output))
+            .collect();
+        let mut ranges = Vec::with_capacity(limits.len());
+        for (name, min, max) in limits {
+            let column = match outputs.iter().find(|(known, _)| *known == name) {
+                Some((_, output)) => Limited::Output(*output),
+                None => Limited::Input(index(&name)?),
+            };
+            ranges.push(Limit { column, min, max });
+        }
+        let mut built = Vec::with_capacity(axes.len());
+        for (name, form, numbers) in &axes {
+            let values = values_of(form, numbers.as_slice()?)?;
+            built.push(Axis {
+                input: index(name)?,
+                values,
+            });
+        }
+        let space = Space::new(built, layout_of(layout)?, count, seed)
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Self {
+            study: Study::new(space, inputs, kinds, loads, ranges),
+            outputs,
+        })
+    }
+
+    /// Number of variants.
+    #[getter]
+    fn count(&self) -> u64 {
+        self.study.space().len()
+    }
+
+    /// Variants the kernel has evaluated so far.
+    #[getter]
+    fn evaluated(&self) -> u64 {
+        self.study.evaluated()
+    }
+
+    /// Values of one axis for variants start..stop, in the user's unit.
+    fn axis<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        start: u64,
+        stop: u64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (axis, len) = (self.axis_number(name)?, self.check_range(start, stop)?);
+        let values = py.detach(|| self.study.axis_values(axis, Rows::From(start), len));
+        Ok(values.into_pyarray(py))
+    }
+
+    /// Values of one axis for picked variants.
+    fn axis_at<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        indices: PyReadonlyArray1<'py, u64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let indices = indices.as_slice()?;
+        self.check_indices(indices)?;
+        let axis = self.axis_number(name)?;
+        let values = py.detach(|| {
+            self.study
+                .axis_values(axis, Rows::At(indices), indices.len())
+        });
+        Ok(values.into_pyarray(py))
+    }
+
+    /// Evaluates variants start..stop.
+    fn evaluate_range<'py>(
+        &self,
+        py: Python<'py>,
+        start: u64,
+        stop: u64,
+        outputs: Vec<String>,
+    ) -> PyResult<Evaluated<'py>> {
+        let len = self.check_range(start, stop)?;
+        self.evaluate(py, Rows::From(start), len, &outputs)
+    }
+
+    /// Evaluates picked variants.
+    fn evaluate_at<'py>(
+        &self,
+        py: Python<'py>,
+        indices: PyReadonlyArray1<'py, u64>,
+        outputs: Vec<String>,
+    ) -> PyResult<Evaluated<'py>> {
+        let indices = indices.as_slice()?;
+        self.check_indices(indices)?;
+        self.evaluate(py, Rows::At(indices), indices.len(), &outputs)
+    }
+
+    /// Why a variant is refused, with the numbers that show it; none when it can be built.
+    fn explain(&self, index: u64) -> PyResult<Option<String>> {
+        self.check_indices(&[index])?;
+        Ok(self.study.explain(index).map(|error| error.to_string()))
+    }
+}

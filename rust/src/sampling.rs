@@ -1,0 +1,205 @@
+//! Points of a study as functions of their index alone: grid, Sobol, Latin hypercube, random.
+
+use crate::joe_kuo::DIRECTIONS;
+
+/// Most axes a Sobol study may have.
+pub const MAX_SOBOL_AXES: usize = DIRECTIONS.len() + 1;
+
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): a bijection that mixes well.
+#[inline]
+#[must_use]
+pub const fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
+}
+
+/// The key of one axis of a study.
+#[inline]
+#[must_use]
+pub const fn key(seed: u64, axis: u64) -> u64 {
+    mix(mix(seed.wrapping_add(GOLDEN)).wrapping_add(axis.wrapping_add(1).wrapping_mul(GOLDEN)))
+}
+
+/// A number in [0, 1) of the leading 53 bits.
+#[inline]
+#[must_use]
+pub const fn unit_interval(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+}
+
+/// Independent uniform number number `index` of an axis.
+#[inline]
+#[must_use]
+pub const fn random(key: u64, index: u64) -> f64 {
+    unit_interval(mix(key ^ mix(index.wrapping_mul(GOLDEN))))
+}
+
+/// One axis of a Sobol sequence of 64 bits, scrambled by a random lower-triangular matrix and a
+/// shift (Matousek 1998), or not at all.
+#[derive(Debug, Clone)]
+pub struct SobolAxis {
+    directions: [u64; 64],
+    shift: u64,
+}
+
+impl SobolAxis {
+    /// The axis number `axis` (from 0); `scramble` is its key, or none for the plain sequence.
+    #[must_use]
+    pub fn new(axis: usize, scramble: Option<u64>) -> Self {
+        let mut directions = [0_u64; 64];
+        if axis == 0 {
+            for (bit, v) in directions.iter_mut().enumerate() {
+                *v = 1 << (63 - bit);
+            }
+        } else {
+            let (polynomial, initial) = DIRECTIONS[axis - 1];
+            let degree = initial.len();
+            for bit in 0..64 {
+                directions[bit] = if bit < degree {
+                    u64::from(initial[bit]) << (63 - bit)
+                } else {
+                    let oldest = directions[bit - degree];
+                    (1..degree)
+                        .filter(|k| polynomial >> (degree - k) & 1 == 1)
+                        .fold(oldest ^ (oldest >> degree), |v, k| v ^ directions[bit - k])
+                };
+            }
+        }
+        let Some(key) = scramble else {
+            return Self {
+                directions,
+                shift: 0,
+            };
+        };
+        let rows: [u64; 64] = std::array::from_fn(|row| {
+            let diagonal = 1_u64 << (63 - row);
+            let above = !(diagonal | (diagonal - 1));
+            (mix(key.wrapping_add(row as u64 + 1)) & above) | diagonal
+        });
+        for v in &mut directions {
+            let plain = *v;
+            *v = rows.iter().enumerate().fold(0, |sum, (row, mask)| {
+                sum | (u64::from((mask & plain).count_ones() & 1) << (63 - row))
+            });
+        }
+        Self {
+            directions,
+            shift: mix(key),
+        }
+    }
+
+    /// The bits of point `index`.
+    #[inline]
+    #[must_use]
+    pub fn bits(&self, index: u64) -> u64 {
+        let mut gray = index ^ (index >> 1);
+        let mut bits = self.shift;
+        while gray != 0 {
+            bits ^= self.directions[gray.trailing_zeros() as usize];
+            gray &= gray - 1;
+        }
+        bits
+    }
+
+    /// The bits of the point after `index`, from those of `index`.
+    #[inline]
+    #[must_use]
+    pub fn next_bits(&self, bits: u64, index: u64) -> u64 {
+        bits ^ self.directions[(index + 1).trailing_zeros() as usize]
+    }
+}
+
+/// A keyed bijection of 0..count (a Feistel network with cycle walking).
+#[derive(Debug, Clone, Copy)]
+pub struct Permutation {
+    count: u64,
+    key: u64,
+    half_bits: u32,
+}
+
+impl Permutation {
+    /// The bijection of 0..count under a key.
+    #[must_use]
+    pub const fn new(count: u64, key: u64) -> Self {
+        let bits = 64 - count.saturating_sub(1).leading_zeros();
+        let half = bits.div_ceil(2);
+        Self {
+            count,
+            key,
+            half_bits: if half == 0 { 1 } else { half },
+        }
+    }
+
+    /// Where `index` goes.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, index: u64) -> u64 {
+        let mask = (1_u64 << self.half_bits) - 1;
+        let mut x = index;
+        loop {
+            let (mut left, mut right) = (x >> self.half_bits, x & mask);
+            for round in 1..=4_u64 {
+                let f = mix(self.key ^ right.wrapping_add(round.wrapping_mul(GOLDEN))) & mask;
+                (left, right) = (right, left ^ f);
+            }
+            x = left << self.half_bits | right;
+            if x < self.count {
+                return x;
+            }
+        }
+    }
+
+    /// The point of a Latin hypercube of `count` strata, jittered within its stratum.
+    #[inline]
+    #[must_use]
+    pub fn stratified(&self, index: u64) -> f64 {
+        let inside = random(self.key.rotate_left(32), index);
+        let u = (self.at(index) as f64 + inside) / self.count as f64;
+        u.min(1.0 - f64::EPSILON / 2.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn the_plain_sequence_starts_as_everyone_prints_it() {
+        let first: Vec<f64> = (0..6)
+            .map(|k| unit_interval(SobolAxis::new(1, None).bits(k)))
+            .collect();
+        assert_eq!(first, [0.0, 0.5, 0.25, 0.75, 0.375, 0.875]);
+    }
+
+    #[test]
+    fn stepping_equals_jumping_far_out() {
+        let axis = SobolAxis::new(17, Some(key(5, 17)));
+        let far = (1 << 62) + 12_345;
+        assert_eq!(axis.next_bits(axis.bits(far), far), axis.bits(far + 1));
+    }
+
+    #[test]
+    fn scrambling_keeps_every_dyadic_stratum_hit_once() {
+        for dimension in [0, 1, 7, 127] {
+            let axis = SobolAxis::new(dimension, Some(key(99, dimension as u64)));
+            let strata: HashSet<u64> = (0..1024).map(|k| axis.bits(k) >> 54).collect();
+            assert_eq!(strata.len(), 1024);
+        }
+    }
+
+    #[test]
+    fn a_permutation_hits_every_index_once() {
+        for count in [1, 2, 3, 7, 1000, 1025] {
+            let permutation = Permutation::new(count, key(3, 1));
+            let image: HashSet<u64> = (0..count).map(|k| permutation.at(k)).collect();
+            assert_eq!(image.len() as u64, count);
+            assert!(image.iter().all(|k| *k < count));
+        }
+        let huge = Permutation::new(1 << 63, 7);
+        assert!(huge.at((1 << 63) - 1) < 1 << 63);
+    }
+}
