@@ -21,8 +21,8 @@ from cyclosweep.challenge.concealment import (
 )
 from cyclosweep.challenge.dial import divided
 from cyclosweep.challenge.noise import Noise
-from cyclosweep.challenge.nominal import COMPLIANCE_DEG_PER_NM
 from cyclosweep.challenge.oracle import oracle_statistic
+from cyclosweep.challenge.prediction import fitting_error
 from cyclosweep.challenge.programme import Programme, make_programme
 from cyclosweep.challenge.rig import measure
 from cyclosweep.challenge.specimen import EITHER_SIGN, Specimen
@@ -98,7 +98,7 @@ def _causes(found: Concealed, aliases: set[str]) -> list[dict[str, Any]]:
             "d": float(view.d[k]),
             "d_alone": float(view.d_alone[k]),
             "absorbed": float(view.absorbed[k]),
-            "size_deg": float(view.rms_deg[k]),
+            "rms_deg": float(view.rms_deg[k]),
             "peak_deg": float(view.peak_deg[k]),
             "raw_rms_deg": float(view.raw_rms_deg[k]),
             "raw_peak_deg": float(view.raw_peak_deg[k]),
@@ -209,6 +209,7 @@ def make_case(
             law,
             slope,
         )
+    excess = fitting_error(found, first, later, second, specimen, law)
     truth: dict[str, Any] = {
         "seed": seed,
         "tier": tier,
@@ -221,11 +222,11 @@ def make_case(
         "causes": causes,
         "calibration": {
             "compliance_deg_per_nm": slope,
-            "compliance_scale": slope / COMPLIANCE_DEG_PER_NM,
             "free_play_deg": specimen.free_play_deg,
             "datum_deg": specimen.datum_deg,
         },
         "noise_rms_deg": float(np.sqrt(np.mean((read - clean) ** 2))),
+        "held_out_fitting_rms_deg": excess,
         "held_out_noise_rms_deg": float(np.sqrt(np.mean((later_read - later_clean) ** 2))),
     }
     if rivals and visible:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -23,7 +22,7 @@ from cyclosweep.challenge.board.terminal import print_board
 from cyclosweep.challenge.diagnosing import command, diagnose_batch, predict, read_diagnosis
 from cyclosweep.challenge.opponents.contest import absent, meet_opponents
 from cyclosweep.challenge.plan import Entry, make_entry, make_plan
-from cyclosweep.challenge.scoring.outcome import Outcome, make_outcome, stated_scale
+from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep.challenge.scoring.score import Score, make_score
 from cyclosweep.challenge.seal import new_passphrase, root_hash, seal, unseal
 
@@ -236,36 +235,34 @@ def predict_all(
     _work("predictions", options.workers, jobs, console, processes=False)
 
 
-def held_out_ratio(answer: dict[str, Any], prediction: Path) -> float:
+def held_out_ratio(answer: dict[str, Any], prediction: Path) -> HeldOut:
     """Error of a prediction over the true model's own, both against what was read [-]."""
     if not prediction.exists():
-        return math.nan
+        return HeldOut()
     predicted = pl.read_csv(prediction)["angle_deg"].cast(pl.Float64).to_numpy()
     read = np.array(answer["held_out_read_deg"])
     clean = np.array(answer["held_out_clean_deg"])
     if predicted.size != read.size or not np.isfinite(predicted).any():
-        return math.nan
+        return HeldOut()
     there = np.isfinite(predicted)
     error = np.sqrt(np.mean((predicted - read)[there] ** 2))
     own = np.sqrt(np.mean((clean - read)[there] ** 2))
-    return float(error / own)
+    fitted = np.hypot(own, answer["held_out_fitting_rms_deg"])
+    return HeldOut(known=float(error / own), fitted=float(error / fitted))
 
 
 def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> list[Outcome]:
     """Open the answers, check their hashes and lay them beside the diagnoses."""
     passphrase = folders.passphrase(options.passphrase)
     hashes = folders.hashes()
-    opened = []
+    outcomes = []
     for entry in plan:
         answer = unseal(folders.answers / f"{entry.key}.sealed", passphrase, hashes[entry.key])
         ratio = held_out_ratio(answer, folders.diagnoses / entry.key / "prediction.csv")
         for column in ("held_out_clean_deg", "held_out_read_deg"):
             answer.pop(column, None)
-        opened.append((answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
-    plain = [stated_scale(truth, said) for truth, said, _ in opened if truth["tier"] == "C6"]
-    known = [scale for scale in plain if math.isfinite(scale)]
-    nominal = float(np.median(known)) if known else 1.0
-    return [make_outcome(truth, said, ratio, nominal) for truth, said, ratio in opened]
+        outcomes.append(make_outcome(answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
+    return outcomes
 
 
 def gallery(outcomes: list[Outcome], folders: Folders, options: Options) -> list[Exhibit]:

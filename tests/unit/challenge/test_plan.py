@@ -43,8 +43,8 @@ def test_strata_keep_their_promises() -> None:
         if tier == "C1":
             assert causes[0]["absorbed"] >= 0.7
         if tier == "C2":
-            assert causes[0]["size_deg"] < truth["noise"]["sigma_deg"] / 3
-            assert causes[0]["size_deg"] < truth["noise"]["resolution_deg"]
+            assert causes[0]["rms_deg"] < truth["noise"]["sigma_deg"] / 3
+            assert causes[0]["rms_deg"] < truth["noise"]["resolution_deg"]
         if tier == "C3":
             assert causes[0]["d"] == pytest.approx(10 * causes[1]["d"], rel=0.02)
         if tier == "C4":

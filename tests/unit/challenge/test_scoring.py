@@ -12,7 +12,7 @@ from cyclosweep.challenge.scoring.calibration import calibration_error
 from cyclosweep.challenge.scoring.confusion import confusion
 from cyclosweep.challenge.scoring.figures import all_figures
 from cyclosweep.challenge.scoring.intervals import bootstrapped, share
-from cyclosweep.challenge.scoring.outcome import Outcome, make_outcome
+from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
 
 
@@ -50,14 +50,15 @@ def test_unknown_is_recognised_by_its_verdict_or_by_a_class_and_never_with_a_fal
 def test_pulls_and_sizes() -> None:
     repaired = {
         "parameters": {
-            "compliance_scale": {"estimate": 2.2, "std_error": 0.1},
+            "compliance_deg_per_nm": {"estimate": 2.8, "std_error": 0.1},
             "free_play_deg": {"estimate": 27.2, "std_error": 0.1},
         }
     }
-    done = make_outcome(truth("creep"), said("IDENTIFIED", "creep", repaired=repaired), 1.0, 2.0)
-    assert done.pulls["compliance_scale"] == pytest.approx(0.0)
+    done = make_outcome(truth("creep"), said("IDENTIFIED", "creep", repaired=repaired), HeldOut())
+    assert done.pulls["compliance_deg_per_nm"] == pytest.approx(0.0)
     assert done.pulls["free_play_deg"] == pytest.approx(2.0)
     assert done.sizes[0].estimate_deg == 0.55
+    assert done.sizes[0].error == pytest.approx(1.0)
 
 
 def test_a_diagnosis_that_failed_counts_as_nothing_said() -> None:

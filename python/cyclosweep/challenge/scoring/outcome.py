@@ -14,6 +14,22 @@ ALARMS = frozenset({"IDENTIFIED", "AMBIGUOUS", "UNKNOWN_PHYSICS"})
 
 
 @dataclass(frozen=True)
+class HeldOut:
+    """Held-out error of a repaired model over that of the true one.
+
+    Attributes
+    ----------
+    known : float
+        Over the true model's with its true parameters [-].
+    fitted : float
+        Over the true model's with parameters fitted to the same recording [-].
+    """
+
+    known: float = math.nan
+    fitted: float = math.nan
+
+
+@dataclass(frozen=True)
 class Sized:
     """Size of a rightly named effect.
 
@@ -22,9 +38,11 @@ class Sized:
     name : str
         The effect.
     true_deg, estimate_deg, low_deg, high_deg : float
-        True size after re-calibration, its estimate and 95 % interval [deg].
+        True largest value after re-calibration, its estimate and 95 % interval [deg].
+    true_rms_deg, estimate_rms_deg : float
+        True root mean square after re-calibration, and its estimate [deg].
     d : float
-        Signal-to-noise; the Cramer-Rao bound of the size is ``true_deg / d`` [-].
+        Signal-to-noise; the Cramer-Rao bound of the rms is ``true_rms_deg / d`` [-].
     """
 
     name: str
@@ -32,7 +50,14 @@ class Sized:
     estimate_deg: float
     low_deg: float
     high_deg: float
+    true_rms_deg: float
+    estimate_rms_deg: float
     d: float
+
+    @property
+    def error(self) -> float:
+        """Error of the rms over its Cramer-Rao bound [-]; not-a-number where none is stated."""
+        return (self.estimate_rms_deg - self.true_rms_deg) / (self.true_rms_deg / self.d)
 
 
 @dataclass(frozen=True)
@@ -65,7 +90,7 @@ class Outcome:
         Sizes of the effects rightly named.
     pulls : dict
         Departure of repaired calibration parameters in their standard errors.
-    held_out : float
+    held_out : HeldOut
         Held-out error over that of the true model; not-a-number where nothing was predicted.
     elapsed_s : float
         Time of the diagnosis [s].
@@ -94,7 +119,7 @@ class Outcome:
     p_mismatch: float
     sizes: tuple[Sized, ...]
     pulls: dict[str, float]
-    held_out: float
+    held_out: HeldOut
     elapsed_s: float
     failure: str
     rivals: dict[str, float] = field(default_factory=dict)
@@ -156,29 +181,19 @@ def _sizes(truth: dict[str, Any], said: dict[str, Any]) -> tuple[Sized, ...]:
             found.append(
                 Sized(
                     effect["name"],
-                    cause["size_deg"],
+                    cause["peak_deg"],
                     _number(size.get("estimate")),
                     _number(bounds[0]),
                     _number(bounds[1]),
+                    cause["rms_deg"],
+                    _number(effect.get("rms_deg")),
                     cause["d"],
                 )
             )
     return tuple(found)
 
 
-def stated_scale(truth: dict[str, Any], said: dict[str, Any]) -> float:
-    """Stated compliance scale over the true one; not-a-number where none is stated [-].
-
-    On recordings with nothing missing this is the ratio of the two nominal compliances, because
-    a scale is stated relative to a drive file that the rig does not read.
-    """
-    entry = ((said.get("baseline") or {}).get("parameters") or {}).get("compliance_scale")
-    if not isinstance(entry, dict):
-        return math.nan
-    return _number(entry.get("estimate")) / float(truth["calibration"]["compliance_scale"])
-
-
-def _pulls(truth: dict[str, Any], said: dict[str, Any], nominal: float) -> dict[str, float]:
+def _pulls(truth: dict[str, Any], said: dict[str, Any]) -> dict[str, float]:
     """Departure of each repaired calibration parameter from its true value, in standard errors."""
     repaired = (said.get("repaired") or {}).get("parameters") or {}
     pulls = {}
@@ -186,16 +201,12 @@ def _pulls(truth: dict[str, Any], said: dict[str, Any], nominal: float) -> dict[
         entry = repaired.get(name)
         if isinstance(entry, dict):
             estimate, error = _number(entry.get("estimate")), _number(entry.get("std_error"))
-            if name == "compliance_scale":
-                value = value * nominal
             if error > 0.0:
                 pulls[name] = (estimate - value) / error
     return pulls
 
 
-def make_outcome(
-    truth: dict[str, Any], said: dict[str, Any], held_out: float, nominal: float = 1.0
-) -> Outcome:
+def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: HeldOut) -> Outcome:
     """Lay one answer beside one diagnosis.
 
     Parameters
@@ -204,10 +215,8 @@ def make_outcome(
         The opened answer.
     said : dict
         The diagnosis as read from ``diagnosis.json``, or ``{"failure": message}``.
-    held_out : float
+    held_out : HeldOut
         Held-out error over that of the true model [-].
-    nominal : float
-        Compliance that the diagnosis calls nominal, over the rig's [-].
     """
     visible = [c for c in truth["causes"] if c["kind"] != "alias"]
     least = min(visible, key=lambda c: c["d"], default=None)
@@ -234,7 +243,7 @@ def make_outcome(
         untestable=tuple(str(e.get("name")) for e in said.get("not_testable") or []),
         p_mismatch=_number((said.get("mismatch") or {}).get("p_value")),
         sizes=_sizes(truth, said),
-        pulls=_pulls(truth, said, nominal),
+        pulls=_pulls(truth, said),
         held_out=held_out,
         elapsed_s=_number(said.get("challenge_elapsed_s")),
         failure=str(said.get("failure", "")),
