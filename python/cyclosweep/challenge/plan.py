@@ -99,7 +99,7 @@ class Entry:
     stratum : Stratum
         Kind of the case.
     turn : int
-        How many cases of this stratum came before; effects take turns by it.
+        Number that rises by one from case to case of a stratum; causes take turns by it.
     seed : int
         Seed of the challenge.
     samples : int
@@ -153,7 +153,8 @@ def make_plan(cases: int, seed: int, mix: str = "all", samples: int = 3000) -> l
         raise ValueError(f"cases: found {cases}, expected a whole number not below zero")
     strata = MIXES[mix]()
     one_turn = [k for k, stratum in enumerate(strata) for _ in range(stratum.weight)]
-    seen = [0] * len(strata)
+    # Each stratum begins with another cause, so that a short plan sees many of them.
+    seen = [5 * k for k in range(len(strata))]
     entries: list[Entry] = []
     cycle = 0
     while len(entries) < cases:
