@@ -108,16 +108,16 @@ fn slip_state<'py>(
 #[pyfunction]
 fn play<'py>(
     py: Python<'py>,
-    input: Column<'py>,
+    signal: Column<'py>,
     half_width: f64,
     restart: Flags<'py>,
     start: Column<'py>,
 ) -> PyResult<Reals<'py>> {
-    let n = input.len()?;
+    let n = signal.len()?;
     same_length(n, &[restart.len()?, start.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::play(
-        input.as_slice()?,
+        signal.as_slice()?,
         half_width,
         restart.as_slice()?,
         start.as_slice()?,
@@ -130,16 +130,16 @@ fn play<'py>(
 #[pyfunction]
 fn creep_state<'py>(
     py: Python<'py>,
-    input: Column<'py>,
+    signal: Column<'py>,
     time: Column<'py>,
     restart: Flags<'py>,
     time_constant: f64,
 ) -> PyResult<Reals<'py>> {
-    let n = input.len()?;
+    let n = signal.len()?;
     same_length(n, &[time.len()?, restart.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::creep_state(
-        input.as_slice()?,
+        signal.as_slice()?,
         time.as_slice()?,
         restart.as_slice()?,
         time_constant,
