@@ -21,11 +21,14 @@ class FreeForm:
         Where it sits, in words for a reader.
     make : callable
         Columns [deg] for a history.
+    positive : bool
+        Whether its amplitude cannot be negative.
     """
 
     family: str
     place: str
     make: Callable[[History], Floats]
+    positive: bool = False
 
 
 def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
@@ -130,12 +133,15 @@ def _clips(history: History) -> Iterator[FreeForm]:
                 "saturation at the end of the range",
                 f"beyond {share * top:.3g} N m",
                 partial(_over, start=share * top, flank=flank),
+                positive=True,
             )
 
 
 def _over(history: History, start: float, flank: int) -> Floats:
-    over = np.maximum(np.abs(history.applied_nm) - start, 0.0)
-    return (over * (history.side if flank == 0 else (history.side == flank)))[:, None]
+    # A sensor at its limit shows too little, never too much.
+    over = -np.maximum(np.abs(history.applied_nm) - start, 0.0)
+    here = 1.0 if flank == 0 else (history.side == flank)
+    return np.asarray(over * history.side * here)[:, None]
 
 
 def _curves(history: History) -> Iterator[FreeForm]:
