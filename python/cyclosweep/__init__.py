@@ -6,6 +6,7 @@ import cyclosweep._core as _core
 from cyclosweep.dataset import scan_dataset
 from cyclosweep.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.errors import DesignError, InputError, SweepError
+from cyclosweep.reference.validation import validate
 from cyclosweep.scan import scan, sweep
 from cyclosweep.shards import shard, sink
 from cyclosweep.space import Space, linspace
@@ -37,4 +38,5 @@ __all__ = [
     "shard",
     "sink",
     "sweep",
+    "validate",
 ]

@@ -190,10 +190,12 @@ def write_part(dataset: Dataset, part: Part) -> Record:
 
     A lock that dies with its process keeps two writers from the same part.
     """
-    with FileLock(dataset.folder / f".{part.name}.lock"):
-        record = dataset.record(part) or dataset.write(part)
-    (dataset.folder / f".{part.name}.lock").unlink(missing_ok=True)
-    return record
+    lock = dataset.folder / f".{part.name}.lock"
+    with FileLock(lock):
+        try:
+            return dataset.record(part) or dataset.write(part)
+        finally:
+            lock.unlink(missing_ok=True)
 
 
 def run_shards(

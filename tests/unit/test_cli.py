@@ -1,0 +1,166 @@
+"""What a user types: exit statuses, one-line errors, nothing lost."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import cyclosweep as cs
+
+STUDY = """
+drive = "reference-87"
+[sample]
+method = "grid"
+[axes]
+eccentricity_mm = { from = 0.3, to = 0.8, steps = 50 }
+output_pin_count = { values = [6, 8, 9] }
+[objective]
+minimise = "twist_1tn_deg"
+"""
+
+
+def run(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "cyclosweep", *arguments],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        check=False,
+    )
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    return path
+
+
+def assert_one_line(result: subprocess.CompletedProcess[str], status: int, *words: str) -> None:
+    assert result.returncode == status, result.stderr
+    assert result.stdout == ""
+    lines = result.stderr.strip().splitlines()
+    assert len(lines) == 1, result.stderr
+    for word in words:
+        assert word in lines[0]
+
+
+def test_sweep_writes_and_repeats(study: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    first = run("sweep", str(study), "--out", str(out), "--json")
+    assert first.returncode == 0, first.stderr
+    summary = json.loads(first.stdout)
+    assert summary["rows"] == 150
+    assert summary["status"] == {"ok": 150}
+    assert len(summary["best"]) == 10
+    again = run("sweep", str(study), "--out", str(out), "--json")
+    assert json.loads(again.stdout) == summary
+    best = cs.scan_dataset(out).sort("twist_1tn_deg").first().collect()
+    assert best["variant"].item() == summary["best"][0]["variant"]
+
+
+def test_rows_limits_the_study(study: Path, tmp_path: Path) -> None:
+    result = run("sweep", str(study), "--out", str(tmp_path / "o"), "--rows", "7", "--json")
+    assert json.loads(result.stdout)["rows"] == 7
+
+
+def test_shards_make_up_the_sweep(study: Path, tmp_path: Path) -> None:
+    for index in ("1", "0"):
+        result = run(
+            "shard", str(study), "--out", str(tmp_path / "s"), "--index", index, "--of", "2"
+        )
+        assert result.returncode == 0, result.stderr
+    run("sweep", str(study), "--out", str(tmp_path / "w"))
+    sharded = cs.scan_dataset(tmp_path / "s").collect()
+    assert sharded.equals(cs.scan_dataset(tmp_path / "w").collect())
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("eccentricity_mm = { from = 0.3, to = 'x', steps = 5 }", ("eccentricity_mm.to", "'x'")),
+        (
+            "excentricity_mm = { from = 0.3, to = 0.8, steps = 5 }",
+            ("did you mean eccentricity_mm",),
+        ),
+        ("eccentricity_mm = { from = 0.3, to = 0.8 }", ("eccentricity_mm.steps", "missing")),
+        ("eccentricity_mm = { values = [] }", ("eccentricity_mm.values",)),
+        ("eccentricity_mm = { from = 0.3, to = 0.8, stepz = 5 }", ("stepz", "unknown key")),
+        ("output_pin_count = { from = 6, to = 9, steps = 5 }", ("whole",)),
+        ("eccentricity_mm = [", ("not valid TOML", "line")),
+    ],
+)
+def test_a_wrong_study_is_one_line(tmp_path: Path, line: str, words: tuple[str, ...]) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(f"[axes]\n{line}\n")
+    result = run("sweep", str(path), "--out", str(tmp_path / "out"))
+    assert_one_line(result, 2, str(path), *words)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_wrong_drive_is_one_line(study: Path, tmp_path: Path) -> None:
+    drive = tmp_path / "drive.toml"
+    cs.Drive.reference_87().to_toml(drive)
+    for old, new, words in (
+        ("output_pin_diameter_mm = 16.0", "output_pin_diameter_mm = -16.0", ("-16.0", "greater")),
+        ("output_pin_diameter_mm = 16.0", "output_pin_diameter_mm = '16'", ("'16'", "number")),
+        ("output_pin_diameter_mm = 16.0", "", ("output_pin_diameter_mm", "missing")),
+        ('kind = "frustum"', 'kind = "cone"', ("shaft.3", "cone", "frustum")),
+    ):
+        text = drive.read_text().replace(old, new)
+        wrong = tmp_path / "wrong.toml"
+        wrong.write_text(text)
+        path = tmp_path / "s.toml"
+        path.write_text(STUDY.replace("reference-87", "wrong.toml"))
+        result = run("sweep", str(path), "--out", str(tmp_path / "out"))
+        assert_one_line(result, 2, str(wrong), *words)
+        assert_one_line(run("validate", "--drive", str(wrong)), 2, str(wrong), *words)
+
+
+def test_another_study_in_the_folder_is_refused_untouched(study: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    run("sweep", str(study), "--out", str(out))
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    other = tmp_path / "other.toml"
+    other.write_text(STUDY.replace("0.8", "0.7"))
+    assert_one_line(run("sweep", str(other), "--out", str(out)), 2, str(out), "--fresh")
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    assert run("sweep", str(other), "--out", str(out), "--fresh").returncode == 0
+
+
+def test_a_file_in_place_of_the_folder_is_refused(study: Path, tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("precious")
+    assert_one_line(run("sweep", str(study), "--out", str(file)), 2, str(file), "folder")
+    assert file.read_text() == "precious"
+
+
+def test_validate_counts_what_is_decided(tmp_path: Path) -> None:
+    result = run("validate", "--json")
+    assert result.returncode == 0
+    report = json.loads(result.stdout)
+    assert report["ok"] is True
+    facts = {fact["fact"]: fact for fact in report["facts"]}
+    assert facts["nominal input torque T_N"]["computed"] == pytest.approx(7.2575, abs=5e-5)
+    assert facts["overall efficiency"]["computed"] == pytest.approx(0.9265, abs=5e-5)
+    assert report["sectors"]["reconstruction_ideal"] == [4, 6, 8, 8, 6, 8, 8, 6]
+    assert report["sectors"]["reconstruction_ideal_mean"] == 0.84375 * 8
+    line = facts["twist at 2.5 T_N, 75 to 80 deg"]
+    assert line["mark"] == "assumed"
+    assert 75 <= line["computed"] <= 80
+    silent = facts["theory against experiment at 4 T_N, within"]
+    assert (silent["computed"], silent["ok"]) == (None, None)
+    assert silent["note"]
+
+
+def test_a_broken_fact_fails_the_validation(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.toml"
+    cs.Drive.reference_87().replace(input_power_kw=1.2).to_toml(broken)
+    result = run("validate", "--drive", str(broken), "--json")
+    assert result.returncode == 1
+    failed = [f["fact"] for f in json.loads(result.stdout)["facts"] if f["ok"] is False]
+    assert "nominal input torque T_N" in failed
