@@ -15,7 +15,11 @@ fn main() {
         return;
     };
     let count: usize = count.parse().expect("a number of variants");
-    let study = if what.starts_with("grid") { study::grid() } else { study::sobol() };
+    let study = if what.starts_with("grid") {
+        study::grid()
+    } else {
+        study::sobol()
+    };
     let outputs: Vec<Output> = Output::all(study.loads())
         .into_iter()
         .filter(|output| {

@@ -3,10 +3,12 @@
 //! Angles in this file are in turns (1 turn = 2 pi rad): an eighth of a turn is then a binary
 //! number and the ideal map comes out exact.
 
+use crate::rounding::{ceil, floor};
+
 /// Most output pins a design may have.
 pub const MAX_PINS: usize = 64;
 /// Angles closer than this (turns) count as equal: sectors shorter than it are rounding.
-const TIE: f64 = 1e-12;
+pub(crate) const TIE: f64 = 1e-12;
 
 /// Rule by which a hole-pin contact counts as active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,52 +90,6 @@ pub struct PinMap {
     pub clocking: f64,
 }
 
-/// Windows of one disc's holes by the published map: starts and ends, each ascending (turns).
-struct Windows {
-    starts: [f64; MAX_PINS + 2],
-    ends: [f64; MAX_PINS + 2],
-    len: usize,
-}
-
-impl Windows {
-    #[inline]
-    fn push(&mut self, start: f64, end: f64) {
-        if end > start {
-            self.starts[self.len] = start;
-            self.ends[self.len] = end;
-            self.len += 1;
-        }
-    }
-
-    /// Calls `visit(start, end, count)` for every stretch longer than rounding; count is that of
-    /// one disc. The stretches cover the turn from 0 to 1.
-    #[inline]
-    fn for_each_sector(&self, mut visit: impl FnMut(f64, f64, u32)) {
-        let (mut opened, mut closed, mut from) = (0, 0, 0.0);
-        while opened < self.len || closed < self.len {
-            let opens = if opened < self.len {
-                self.starts[opened]
-            } else {
-                f64::INFINITY
-            };
-            let closes = self.ends[closed];
-            let next = opens.min(closes);
-            if next - from > TIE {
-                visit(from, next, (opened - closed) as u32);
-                from = next;
-            }
-            if opens <= closes {
-                opened += 1;
-            } else {
-                closed += 1;
-            }
-        }
-        if 1.0 - from > TIE {
-            visit(from, 1.0, 0);
-        }
-    }
-}
-
 impl PinMap {
     /// Torque transfer efficiency eta_OP (Eqs. 1-3) of a mean number of active contacts:
     /// `mean / (n_discs N_OP / 2)`, which is Eq. (2) for two discs.
@@ -169,7 +125,7 @@ impl PinMap {
         let fold = gcd(self.pins, self.discs);
         let lattice = f64::from(self.pins / fold * self.discs);
         let width = (high - low) * lattice;
-        let (min, max) = (width.floor() as u32 * fold, width.ceil() as u32 * fold);
+        let (min, max) = (floor(width) as u32 * fold, ceil(width) as u32 * fold);
         if min == max {
             return ActiveCount {
                 mean: f64::from(min),
@@ -185,74 +141,6 @@ impl PinMap {
         };
         let mean = f64::from(fold) * (up(low) - up(high)) / (lattice * travel);
         ActiveCount { mean, min, max }
-    }
-
-    /// Counts by the criterion `published-map`, a reconstruction that matches the published map
-    /// and not the authors' own rule.
-    ///
-    /// Hole angles are reduced to (-180, 180] deg; a hole at or below zero belongs to the left
-    /// half. A left hole's window is `[phi + 90 + delta, phi + 270 - delta] i / (i + 1)`; its
-    /// start is clipped at 0, its end at 180 except for the hole of that half nearest ring pin 0
-    /// (which, at a low ratio, opens a second time before the turn ends). The right half follows
-    /// the same rule on its own holes and is then mirrored, theta -> 360 - theta. One disc's
-    /// count is multiplied by the number of discs.
-    #[inline]
-    #[must_use]
-    pub fn published_map(&self) -> ActiveCount {
-        let windows = self.published_windows();
-        let mut sum = 0.0;
-        for k in 0..windows.len {
-            sum += windows.ends[k] - windows.starts[k];
-        }
-        let (mut min, mut max) = (u32::MAX, 0);
-        windows.for_each_sector(|_, _, count| {
-            min = min.min(count);
-            max = max.max(count);
-        });
-        ActiveCount {
-            mean: sum * f64::from(self.discs),
-            min: min * self.discs,
-            max: max * self.discs,
-        }
-    }
-
-    fn published_windows(&self) -> Windows {
-        let mut windows = Windows {
-            starts: [0.0; MAX_PINS + 2],
-            ends: [0.0; MAX_PINS + 2],
-            len: 0,
-        };
-        let shrink = self.ratio / (self.ratio + 1.0);
-        let pitch = 1.0 / f64::from(self.pins);
-        let (open, close) = (0.25 + self.delta, 0.75 - self.delta);
-        let nearest = self.nearest_left_hole();
-        let left = (((0.5 - TIE + nearest) / pitch).floor() as u32 + 1).min(self.pins);
-        for m in (0..left).rev() {
-            let phi = nearest - f64::from(m) * pitch;
-            let end = (phi + close) * shrink;
-            let end = if m == 0 { end } else { end.min(0.5) };
-            windows.push(((phi + open) * shrink).max(0.0), end);
-        }
-        for m in 0..self.pins - left {
-            let phi = -(nearest + pitch) - f64::from(m) * pitch;
-            let end = (phi + close) * shrink;
-            let end = if m == 0 { end } else { end.min(0.5) };
-            windows.push(1.0 - end, 1.0 - ((phi + open) * shrink).max(0.0));
-        }
-        let again_left = (nearest + 1.0 + open) * shrink;
-        let again_right = (1.0 + open - nearest - pitch) * shrink;
-        if again_left < 1.0 || (left < self.pins && again_right < 1.0) {
-            if again_left < 1.0 {
-                windows.push(again_left, ((nearest + 1.0 + close) * shrink).min(1.0));
-            }
-            if left < self.pins && again_right < 1.0 {
-                let end = ((1.0 + close - nearest - pitch) * shrink).min(1.0);
-                windows.push(1.0 - end, 1.0 - again_right);
-            }
-            windows.starts[..windows.len].sort_unstable_by(f64::total_cmp);
-            windows.ends[..windows.len].sort_unstable_by(f64::total_cmp);
-        }
-        windows
     }
 
     /// Participation of the pins by statics, over one turn of the mesh zone.
@@ -322,10 +210,10 @@ impl PinMap {
     /// Angle (turns) of the left half's hole nearest ring pin 0, above minus one pitch and not
     /// above zero.
     #[inline]
-    fn nearest_left_hole(&self) -> f64 {
+    pub(crate) fn nearest_left_hole(&self) -> f64 {
         let pitch = 1.0 / f64::from(self.pins);
         let base = self.first_hole();
-        let nearest = base - (base / pitch).ceil() * pitch;
+        let nearest = base - ceil(base / pitch) * pitch;
         if nearest < TIE - pitch {
             nearest + pitch
         } else {
@@ -370,7 +258,7 @@ impl PinMap {
 /// Integral of the floor function from 0 to `y`.
 #[inline]
 fn floor_integral(y: f64) -> f64 {
-    let n = y.floor();
+    let n = floor(y);
     n * (0.5 * (n - 1.0) + (y - n))
 }
 
@@ -379,7 +267,7 @@ fn floor_integral(y: f64) -> f64 {
 #[inline]
 fn odd_integral(y: f64, m: f64) -> f64 {
     use std::f64::consts::PI;
-    let steps = y.floor();
+    let steps = floor(y);
     let rest = y - steps;
     let swing = 0.25 / (PI / m).cos();
     // One step holds (m + 1)/2 loaded points over its first half and (m - 1)/2 over its second.

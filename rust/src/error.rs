@@ -170,6 +170,17 @@ impl Status {
         Status::KeywayTooDeep,
     ];
 
+    /// This, or the other where this is ok.
+    #[inline(always)]
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        if matches!(self, Status::Ok) {
+            other
+        } else {
+            self
+        }
+    }
+
     /// The word that stands in the table.
     #[must_use]
     pub const fn label(self) -> &'static str {
@@ -237,24 +248,24 @@ pub fn finite(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
 ///
 /// # Errors
 /// [`DesignError::NonFinite`] or [`DesignError::NonPositive`].
-#[inline]
+#[inline(always)]
 pub fn positive(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
-    if finite(parameter, value)? > 0.0 {
-        Ok(value)
-    } else {
-        Err(DesignError::NonPositive { parameter, value })
+    if value > 0.0 && value < f64::INFINITY {
+        return Ok(value);
     }
+    finite(parameter, value)?;
+    Err(DesignError::NonPositive { parameter, value })
 }
 
 /// Refuses a value that is not finite or is below zero.
 ///
 /// # Errors
 /// [`DesignError::NonFinite`] or [`DesignError::Negative`].
-#[inline]
+#[inline(always)]
 pub fn non_negative(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
-    if finite(parameter, value)? >= 0.0 {
-        Ok(value)
-    } else {
-        Err(DesignError::Negative { parameter, value })
+    if value >= 0.0 && value < f64::INFINITY {
+        return Ok(value);
     }
+    finite(parameter, value)?;
+    Err(DesignError::Negative { parameter, value })
 }

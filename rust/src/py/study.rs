@@ -1,6 +1,6 @@
 //! `_core.Study`: a study's definition in, columns as NumPy arrays out.
 
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 
@@ -118,13 +118,23 @@ impl PyStudy {
         outputs: &[String],
     ) -> PyResult<Evaluated<'py>> {
         let outputs = self.chosen(outputs)?;
-        let columns = py.detach(|| self.study.evaluate(rows, len, &outputs));
-        let values = columns
-            .values
-            .into_iter()
-            .map(|column| column.into_pyarray(py))
+        // NumPy allocates: it asks for huge pages, and a table's time is mostly page faults.
+        let status = PyArray1::<u8>::zeros(py, len, false);
+        let columns: Vec<_> = outputs
+            .iter()
+            .map(|_| PyArray1::<f64>::zeros(py, len, false))
             .collect();
-        Ok((columns.status.into_pyarray(py), columns.any_refused, values))
+        let any_refused = {
+            let mut status = status.readwrite();
+            let mut columns: Vec<_> = columns.iter().map(|column| column.readwrite()).collect();
+            let status = status.as_slice_mut()?;
+            let columns = columns
+                .iter_mut()
+                .map(|column| column.as_slice_mut())
+                .collect::<Result<Vec<_>, _>>()?;
+            py.detach(|| self.study.evaluate_into(rows, &outputs, status, columns))
+        };
+        Ok((status, any_refused, columns))
     }
 }
 
