@@ -284,9 +284,21 @@ fn odd_integral(y: f64, m: f64) -> f64 {
         }
 }
 
-#[inline]
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
+/// Greatest common divisor of the pins and the discs, of which there are one to four in a design.
+#[inline(always)]
+fn gcd(pins: u32, discs: u32) -> u32 {
+    match discs {
+        1 => 1,
+        2 => 2 - pins % 2,
+        4 => 1 << pins.trailing_zeros().min(2),
+        _ => {
+            let (mut a, mut b) = (pins, discs);
+            while b != 0 {
+                (a, b) = (b, a % b);
+            }
+            a
+        }
+    }
 }
 
 #[cfg(test)]

@@ -15,9 +15,9 @@ use crate::space::{Rows, Space};
 use crate::stages::{Geometry, Map, PinBending, Rating, Shaft, Stage};
 
 /// Variants computed together: their stages stay in the cache.
-pub(crate) const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 128;
 /// Variants a thread takes at a time.
-const TASK: usize = 16 * BLOCK;
+const TASK: usize = 32 * BLOCK;
 
 /// What a limit of a study looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]

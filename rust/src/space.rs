@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
+use crate::rounding::floor;
 use crate::sampling::{MAX_SOBOL_AXES, Permutation, SobolAxis, key, random, unit_interval};
 
 /// Most variants a space may hold.
@@ -73,7 +74,7 @@ impl Values {
     pub fn at(&self, u: f64) -> f64 {
         match self {
             Values::Interval { low, high } => low + u * (high - low),
-            Values::Whole { low, high } => low + (u * (high - low + 1.0)).floor(),
+            Values::Whole { low, high } => low + floor(u * (high - low + 1.0)),
             Values::List(values) => values[(u * values.len() as f64) as usize],
             Values::Linspace { steps, .. } => self.nth((u * *steps as f64) as u64),
         }
