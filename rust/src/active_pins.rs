@@ -120,10 +120,11 @@ impl PinMap {
     /// All holes of all discs stand on one lattice of lcm(N, n) points, each gcd(N, n)-fold, so
     /// the count is a difference of two floor functions: its extremes are the window's width in
     /// lattice steps rounded down and up, and its integral is that of a floor function.
-    #[inline]
+    #[inline(always)]
     fn equal_windows(&self, low: f64, high: f64) -> ActiveCount {
         let fold = gcd(self.pins, self.discs);
-        let lattice = f64::from(self.pins / fold * self.discs);
+        let per_pitch = small_quotient(self.discs, fold);
+        let lattice = f64::from(self.pins) * per_pitch;
         let width = (high - low) * lattice;
         let (min, max) = (floor(width) as u32 * fold, ceil(width) as u32 * fold);
         if min == max {
@@ -133,11 +134,11 @@ impl PinMap {
                 max,
             };
         }
-        let origin = self.first_hole();
+        let origin = self.clocking * lattice + 0.5 * per_pitch;
         let travel = 1.0 + 1.0 / self.ratio;
         let up = |edge: f64| {
-            floor_integral((travel - origin - edge) * lattice)
-                - floor_integral((-origin - edge) * lattice)
+            floor_integral((travel - edge) * lattice - origin)
+                - floor_integral(-edge * lattice - origin)
         };
         let mean = f64::from(fold) * (up(low) - up(high)) / (lattice * travel);
         ActiveCount { mean, min, max }
@@ -200,22 +201,22 @@ impl PinMap {
     #[must_use]
     pub fn first_hole_window(&self) -> (f64, f64) {
         let shrink = self.ratio / (self.ratio + 1.0);
-        let nearest = self.nearest_left_hole();
+        let nearest = self.nearest_left_hole() / f64::from(self.pins);
         (
             (nearest + 0.25 + self.delta) * shrink,
             (nearest + 0.75 - self.delta) * shrink,
         )
     }
 
-    /// Angle (turns) of the left half's hole nearest ring pin 0, above minus one pitch and not
-    /// above zero.
-    #[inline]
+    /// Angle (pitches) of the left half's hole nearest ring pin 0, above minus one and not above
+    /// zero.
+    #[inline(always)]
     pub(crate) fn nearest_left_hole(&self) -> f64 {
-        let pitch = 1.0 / f64::from(self.pins);
-        let base = self.first_hole();
-        let nearest = base - ceil(base / pitch) * pitch;
-        if nearest < TIE - pitch {
-            nearest + pitch
+        let pins = f64::from(self.pins);
+        let base = self.clocking * pins + 0.5;
+        let nearest = base - ceil(base);
+        if nearest < TIE * pins - 1.0 {
+            nearest + 1.0
         } else {
             nearest
         }
@@ -282,6 +283,12 @@ fn odd_integral(y: f64, m: f64) -> f64 {
         } else {
             first(0.5) + second(rest - 0.5)
         }
+}
+
+/// `whole / part` of two small counts without a division.
+#[inline(always)]
+fn small_quotient(whole: u32, part: u32) -> f64 {
+    f64::from(if part == 1 { whole } else { whole / part })
 }
 
 /// Greatest common divisor of the pins and the discs, of which there are one to four in a design.

@@ -75,9 +75,8 @@ struct Half {
 
 impl Half {
     #[inline(always)]
-    fn of(map: &PinMap, nearest: f64, holes: f64) -> Option<Self> {
+    fn of(map: &PinMap, nearest: f64, holes: f64, spin: f64) -> Option<Self> {
         let pins = f64::from(map.pins);
-        let spin = pins / map.ratio;
         let end = 0.5 * (pins + spin);
         let opens = nearest + (0.25 + map.delta) * pins;
         let closes = nearest + (0.75 - map.delta) * pins;
@@ -163,14 +162,15 @@ impl PinMap {
     #[inline]
     fn counts_in_closed_form(&self) -> Option<ActiveCount> {
         let pins = f64::from(self.pins);
-        let nearest = self.nearest_left_hole() * pins;
+        let nearest = self.nearest_left_hole();
         let holes = (floor(0.5 * pins - TIE * pins + nearest) + 1.0).min(pins);
-        let left = Half::of(self, nearest, holes)?;
-        let right = Half::of(self, -nearest - 1.0, pins - holes)?;
+        let spin = pins / self.ratio;
+        let left = Half::of(self, nearest, holes, spin)?;
+        let right = Half::of(self, -nearest - 1.0, pins - holes, spin)?;
         let (low_left, high_left) = left.extremes(right.late)?;
         let (low_right, high_right) = right.extremes(left.late)?;
         let discs = f64::from(self.discs);
-        let travel = pins * (1.0 + 1.0 / self.ratio);
+        let travel = pins + spin;
         Some(ActiveCount {
             mean: discs * (left.open_length + right.open_length) / travel,
             min: low_left.min(low_right) as u32 * self.discs,
@@ -205,7 +205,7 @@ impl PinMap {
         let shrink = self.ratio / (self.ratio + 1.0);
         let pitch = 1.0 / f64::from(self.pins);
         let (open, close) = (0.25 + self.delta, 0.75 - self.delta);
-        let nearest = self.nearest_left_hole();
+        let nearest = self.nearest_left_hole() * pitch;
         let left = (((0.5 - TIE + nearest) / pitch).floor() as u32 + 1).min(self.pins);
         for m in (0..left).rev() {
             let phi = nearest - f64::from(m) * pitch;

@@ -73,15 +73,15 @@ impl Segment {
 #[inline]
 #[must_use]
 pub fn keyway_factor(length: f64, diameter: f64, depth: f64, coefficient: f64) -> f64 {
-    (length + coefficient * depth * length / diameter) / diameter.powi(4)
+    length * (diameter + coefficient * depth) / diameter.powi(5)
 }
 
 /// Eq. (7) without 32/(pi G): `l / (3 d^3 D) (1 + d/D + (d/D)^2)`, the integral of dl / D(l)^4.
 #[inline]
 #[must_use]
 pub fn frustum_factor(length: f64, diameter: f64, end_diameter: f64) -> f64 {
-    let r = diameter / end_diameter;
-    length / (3.0 * diameter.powi(3) * end_diameter) * (1.0 + r + r * r)
+    let squares = end_diameter * end_diameter + end_diameter * diameter + diameter * diameter;
+    length * squares / (3.0 * (diameter * end_diameter).powi(3))
 }
 
 /// The shoulder's term of Eq. (6) without 32/(pi G): `(1 - (d/D)^3) / (8 d^3)` for d <= D.
@@ -90,7 +90,7 @@ pub fn frustum_factor(length: f64, diameter: f64, end_diameter: f64) -> f64 {
 #[inline]
 #[must_use]
 pub fn shoulder_factor(diameter: f64, larger_diameter: f64) -> f64 {
-    (1.0 - (diameter / larger_diameter).powi(3)) / (8.0 * diameter.powi(3))
+    (larger_diameter.powi(3) - diameter.powi(3)) / (8.0 * (diameter * larger_diameter).powi(3))
 }
 
 /// Eq. (6) without 32/(pi G): `l1 / d^4 + l2 / D^4 + shoulder` for d < D.

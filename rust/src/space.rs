@@ -68,6 +68,23 @@ impl Values {
         }
     }
 
+    /// Turns numbers in [0, 1) into the values there.
+    fn place(&self, units: &mut [f64]) {
+        match self {
+            // The same as `at`, with the choice outside the loop.
+            Values::Interval { low, high } => {
+                for u in units {
+                    *u = low + *u * (high - low);
+                }
+            }
+            _ => {
+                for u in units {
+                    *u = self.at(*u);
+                }
+            }
+        }
+    }
+
     /// The value at `u` in [0, 1).
     #[inline]
     #[must_use]
@@ -276,11 +293,13 @@ impl Space {
                 }
             }
             (Points::Sobol(sequences), Rows::From(start)) => {
-                let mut bits = sequences[axis].bits(start);
+                let sequence = &sequences[axis];
+                let mut bits = sequence.bits(start);
                 for (value, index) in out.iter_mut().zip(start..) {
-                    *value = values.at(unit_interval(bits));
-                    bits = sequences[axis].next_bits(bits, index);
+                    *value = unit_interval(bits);
+                    bits = sequence.next_bits(bits, index);
                 }
+                values.place(out);
             }
             (Points::Sobol(sequences), Rows::At(indices)) => {
                 for (value, index) in out.iter_mut().zip(indices) {

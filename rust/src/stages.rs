@@ -237,7 +237,7 @@ impl Map {
             ratio,
             discs: discs as u32,
             pins: pins as u32,
-            delta: crossing_angle(e, circle)? / std::f64::consts::TAU,
+            delta: crossing_angle(e, circle)? * std::f64::consts::TAU.recip(),
             clocking: finite("hole_clocking", inputs.get(Input::HoleClocking))?,
         };
         let code = finite("criterion", inputs.get(Input::Criterion))?;
