@@ -52,8 +52,7 @@ impl Pin {
         let (outer, inner) = (self.diameter * self.diameter, self.bore * self.bore);
         let sum = outer + inner;
         let bending = 16.0 * self.length * self.length * sum;
-        let shear =
-            (7.0 + 6.0 * poisson) * (sum * sum) + (20.0 + 12.0 * poisson) * (outer * inner);
+        let shear = (7.0 + 6.0 * poisson) * (sum * sum) + (20.0 + 12.0 * poisson) * (outer * inner);
         let below = 3.0 * PI * youngs_modulus * (sum * sum) * (outer - inner);
         4.0 * self.length * (bending + shear) / below
     }

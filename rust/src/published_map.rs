@@ -3,7 +3,7 @@
 //! Angles are in turns, as in [`crate::active_pins`].
 
 use crate::active_pins::{ActiveCount, MAX_PINS, PinMap, TIE};
-use crate::rounding::{ceil, floor};
+use crate::rounding::{ceil, floor, larger, smaller};
 
 /// Whole numbers of pitches closer than this to a tie are left to the walk over all windows.
 const NEAR_TIE: f64 = 1e-9;
@@ -91,9 +91,9 @@ impl Half {
         if !is_plain {
             return None;
         }
-        let opened_late = ceil(opens).min(holes);
-        let still_open = (floor(closes - end) + 1.0).clamp(0.0, holes);
-        let clipped = still_open.max(1.0);
+        let opened_late = smaller(ceil(opens), holes);
+        let still_open = smaller(larger(floor(closes - end) + 1.0, 0.0), holes);
+        let clipped = larger(still_open, 1.0);
         let ends = (clipped - 1.0) * end + (holes - clipped) * closes + closes
             - 0.5 * (holes * (holes - 1.0) - clipped * (clipped - 1.0));
         let starts = opened_late * (opens - 0.5 * (opened_late - 1.0));
@@ -120,11 +120,11 @@ impl Half {
             return None;
         }
         if joins > self.end {
-            return Some((self.at_start.min(self.at_end), self.holes));
+            return Some((smaller(self.at_start, self.at_end), self.holes));
         }
-        let before = (floor(self.closes - joins) + 1.0).min(self.holes);
+        let before = smaller(floor(self.closes - joins) + 1.0, self.holes);
         let most = if joins < self.first_close { 1.0 } else { 0.0 };
-        let least = self.at_start.min(before).min(self.at_end + 1.0);
+        let least = smaller(smaller(self.at_start, before), self.at_end + 1.0);
         Some((least, self.holes + most))
     }
 }
@@ -163,7 +163,7 @@ impl PinMap {
     fn counts_in_closed_form(&self) -> Option<ActiveCount> {
         let pins = f64::from(self.pins);
         let nearest = self.nearest_left_hole();
-        let holes = (floor(0.5 * pins - TIE * pins + nearest) + 1.0).min(pins);
+        let holes = smaller(floor(0.5 * pins - TIE * pins + nearest) + 1.0, pins);
         let spin = pins / self.ratio;
         let left = Half::of(self, nearest, holes, spin)?;
         let right = Half::of(self, -nearest - 1.0, pins - holes, spin)?;
@@ -173,8 +173,8 @@ impl PinMap {
         let travel = pins + spin;
         Some(ActiveCount {
             mean: discs * (left.open_length + right.open_length) / travel,
-            min: low_left.min(low_right) as u32 * self.discs,
-            max: high_left.max(high_right) as u32 * self.discs,
+            min: smaller(low_left, low_right) as u32 * self.discs,
+            max: larger(high_left, high_right) as u32 * self.discs,
         })
     }
 

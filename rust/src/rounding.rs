@@ -1,5 +1,5 @@
-//! Rounding to whole numbers in a few instructions: the baseline x86-64 has none for it, and a
-//! call into the mathematics library costs more than the rest of a formula.
+//! Rounding and comparing in a few instructions: the baseline x86-64 has no rounding, and a call
+//! into the mathematics library costs more than the rest of a formula.
 
 /// 1.5 * 2^52: adding it leaves no bit below one.
 const SHIFT: f64 = 6_755_399_441_055_744.0;
@@ -22,6 +22,18 @@ pub fn floor(x: f64) -> f64 {
 pub fn ceil(x: f64) -> f64 {
     let near = nearest(x);
     if near < x { near + 1.0 } else { near }
+}
+
+/// The smaller of two numbers, neither NaN: one instruction where `f64::min` takes five.
+#[inline(always)]
+pub fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, neither NaN.
+#[inline(always)]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// True for a whole number from `low` to `high`, themselves below 2^51.

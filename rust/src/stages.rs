@@ -6,7 +6,7 @@ use crate::error::{DesignError, Status, finite, non_negative, positive};
 use crate::hypotrochoid::crossing_angle;
 use crate::inputs::{Input, Inputs};
 use crate::pin::{Pin, pin_compliance};
-use crate::rounding::is_whole_within;
+use crate::rounding::{is_whole_within, smaller};
 use crate::shaft_plan::ShaftPlan;
 
 /// What a stage gives for one variant. Where the status is not ok the rest is meaningless.
@@ -125,7 +125,7 @@ impl Geometry {
         Ok(Self {
             status: Status::Ok,
             hole_diameter: hole,
-            hole_web: between.min(outer).min(inner),
+            hole_web: smaller(smaller(between, outer), inner),
             short_width_coefficient: k1,
         })
     }

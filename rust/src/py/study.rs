@@ -20,11 +20,7 @@ pub struct PyStudy {
 /// One axis as Python describes it: (name, form, numbers).
 type AxisSpec<'py> = (String, String, PyReadonlyArray1<'py, f64>);
 /// The status codes, whether any variant is refused, and the columns asked for.
-type Evaluated<'py> = (
-    Bound<'py, PyArray1<u8>>,
-    bool,
-    Bound<'py, PyArray2<f64>>,
-);
+type Evaluated<'py> = (Bound<'py, PyArray1<u8>>, bool, Bound<'py, PyArray2<f64>>);
 
 fn values_of(form: &str, numbers: &[f64]) -> PyResult<Values> {
     match (form, numbers) {
