@@ -13,12 +13,18 @@ __all__ = [
     "Study",
     "__version__",
     "active_pins",
+    "creep_state",
     "frustum_compliance",
     "hole_locus",
     "input_table",
+    "kernel_evaluations",
     "keyway_compliance",
     "output_table",
+    "play",
+    "remembered_datum",
     "sectors",
+    "slip_state",
+    "solve_slip",
     "status_labels",
     "step_compliance",
 ]
@@ -57,6 +63,7 @@ class Study:
     ) -> _Evaluated: ...
     def explain(self, index: int) -> str | None: ...
 
+def kernel_evaluations() -> tuple[int, int]: ...
 def input_table() -> list[tuple[str, bool, bool]]: ...
 def output_table(loads: Sequence[float]) -> list[tuple[str, str]]: ...
 def status_labels() -> list[str]: ...
@@ -82,3 +89,38 @@ def sectors(
 def hole_locus(
     eccentricity: float, pin_circle_radius: float, ratio: float, hole_angle: float, theta: _Reals
 ) -> _Reals: ...
+def solve_slip(
+    torque: _Reals,
+    offset: _Reals,
+    restart: npt.NDArray[np.bool_],
+    start_angle: _Reals,
+    slip_angle: _Reals,
+    share: _Reals,
+    *,
+    free_play: float,
+    compliance: float,
+    limit: float,
+    load_factor: float = 0.0,
+    growth: float = 0.0,
+    reference_torque: float = 1.0,
+) -> tuple[_Reals, _Reals]: ...
+def slip_state(
+    angle: _Reals,
+    restart: npt.NDArray[np.bool_],
+    start_angle: _Reals,
+    slip_angle: _Reals,
+    share: _Reals,
+) -> _Reals: ...
+def play(
+    input: _Reals,
+    half_width: float,
+    restart: npt.NDArray[np.bool_],
+    start: _Reals,
+) -> _Reals: ...
+def creep_state(
+    input: _Reals,
+    time: _Reals,
+    restart: npt.NDArray[np.bool_],
+    time_constant: float,
+) -> _Reals: ...
+def remembered_datum(push: _Reals, memory: float) -> _Reals: ...

@@ -101,28 +101,24 @@ class Dataset:
         self.folder.mkdir(parents=True, exist_ok=True)
         found = sorted(self.folder.glob("part-*.parquet"))
         manifest = self.folder / _MANIFEST
+        for path in found:
+            if _is_foreign(path):
+                raise InputError(f"{path}: not written by cyclosweep, expected an empty folder")
         if fresh:
             for path in [*found, *self.folder.glob("part-*.tmp"), manifest]:
                 path.unlink(missing_ok=True)
-            found = []
         elif (found or manifest.exists()) and not resume:
             raise InputError(f"{self.folder}: holds a study, expected an empty folder")
         else:
             self._refuse_another_study(found, manifest)
-        if not manifest.exists():
-            self._write_manifest([])
+        if read_manifest(manifest) is None:
+            self.write_manifest([])
 
     def _refuse_another_study(self, found: list[Path], manifest: Path) -> None:
-        identities = []
-        if manifest.exists():
-            try:
-                identities.append(json.loads(manifest.read_text(encoding="utf-8")))
-            except (ValueError, OSError):
-                manifest.unlink()
-        if found and (footer := read_footer(found[0])) is not None:
-            identities.append(footer)
-        for identity in identities:
-            if not isinstance(identity, dict) or identity.get("study") != self.study.hash:
+        # Broken files say nothing; the first whole part speaks for the others.
+        identities = [read_manifest(manifest), next(filter(None, map(read_footer, found)), None)]
+        for identity in filter(None, identities):
+            if identity.get("study") != self.study.hash:
                 raise InputError(
                     f"{self.folder}: holds another study, expected this one or an empty folder; "
                     "--fresh deletes what is there"
@@ -143,7 +139,13 @@ class Dataset:
         if footer is None or footer.get("study") != self.study.hash:
             return None
         record = Record.from_json(footer["record"])
-        return record if (record.start, record.stop) == (part.start, part.stop) else None
+        if (record.start, record.stop) != (part.start, part.stop):
+            return None
+        if footer.get("objective") != self._objective():
+            # The objective decides no numbers: only the best variants are others now.
+            rows = pl.read_parquet(self.folder / part.name)
+            return record_of(rows, part.start, part.stop, self.study)
+        return record
 
     def write(self, part: Part) -> Record:
         """Compute a part and put it in place, whole or not at all.
@@ -169,7 +171,11 @@ class Dataset:
 
     def put(self, part: Part, rows: pl.DataFrame, record: Record) -> Record:
         """Put computed rows in place as a part."""
-        footer = {**self._identity(), "record": record.to_json()}
+        footer = {
+            **self._identity(),
+            "objective": self._objective(),
+            "record": record.to_json(),
+        }
         final = self.folder / part.name
         unfinished = self.folder / f"{part.name}.{socket.gethostname()}-{os.getpid()}.tmp"
         try:
@@ -193,13 +199,22 @@ class Dataset:
             "columns": self.study.units(),
         }
 
+    def _objective(self) -> list[str | bool] | None:
+        objective = self.study.objective
+        return None if objective is None else [objective.column, objective.maximise]
+
+    def records(self) -> list[Record]:
+        """Return the records of all whole parts, in order."""
+        return [record for part in self.parts() if (record := self.record(part)) is not None]
+
     def finish(self, records: list[Record]) -> None:
         """Write the manifest of what is there and sweep up after killed writers."""
         for path in self.folder.glob("part-*.tmp"):
             path.unlink(missing_ok=True)
-        self._write_manifest(records)
+        self.write_manifest(records)
 
-    def _write_manifest(self, records: list[Record]) -> None:
+    def write_manifest(self, records: list[Record]) -> None:
+        """Write the manifest of these parts."""
         rows = sum(record.stop - record.start for record in records)
         manifest = {
             **self._identity(),
@@ -232,6 +247,23 @@ def read_footer(path: Path) -> dict[str, Any] | None:
     return footer if isinstance(footer, dict) and footer.get("format") == _FORMAT else None
 
 
+def read_manifest(path: Path) -> dict[str, Any] | None:
+    """What a manifest says; None where there is none or it is broken."""
+    try:
+        manifest = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return manifest if isinstance(manifest, dict) else None
+
+
+def _is_foreign(path: Path) -> bool:
+    """Whether a file is whole and not of a sweep, so that it must not be touched."""
+    try:
+        return _FOOTER not in pl.read_parquet_metadata(path)
+    except (OSError, pl.exceptions.PolarsError):
+        return False
+
+
 def scan_dataset(folder: str | Path) -> pl.LazyFrame:
     """Read a finished or unfinished study lazily.
 
@@ -250,7 +282,8 @@ def scan_dataset(folder: str | Path) -> pl.LazyFrame:
     InputError
         When the folder holds no part of a study.
     """
-    paths = sorted(Path(folder).glob("part-*.parquet"))
+    found = sorted(Path(folder).glob("part-*.parquet"))
+    paths = [path for path in found if read_footer(path) is not None]
     if not paths:
         raise InputError(f"{folder}: no parts of a study there")
     return pl.scan_parquet(paths)

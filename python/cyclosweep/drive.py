@@ -9,6 +9,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
+import numpy as np
+import numpy.typing as npt
 import polars as pl
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
@@ -353,7 +355,11 @@ class Drive(_Part):
                 table[name] = value
             else:
                 raise InputError(f"{name}: no such input of this drive")
-            table["provenance"].pop(name, None)
+            table["provenance"] = {
+                key: mark
+                for key, mark in table["provenance"].items()
+                if key != name and not (name == "shaft" and key.startswith("shaft_"))
+            }
         return self._from_table(table, self.name)
 
     @property
@@ -495,6 +501,44 @@ class Drive(_Part):
             high,
             mean / (0.5 * contacts),
             sectors.with_columns(pl.col("start_deg", "end_deg") * 360),
+        )
+
+    def hole_locus(self, theta_deg: npt.ArrayLike, hole: int = 0) -> pl.DataFrame:
+        """Path of a hole's centre, a hypotrochoid that crosses the pins' pitch circle.
+
+        Parameters
+        ----------
+        theta_deg : array_like
+            Positions of the mesh zone [deg], clockwise from ring pin 0.
+        hole : int
+            Which hole of disc 1, from 0.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``theta_deg``, ``x_mm``, ``y_mm``, ``radius_mm``.
+
+        Examples
+        --------
+        >>> Drive.reference_87().hole_locus([0.0, 90.0]).height
+        2
+        """
+        theta = np.atleast_1d(np.asarray(theta_deg, dtype=np.float64))
+        angle = math.radians(self.hole_clocking_deg + (hole + 0.5) * 360 / self.output_pin_count)
+        centres = _core.hole_locus(
+            self.eccentricity_mm,
+            self.output_pin_circle_radius_mm,
+            self.ratio,
+            angle,
+            np.radians(theta),
+        )
+        return pl.DataFrame(
+            {
+                "theta_deg": theta,
+                "x_mm": centres[:, 0],
+                "y_mm": centres[:, 1],
+                "radius_mm": np.hypot(centres[:, 0], centres[:, 1]),
+            }
         )
 
 

@@ -7,12 +7,14 @@ engine trusts the source: it must apply the predicate and the row limit itself.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import polars as pl
 from polars.io.plugins import register_io_source
 
+import cyclosweep._core as _core
+from cyclosweep.errors import InputError
 from cyclosweep.study import Limits, Study
 
 if TYPE_CHECKING:
@@ -20,11 +22,47 @@ if TYPE_CHECKING:
 
     from cyclosweep.space import Space
 
-__all__ = ["frame", "scan", "sweep"]
+__all__ = ["Evaluations", "frame", "kernel_evaluations", "scan", "sweep"]
 
 DEFAULT_BATCH = 100_000
+_LARGEST_FRAME = 2**32 - 1  # rows polars can count
 # Null also for variants that can be built: without an inertia, without a shaft.
 _MAY_NOT_APPLY = frozenset({"natural_frequency_hz", "shaft_compliance_rad_per_nm"})
+
+
+class Evaluations(NamedTuple):
+    """What the kernel has computed in this process.
+
+    Attributes
+    ----------
+    variants : int
+        Variants it was given.
+    values : int
+        Values of result columns.
+    """
+
+    variants: int
+    values: int
+
+
+def kernel_evaluations() -> Evaluations:
+    """Count what the kernel has computed in this process: what a query did not need is not in it.
+
+    Returns
+    -------
+    Evaluations
+
+    Examples
+    --------
+    >>> import cyclosweep as cs
+    >>> space = cs.Space.grid(cs.Drive.reference_87(), output_pin_count=range(6, 13))
+    >>> before = kernel_evaluations()
+    >>> query = cs.scan(space).filter(pl.col("output_pin_count") > 10).select("twist_1tn_deg")
+    >>> rows = query.collect().height
+    >>> rows, kernel_evaluations().variants - before.variants
+    (2, 2)
+    """
+    return Evaluations(*_core.kernel_evaluations())
 
 
 def scan(
@@ -107,6 +145,11 @@ def sweep(
     polars.DataFrame
         One row a variant, in order.
 
+    Raises
+    ------
+    InputError
+        As for :func:`scan`, and for more variants than a frame can hold.
+
     Examples
     --------
     >>> import cyclosweep as cs
@@ -115,6 +158,11 @@ def sweep(
     ['ok', 'eccentricity_too_large_for_ring']
     """
     study = Study.of(space, loads_tn=loads_tn, limits=limits)
+    count = study.space.stop - study.space.start
+    if count > _LARGEST_FRAME:
+        raise InputError(
+            f"{count:,} variants do not fit into one frame, expected scan, sink or a slice"
+        )
     return frame(study, study.space.start, study.space.stop, list(study.schema()))
 
 
@@ -158,7 +206,8 @@ def frame(
             return inputs.select(columns)
         picked = None if inputs.height == stop - start else inputs["variant"].to_numpy()
     else:
-        inputs, picked = _inputs(study, list(first), start, stop), None
+        # A frame without columns has no height: the number of the variant stands in.
+        inputs, picked = _inputs(study, list(first) or ["variant"], start, stop), None
     if not results:
         return inputs.select(columns)
     whole = inputs.with_columns(_results(study, results, start, stop, picked))

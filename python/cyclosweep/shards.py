@@ -105,6 +105,7 @@ def sink(
     if rows_per_part < 1:
         raise InputError(f"rows_per_part: found {rows_per_part}, expected at least 1")
     dataset = Dataset(study, Path(folder), rows_per_part)
+    make = _engine(engine, workers, scheduler) if executor is None else _lend(executor)
     with _exclusive(dataset, resume=resume, fresh=fresh):
         records = []
         missing = []
@@ -116,17 +117,18 @@ def sink(
                 records.append(record)
         done = sum(record.stop - record.start for record in records)
         with Progress("sweep", len(study), done=done, show=progress) as bar:
-            make = _engine(engine, workers, scheduler) if executor is None else _lend(executor)
 
             def advance(record: Record) -> None:
                 bar.advance(record.stop - record.start)
 
             try:
                 records += run_shards(dataset, missing, make, advance)
-            finally:
-                whole = [r for part in dataset.parts() if (r := dataset.record(part)) is not None]
-                dataset.finish(whole)
-    return summarise(whole, study)
+            except BaseException:
+                with contextlib.suppress(OSError):
+                    dataset.finish(dataset.records())
+                raise
+            _finish(dataset, records)
+    return summarise(records, study)
 
 
 def shard(
@@ -182,7 +184,19 @@ def shard(
             bar.advance(record.stop - record.start)
 
         records = run_shards(dataset, parts, _engine("threads", None, None), advance)
+    # Whichever task ends last finds every part there.
+    with FileLock(dataset.folder / ".manifest.lock"):
+        dataset.write_manifest(dataset.records())
+    (dataset.folder / ".manifest.lock").unlink(missing_ok=True)
     return summarise(records, study)
+
+
+def _finish(dataset: Dataset, records: list[Record]) -> None:
+    """Write the manifest; on a full disk the parts themselves still say what is there."""
+    try:
+        dataset.finish(records)
+    except OSError as error:
+        raise SweepError(f"{dataset.folder}: manifest: {error.strerror}") from None
 
 
 def write_part(dataset: Dataset, part: Part) -> Record:
@@ -242,10 +256,13 @@ def run_shards(
                         attempts[part.index] += 1
                         try:
                             running[executor.submit(write_part, dataset, part)] = part
-                        except BrokenExecutor:
-                            waiting.append(part)
-                            attempts[part.index] -= 1
+                        except BrokenExecutor as gone:
                             broken = True
+                            if attempts[part.index] < _ATTEMPTS:
+                                waiting.append(part)
+                            else:  # A lent executor is the same one every time.
+                                failed[part.index] = gone
+                                waiting.clear()
                     done, _ = wait(running, return_when=FIRST_COMPLETED)
                     for future in done:
                         part = running.pop(future)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import hashlib
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, overload
@@ -21,7 +22,10 @@ __all__ = ["Axis", "Linspace", "Method", "Space", "linspace"]
 
 Method = Literal["grid", "sobol", "latin-hypercube", "random", "table"]
 MAX_VARIANTS = 2**63
+# A longer range over a count cannot be of whole numbers that make sense.
+_LONGEST_COUNT = 2**16
 _WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
+_OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if optional)
 
 
 @dataclass(frozen=True)
@@ -47,11 +51,21 @@ def linspace(start: float, stop: float, steps: int) -> Linspace:
     -------
     Linspace
 
+    Raises
+    ------
+    InputError
+        For an end that is no finite number, or steps that are no whole number.
+
     Examples
     --------
     >>> linspace(0.3, 0.8, 50).steps
     50
     """
+    for name, value in (("start", start), ("stop", stop)):
+        if not np.isfinite(_numbers(f"linspace: {name}", [value])[0]):
+            raise InputError(f"linspace: {name}: found {value!r}, expected a finite number")
+    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)):
+        raise InputError(f"linspace: steps: found {steps!r}, expected a whole number")
     return Linspace(float(start), float(stop), int(steps))
 
 
@@ -87,7 +101,8 @@ class Axis:
         """Type of the axis's column: counts where every value is one."""
         if self.name == "criterion":
             return pl.Enum(CRITERIA)
-        if self.name in _WHOLE:
+        is_long = self.form == "linspace" and self.numbers[2] > _LONGEST_COUNT
+        if self.name in _WHOLE and not is_long:
             numbers = self.numbers if self.form != "linspace" else self.values()
             assert numbers is not None
             with np.errstate(invalid="ignore"):
@@ -223,10 +238,11 @@ class Space:
     ) -> Space:
         if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
             raise InputError(f"count: found {count!r}, expected a whole number above zero")
-        if not 0 <= seed < 2**64:
+        is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
+        if not (is_whole and 0 <= seed < 2**64):
             raise InputError(f"seed: found {seed!r}, expected a whole number from 0 to 2^64 - 1")
         built = tuple(_sampled_axis(drive, name, values) for name, values in axes.items())
-        return cls._made(drive, method, built, int(count), seed)
+        return cls._made(drive, method, built, int(count), int(seed))
 
     @classmethod
     def _made(
@@ -281,6 +297,8 @@ class Space:
             value = float(core.axis_at(axis.name, index)[0])
             if axis.name == "criterion":
                 changes[axis.name] = CRITERIA[int(value)]
+            elif axis.name in _OPTIONAL and math.isnan(value):
+                changes[axis.name] = None
             elif axis.name in _WHOLE and value.is_integer():
                 changes[axis.name] = int(value)
             else:
@@ -289,7 +307,8 @@ class Space:
 
     def __repr__(self) -> str:
         axes = ", ".join(axis.name for axis in self.axes)
-        return f"<Space: {len(self):,} variants of {self.drive.name}, {self.method} over {axes}>"
+        count = self.stop - self.start  # len() ends at 2^63 - 1
+        return f"<Space: {count:,} variants of {self.drive.name}, {self.method} over {axes}>"
 
     def definition(self) -> dict[str, Any]:
         """What makes this space itself, for the study's hash and the manifest."""
@@ -304,6 +323,11 @@ class Space:
             "start": self.start,
             "stop": self.stop,
         }
+
+
+def is_count(name: str) -> bool:
+    """Whether an input takes whole numbers only."""
+    return name in _WHOLE
 
 
 def _known(drive: Drive, name: str) -> str:

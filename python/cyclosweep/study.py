@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 import cyclosweep._core as _core
 from cyclosweep.drive import Drive, one_line, read_toml
 from cyclosweep.errors import InputError
-from cyclosweep.space import Linspace, Method, Space
+from cyclosweep.space import Linspace, Method, Space, is_count
 from cyclosweep.units import quantity
 
 __all__ = ["DEFAULT_LOADS_TN", "Objective", "Study"]
@@ -114,8 +114,12 @@ class Study:
         for name, _, _ in bounds:
             if name not in columns or name == "criterion":
                 raise InputError(f"limits.{name}: no such column, expected an input or a result")
-        if objective is not None and objective.column not in study.schema():
-            raise InputError(f"objective: no column {objective.column} in this study")
+        if objective is not None:
+            dtype = study.schema().get(objective.column)
+            if dtype is None:
+                raise InputError(f"objective: no column {objective.column} in this study")
+            if isinstance(dtype, pl.Enum):
+                raise InputError(f"objective: {objective.column} is no number, expected one")
         return study
 
     @classmethod
@@ -296,8 +300,15 @@ class _StudyFile(_Part):
         if parsed.steps is not None:
             return Linspace(parsed.start, parsed.stop, parsed.steps)
         if is_grid:
-            start, stop = parsed.start, parsed.stop
-            if name.endswith("_count") or name == "ratio":
-                return [float(v) for v in range(math.ceil(start), math.floor(stop) + 1)]
+            if is_count(name):
+                return _whole_numbers(name, parsed.start, parsed.stop)
             raise InputError(f"axes.{name}.steps: missing, expected for a grid")
         return (parsed.start, parsed.stop)
+
+
+def _whole_numbers(name: str, start: float, stop: float) -> Linspace:
+    if not (start.is_integer() and stop.is_integer() and start <= stop):
+        raise InputError(
+            f"axes.{name}: found {start:g} to {stop:g}, expected whole numbers from low to high"
+        )
+    return Linspace(start, stop, int(stop - start) + 1)

@@ -62,7 +62,7 @@ class Record:
 
 def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record:
     """Summarise the rows of one part."""
-    counts = rows["status"].value_counts()
+    counts = rows["status"].value_counts().sort("status")
     status = dict(zip(counts["status"].to_list(), counts["count"].to_list(), strict=True))
     names = [name for name, kind in study.outputs.items() if kind != "flag"]
     lows = rows.select(pl.col(names).min()).row(0)
@@ -74,9 +74,12 @@ def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record
     }
     best: list[dict[str, Any]] = []
     if (objective := study.objective) is not None:
-        kept = rows.select(*_best_columns(study), "status").filter(pl.col("status") == "ok")
-        choose = kept.top_k if objective.maximise else kept.bottom_k
-        best = choose(BEST, by=[objective.column, "variant"]).drop("status").to_dicts()
+        is_number = pl.col(objective.column).cast(pl.Float64).is_not_nan()
+        kept = rows.select(*_best_columns(study), "status").filter(
+            pl.col("status") == "ok", is_number
+        )
+        by, reverse = [objective.column, "variant"], [objective.maximise, False]
+        best = kept.bottom_k(BEST, by=by, reverse=reverse).drop("status").to_dicts()
     return Record(start, stop, status, ranges, best)
 
 

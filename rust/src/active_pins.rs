@@ -250,9 +250,13 @@ impl PinMap {
         }
     }
 
+    /// Angle (turns) of the first hole from ring pin 0 on, within one pitch: holes bear no
+    /// numbers, and a clocking of many turns would cost digits.
     #[inline]
     fn first_hole(&self) -> f64 {
-        self.clocking + 0.5 / f64::from(self.pins)
+        let pitch = 1.0 / f64::from(self.pins);
+        let clocking = self.clocking % pitch;
+        (clocking + 0.5 * pitch).rem_euclid(pitch)
     }
 }
 

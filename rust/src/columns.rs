@@ -321,12 +321,16 @@ impl Study {
         for (number, limit) in self.limits.iter().enumerate() {
             let mut limited = [0.0; BLOCK];
             let limited = &mut limited[..len];
-            match limit.column {
-                Limited::Output(output) => scratch.block(len).write(output, &self.loads, limited),
+            let unit = match limit.column {
+                Limited::Output(output) => {
+                    scratch.block(len).write(output, &self.loads, limited);
+                    1.0
+                }
                 Limited::Input(input) => self.fill_limited(input, rows, limited),
-            }
+            };
+            let range = limit.min * unit..=limit.max * unit;
             for (status, value) in status.iter_mut().zip(limited) {
-                if *status == Status::Ok as u8 && !(limit.min..=limit.max).contains(value) {
+                if *status == Status::Ok as u8 && !range.contains(value) {
                     *status = (Status::ALL.len() + number) as u8;
                 }
             }
@@ -356,16 +360,23 @@ impl Study {
         }
     }
 
-    /// Values of an input, whether it varies or not, in the user's unit.
-    fn fill_limited(&self, input: usize, rows: Rows<'_>, out: &mut [f64]) {
+    /// Values of an input, whether it varies or not, and what turns the user's unit into theirs:
+    /// neither is converted back, which would cost the last digit.
+    fn fill_limited(&self, input: usize, rows: Rows<'_>, out: &mut [f64]) -> f64 {
         match self
             .space
             .axes()
             .iter()
             .position(|axis| axis.input == input)
         {
-            Some(axis) => self.space.fill(axis, rows, out),
-            None => out.fill(self.base.at(input) / factor(input)),
+            Some(axis) => {
+                self.space.fill(axis, rows, out);
+                1.0
+            }
+            None => {
+                out.fill(self.base.at(input));
+                factor(input)
+            }
         }
     }
 

@@ -38,6 +38,7 @@ pub mod columns;
 pub mod compliance;
 pub mod error;
 pub mod hypotrochoid;
+pub mod hysteresis;
 pub mod inputs;
 mod joe_kuo;
 mod known;

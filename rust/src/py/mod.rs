@@ -1,6 +1,7 @@
 //! Bindings for Python, and nothing else; everything Python can see is registered here.
 
 mod formulas;
+mod hysteresis;
 mod study;
 
 use pyo3::create_exception;
@@ -59,11 +60,13 @@ fn status_labels() -> Vec<&'static str> {
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    hysteresis::register(module)?;
     module.add("DEBUG_BUILD", cfg!(debug_assertions))?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SEGMENT_FIELDS", SEGMENT_FIELDS)?;
     module.add("DesignError", module.py().get_type::<DesignError>())?;
     module.add_class::<study::PyStudy>()?;
+    module.add_function(wrap_pyfunction!(study::kernel_evaluations, module)?)?;
     module.add_function(wrap_pyfunction!(input_table, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;
     module.add_function(wrap_pyfunction!(status_labels, module)?)?;

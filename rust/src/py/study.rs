@@ -1,5 +1,7 @@
 //! `_core.Study`: a study's definition in, columns as NumPy arrays out.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -15,6 +17,19 @@ use crate::space::{Axis, Layout, Rows, Space, Values};
 pub struct PyStudy {
     study: Study,
     outputs: Vec<(String, Output)>,
+}
+
+static VARIANTS: AtomicU64 = AtomicU64::new(0);
+static VALUES: AtomicU64 = AtomicU64::new(0);
+
+/// How many variants, and how many values of result columns, the kernel has computed in this
+/// process.
+#[pyfunction]
+pub fn kernel_evaluations() -> (u64, u64) {
+    (
+        VARIANTS.load(Ordering::Relaxed),
+        VALUES.load(Ordering::Relaxed),
+    )
 }
 
 /// One axis as Python describes it: (name, form, numbers).
@@ -114,6 +129,8 @@ impl PyStudy {
         outputs: &[String],
     ) -> PyResult<Evaluated<'py>> {
         let outputs = self.chosen(outputs)?;
+        VARIANTS.fetch_add(len as u64, Ordering::Relaxed);
+        VALUES.fetch_add((len * outputs.len()) as u64, Ordering::Relaxed);
         // NumPy allocates, and all columns at once: it asks for huge pages from 4 MiB on, and in
         // pages of 4 KiB a third of a table's time goes to page faults.
         let status = PyArray1::<u8>::zeros(py, len, false);

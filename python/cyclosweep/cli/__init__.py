@@ -1,0 +1,60 @@
+"""The command line: what each command takes and prints; the work is done elsewhere."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from cyclosweep import __version__
+from cyclosweep.cli import diagnose, sweep, validate
+from cyclosweep.cli.output import fail
+from cyclosweep.errors import DesignError, InputError, SweepError
+
+__all__ = ["main"]
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    help="Sweep, validate and diagnose the torsional compliance of cycloidal gear drives.",
+)
+app.command()(validate.validate)
+app.command()(sweep.sweep)
+app.command()(sweep.shard)
+app.command()(diagnose.simulate)
+app.command()(diagnose.diagnose)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"cyclosweep {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Sweep, validate and diagnose the torsional compliance of cycloidal gear drives."""
+
+
+def main() -> None:
+    """Run the command line; every error is one line and an exit status."""
+    try:
+        app()
+    except (InputError, DesignError) as error:
+        fail(error, 2)
+    except SweepError as error:
+        fail(error, 1)
+    except BrokenPipeError:
+        # Whoever read our output has seen enough.
+        sys.stderr.close()
+        sys.exit(1)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        fail(f"{where}{error.strerror or error}", 1)

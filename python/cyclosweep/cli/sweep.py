@@ -1,0 +1,83 @@
+"""`cyclosweep sweep` and `cyclosweep shard`."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
+
+if TYPE_CHECKING:
+    from cyclosweep.study import Study
+
+LEFT = "what is whole stays, the same command goes on from there"
+
+StudyFile = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")]
+OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the dataset.")]
+
+
+def sweep(
+    study: StudyFile,
+    out: OutFolder,
+    rows: Annotated[
+        int | None, typer.Option("--rows", min=1, help="Only the first N variants.")
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Delete what an earlier sweep left in the folder.")
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, help="Parts computed at a time.")
+    ] = None,
+    engine: Annotated[
+        Literal["threads", "processes", "dask"], typer.Option(help="Where parts are computed.")
+    ] = "threads",
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Address of a running Dask scheduler.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Sweep a study to a folder of Parquet parts; killed, the same command goes on from there."""
+    from cyclosweep.shards import sink
+
+    with interruptible(LEFT):
+        summary = sink(
+            _study(study, rows),
+            out,
+            fresh=fresh,
+            workers=workers,
+            engine=engine,
+            scheduler=scheduler,
+        )
+    if as_json:
+        print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
+    else:
+        print_tables(summary.renderables())
+        print(f"{summary.rows:,} variants in {out}")
+
+
+def shard(
+    study: StudyFile,
+    out: OutFolder,
+    index: Annotated[int, typer.Option("--index", min=0, help="Number of this task, from 0.")],
+    of: Annotated[int, typer.Option("--of", min=1, help="How many tasks there are.")],
+    as_json: AsJson = False,
+) -> None:
+    """Compute one task of a batch array; any mix of tasks gives the same dataset."""
+    from cyclosweep.shards import shard as run
+
+    with interruptible(LEFT):
+        summary = run(_study(study, None), out, index=index, of=of)
+    if as_json:
+        print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
+    else:
+        print(f"task {index} of {of}: {summary.rows:,} variants in {out}")
+
+
+def _study(path: Path, rows: int | None) -> Study:
+    from cyclosweep.study import Study
+
+    study = Study.from_toml(path)
+    return study if rows is None else dataclasses.replace(study, space=study.space[:rows])

@@ -1,0 +1,38 @@
+"""`cyclosweep validate`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from cyclosweep.cli.output import AsJson, print_json, print_tables
+
+
+def validate(
+    as_json: AsJson = False,
+    drive: Annotated[
+        str | None,
+        typer.Option("--drive", metavar="NAME|FILE", help="Check this drive, not the built-in."),
+    ] = None,
+) -> None:
+    """Compare the library with every published fact of the 87:1 case and with other cases.
+
+    Exit status 1 when a fact is not met; facts that the model cannot compute do not count.
+    """
+    from cyclosweep.drive import Drive
+    from cyclosweep.reference.validation import report_json, report_tables
+
+    chosen = None if drive is None else Drive.load(drive)
+    report = report_json(chosen)
+    if as_json:
+        print_json(report)
+    else:
+        print_tables(report_tables(chosen))
+        decided = [fact for fact in report["facts"] if fact["ok"] is not None]
+        met = sum(fact["ok"] for fact in decided)
+        print(
+            f"{met} of {len(decided)} facts met; "
+            f"{len(report['facts']) - len(decided)} rows only compare or are beyond the model"
+        )
+    raise typer.Exit(0 if report["ok"] else 1)

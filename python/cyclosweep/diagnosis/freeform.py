@@ -1,0 +1,224 @@
+"""Shapes without a name that compete with the named effects, so that wrong names stay away."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.effects.history import Flags, Floats, History
+
+
+@dataclass(frozen=True, eq=False)
+class FreeForm:
+    """One shape without a name.
+
+    Attributes
+    ----------
+    family : str
+        What kind of shape it is, in words for a reader.
+    place : str
+        Where it sits, in words for a reader.
+    make : callable
+        Columns [deg] for a history.
+    """
+
+    family: str
+    place: str
+    make: Callable[[History], Floats]
+
+
+def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
+    """All shapes without a name that this recording can show."""
+    yield from _steps(history, fitted)
+    yield from _bumps(history)
+    yield from _clips(history)
+    yield from _curves(history)
+    yield from _cells(history)
+    yield from _runs(history)
+    yield from _trends(history)
+    yield from _windows(history, fitted)
+    yield from _positions(history)
+
+
+def clock_of(history: History) -> Floats:
+    """Time, or the number of the row where there is no clock."""
+    if history.time_s is None:
+        return np.arange(len(history), dtype=np.float64)
+    return history.time_s
+
+
+def hats(values: Floats, knots: Floats) -> Floats:
+    """Piecewise linear basis functions on the given knots."""
+    return np.column_stack([np.interp(values, knots, row) for row in np.eye(len(knots))])
+
+
+def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
+    index = np.flatnonzero(fitted)
+    count = min(60, len(index) // 8)
+    if count < 1:
+        return
+    places = index[np.linspace(0, len(index) - 1, count + 2)[1:-1].astype(int)]
+    row = np.arange(len(history))
+    clock = clock_of(history)
+    what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
+    for place in places:
+        label = f"from {what.format(clock[place])} (run {history.run[place] + 1})"
+        yield FreeForm(
+            "step of the angle",
+            label,
+            lambda h, p=place: (row >= p).astype(np.float64)[:, None],
+        )
+        yield FreeForm(
+            "slip within a run",
+            label + " to the end of that run",
+            lambda h, p=place: ((row >= p) & (h.run == h.run[p])).astype(np.float64)[:, None],
+        )
+    for place in places[::3]:
+        yield FreeForm(
+            "change of compliance",
+            f"from {what.format(clock[place])} (run {history.run[place] + 1})",
+            lambda h, p=place: ((row >= p) * h.elastic_nm)[:, None],
+        )
+
+
+def _bumps(history: History) -> Iterator[FreeForm]:
+    top = history.largest_torque_nm
+    for width in (0.03, 0.08):
+        for centre in np.arange(0.05, 1.0, 2 * width):
+            for flank in (0, 1, -1):
+                if flank and not np.any(history.side == flank):
+                    continue
+                where = "" if flank == 0 else f" {'positive' if flank > 0 else 'negative'}"
+                yield FreeForm(
+                    "bump at a load",
+                    f"near{where} {centre * top:.3g} N m",
+                    lambda h, c=centre, w=width, f=flank: _bump(h, c * top, w * top, f),
+                )
+
+
+def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
+    bump = np.exp(-0.5 * ((np.abs(history.applied_nm) - centre) / width) ** 2)
+    return (bump * (history.side if flank == 0 else (history.side == flank)))[:, None]
+
+
+def _clips(history: History) -> Iterator[FreeForm]:
+    top = history.largest_torque_nm
+    for share in (0.85, 0.93, 0.97):
+        for flank in (0, 1, -1):
+            if flank and not np.any(history.side == flank):
+                continue
+            yield FreeForm(
+                "saturation at the end of the range",
+                f"beyond {share * top:.3g} N m",
+                lambda h, s=share, f=flank: _over(h, s * top, f),
+            )
+
+
+def _over(history: History, start: float, flank: int) -> Floats:
+    over = np.maximum(np.abs(history.applied_nm) - start, 0.0)
+    return (over * (history.side if flank == 0 else (history.side == flank)))[:, None]
+
+
+def _curves(history: History) -> Iterator[FreeForm]:
+    top = history.largest_torque_nm
+    knots = np.array([0.0, 0.08, 0.2, 0.4, 0.65, 1.0]) * top
+    yield FreeForm(
+        "smooth odd curve",
+        "over the whole range of torque",
+        lambda h: h.side[:, None] * hats(h.load_nm, knots),
+    )
+    if np.any(history.side > 0) and np.any(history.side < 0):
+        yield FreeForm(
+            "even curve", "over the whole range of torque", lambda h: hats(h.load_nm, knots)
+        )
+    rough = np.array([0.0, 0.3, 1.0]) * top
+    yield FreeForm(
+        "hysteresis",
+        "loading against unloading",
+        lambda h: h.sense[:, None] * hats(h.load_nm, rough),
+    )
+
+
+def _cells(history: History) -> Iterator[FreeForm]:
+    knots = np.linspace(0.0, 1.0, 5) * history.largest_torque_nm
+
+    def cells(h: History) -> Floats:
+        basis = hats(h.load_nm, knots)
+        parts = [
+            basis * ((h.side == flank) & (h.sense == sense))[:, None]
+            for flank in (1, -1)
+            for sense in (1, -1)
+        ]
+        return np.column_stack(parts)
+
+    yield FreeForm("torque and direction", "over torque and direction", cells)
+
+
+def _runs(history: History) -> Iterator[FreeForm]:
+    if not 3 <= history.run_count <= 60:
+        return
+    runs = np.arange(history.run_count)
+    yield FreeForm(
+        "compliance by run",
+        "from run to run",
+        lambda h: (h.run[:, None] == runs) * h.elastic_nm[:, None],
+    )
+    for number in range(history.run_count):
+        yield FreeForm(
+            "one run apart",
+            f"run {number + 1}",
+            lambda h, k=number: (h.run == k).astype(np.float64)[:, None],
+        )
+
+
+def _trends(history: History) -> Iterator[FreeForm]:
+    clock = clock_of(history)
+    length = max(float(np.ptp(clock)), 1e-12)
+    share = (clock - clock[0]) / length
+    starts = clock[history.run_starts][history.run]
+    since = (clock - starts) / length
+    yield FreeForm("drift in time", "over the recording", lambda h: share[:, None])
+    yield FreeForm(
+        "drift in time",
+        "over the recording",
+        lambda h: np.column_stack([share, share**2, share**3]),
+    )
+    if history.run_count > 1:
+        yield FreeForm("drift within runs", "over each run", lambda h: since[:, None])
+    for tau in (0.02, 0.1, 0.3):
+        yield FreeForm(
+            "drift in time",
+            "dying out over the recording",
+            lambda h, s=tau: np.exp(-share / s)[:, None],
+        )
+
+
+def _windows(history: History, fitted: Flags) -> Iterator[FreeForm]:
+    index = np.flatnonzero(fitted)
+    for count in (15, 40):
+        if len(index) < 12 * count:
+            continue
+        window = np.zeros(len(history), dtype=np.int64)
+        window[index] = np.arange(len(index)) * count // len(index)
+        window = np.maximum.accumulate(window)
+        yield FreeForm(
+            "wandering of the zero",
+            "over the whole recording",
+            lambda h, w=window, n=count: (w[:, None] == np.arange(n)).astype(np.float64),
+        )
+
+
+def _positions(history: History) -> Iterator[FreeForm]:
+    if history.crank_deg is None:
+        return
+    places = np.unique(np.round(history.crank_deg % 360.0, 1))
+    if not 3 <= len(places) <= 40:
+        return
+    which = np.searchsorted(places, np.round(history.crank_deg % 360.0, 1))
+    one = (which[:, None] == np.arange(len(places))).astype(np.float64)
+    if len(places) > 7:
+        # With fewer positions the first three orders of the mesh say the same.
+        yield FreeForm("position offsets", "from position to position", lambda h: one)
+    yield FreeForm(
+        "compliance by position", "from position to position", lambda h: one * h.elastic_nm[:, None]
+    )

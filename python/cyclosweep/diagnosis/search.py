@@ -1,0 +1,268 @@
+"""Search for the set of effects that explains a recording, each refitted jointly with the baseline."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.diagnosis import hum
+from cyclosweep.diagnosis.fit import Fit, Term, fit
+from cyclosweep.diagnosis.freeform import FreeForm
+from cyclosweep.diagnosis.library import Block, Library
+from cyclosweep.diagnosis.noise import Noise
+from cyclosweep.diagnosis.problem import Problem
+from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
+from cyclosweep.effects.history import Floats
+
+DRAWS = 1000
+LEVEL = 0.005
+"""Internal level of the global test; half of the nominal one, for what a bootstrap cannot know."""
+FLOOR = 5.2
+"""Smallest threshold of evidence: a thousand draws wander by about this much less."""
+EXTRA_TERM = 3.0
+"""Log prior odds against every further effect."""
+WITHOUT_NAME = 4.0
+"""Log prior odds against a shape without a name."""
+MOST_TERMS = 3
+"""Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A structure with its joint fit and its evidence over the baseline.
+
+    Attributes
+    ----------
+    fit : Fit
+    gain : float
+        Log evidence over the baseline alone.
+    prior : float
+        Log prior odds of the structure.
+    rest : Scan
+        What the library finds in its residual.
+    rest_hum : tuple
+        Evidence and columns of a sinusoid in its residual.
+    """
+
+    fit: Fit
+    gain: float
+    prior: float
+    rest: Scan
+    rest_hum: tuple[float, FreeForm | None]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of the terms."""
+        return frozenset(self.fit.names)
+
+    @property
+    def score(self) -> float:
+        """Log posterior odds over the baseline."""
+        return self.gain + self.prior
+
+    @property
+    def named_only(self) -> bool:
+        """Whether every term has a name."""
+        return all(term.effect is not None for term in self.fit.terms)
+
+    @property
+    def left(self) -> float:
+        """Largest evidence that remains in the residual."""
+        values = self.rest.by_hypothesis.values()
+        return max(max(values, default=0.0), self.rest_hum[0])
+
+
+class Search:
+    """Everything that one recording's search shares: noise, whitened library, nodes visited."""
+
+    def __init__(self, problem: Problem, noise: Noise, library: Library, seed: int) -> None:
+        self.problem, self.noise, self.library = problem, noise, library
+        self.seed = seed
+        base = fit(problem, noise, ())
+        use = problem.fitted
+        _, weight = noise.residual(problem.angle_deg[use], base.mean_deg[use])
+        self.whitened = noise.design(library.columns, weight)
+        self.gram = self.whitened.T @ self.whitened
+        self.root = self._node(base, 0.0, 0.0)
+        self.nodes: dict[frozenset[str], Node] = {}
+        self.maxima = self.null(self.root)
+        self.threshold = max(float(np.quantile(self.maxima, 1.0 - LEVEL)), FLOOR)
+
+    def null(self, node: Node) -> Floats:
+        """Largest evidence that recordings show when this node is all there is."""
+        rng = np.random.default_rng([self.seed, 1])
+        maxima = node.rest.null_maxima(DRAWS, rng)
+        return np.maximum(maxima, hum.null_hum(DRAWS, rng))
+
+    def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
+        rest = scan(
+            self.library,
+            self.whitened,
+            self.gram,
+            fitted.tangent,
+            fitted.residual,
+            self.noise.freedom,
+            self._excess(fitted),
+        )
+        found = hum.find_hum(fitted.history, self.problem.fitted, fitted.residual)
+        return Node(fitted, gain, prior, rest, found)
+
+    def extend(self, node: Node, hypothesis: str) -> Node | None:
+        """Add one hypothesis to a structure and refit; None where no physical fit is better."""
+        best: Node | None = None
+        for term, rank, cost in self._starts(node, hypothesis):
+            joint = fit(self.problem, self.noise, (*node.fit.terms, term), node.fit)
+            if not joint.valid:
+                continue
+            added = float(evidence(self._gain(node.fit, joint), rank)) - cost
+            prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
+            prior -= 0.0 if term.effect is not None else WITHOUT_NAME
+            if best is None or node.gain + added > best.gain:
+                best = self._node(joint, node.gain + added, prior)
+        if best is not None:
+            known = self.nodes.get(best.names)
+            if known is None or best.score > known.score:
+                self.nodes[best.names] = best
+        return best
+
+    def _excess(self, fitted: Fit) -> float:
+        return max(fitted.chi2 - self.noise.freedom, 0.0)
+
+    def _gain(self, before: Fit, after: Fit) -> float:
+        """Twice the log-likelihood gained from one fit to the next."""
+        drop = before.chi2 - after.chi2
+        return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
+
+    def adopt(self, fitted: Fit, gain: float) -> Node:
+        """Take in a structure that was fitted elsewhere."""
+        node = self._node(fitted, gain, 0.0)
+        self.nodes[node.names] = node
+        return node
+
+    def refit(self, terms: tuple[Term, ...]) -> Node:
+        """Fit a structure that was not visited on its own."""
+        return self._node(fit(self.problem, self.noise, terms, self.root.fit), 0.0, 0.0)
+
+    def _starts(self, node: Node, hypothesis: str) -> Iterable[tuple[Term, float, float]]:
+        """Terms to start from, with projected rank and the price of the choice of shape."""
+        if hypothesis == hum.FAMILY:
+            form = node.rest_hum[1]
+            assert form is not None
+            rows = 0.5 * self.problem.count
+            yield Term(None, {}, form), 2.0, max(float(np.log(rows)) - 3.0, 0.0)
+            return
+        rest = node.rest
+        members = rest.groups[hypothesis]
+        each = evidence(rest.observed[members], rest.ranks[members])
+        average = rest.by_hypothesis[hypothesis]
+        order = members[np.argsort(-each)]
+        price = float(np.clip(each.max() - average, 0.0, 1.5))
+        first = rest.library.blocks[order[0]]
+        slips = first.effect is not None and first.effect.slips
+        tried = 0
+        for index in order:
+            block = rest.library.blocks[index]
+            if tried and not (slips and _differs(block, first)):
+                continue
+            amplitude = self._amplitude(rest, int(index), block) if slips else 0.0
+            term = Term(block.effect, block.shape, block.free, amplitude)
+            yield term, float(rest.ranks[index]), price
+            tried += 1
+            if tried >= (2 if slips else 1):
+                return
+
+    def _amplitude(self, rest: Scan, index: int, block: Block) -> float:
+        inner = rest.gram[block.first, block.first]
+        return float(max(rest.score[block.first] / inner / block.scale[0], 1e-6))
+
+    def candidates(self, node: Node, most: int, least_named: int = 2) -> list[str]:
+        """Hypotheses worth adding to a structure, strongest first."""
+        values = dict(node.rest.by_hypothesis)
+        if node.rest_hum[1] is not None and hum.FAMILY not in node.names:
+            values[hum.FAMILY] = node.rest_hum[0]
+        good = sorted(
+            (name for name, v in values.items() if v > self.threshold and name not in node.names),
+            key=lambda name: -values[name],
+        )
+        named = {block.hypothesis for block in self.library.blocks if block.named}
+        chosen = good[:most]
+        chosen += [name for name in good if name in named and name not in chosen][
+            : max(0, least_named - sum(name in named for name in chosen))
+        ]
+        return chosen
+
+    def run(self, progress: Callable[[str], None] = lambda text: None) -> None:
+        """Visit structures: in breadth up to three terms, then along the best one."""
+        if self.root.left < self.threshold:
+            return
+        front = [self.root]
+        for depth in range(MOST_TERMS):
+            found: list[Node] = []
+            for node in front:
+                for name in self.candidates(node, 6 if depth == 0 else 3, 3 - depth):
+                    if node.names | {name} in self.nodes and depth:
+                        continue
+                    progress(f"fitting {' + '.join([*node.fit.names, name])}")
+                    child = self.extend(node, name)
+                    if child is not None:
+                        found.append(child)
+            if not found:
+                break
+            found = list({n.names: n for n in sorted(found, key=lambda n: n.score)}.values())
+            found.sort(key=lambda n: -n.score)
+            named = [n for n in found if n.named_only]
+            front = found[: 3 - (depth > 0)]
+            front += [n for n in named[: 3 - depth] if all(n is not f for f in front)]
+        self._drop()
+        self._follow(progress)
+
+    def _drop(self) -> None:
+        """Leave each term out of the best structures: the rest may explain it all."""
+        for node in sorted(self.nodes.values(), key=lambda n: -n.score)[:4]:
+            self._visit_subsets(node)
+
+    def _visit_subsets(self, node: Node) -> None:
+        if len(node.fit.terms) < 2:
+            return
+        for k in range(len(node.fit.terms)):
+            kept = [t for j, t in enumerate(node.fit.terms) if j != k]
+            if frozenset(t.name for t in kept) in self.nodes:
+                continue
+            parent = self.root
+            for term in kept:
+                if term.name not in parent.rest.groups:
+                    break
+                child = self.extend(parent, term.name)
+                if child is None:
+                    break
+                parent = child
+
+    def _follow(self, progress: Callable[[str], None]) -> None:
+        """Add further terms to the best structure as long as the residual asks for them."""
+        node = self.best()
+        while node is not None and len(node.fit.terms) < 7 and node.left > self.threshold:
+            children = []
+            for name in self.candidates(node, 2, 1):
+                progress(f"fitting {' + '.join([*node.fit.names, name])}")
+                child = self.extend(node, name)
+                if child is not None and child.score > node.score:
+                    children.append(child)
+            if not children:
+                return
+            node = max(children, key=lambda n: n.score)
+
+    def best(self) -> Node | None:
+        """Structure with the largest posterior odds."""
+        return max(self.explanations(), key=lambda n: n.score, default=None)
+
+    def explanations(self) -> list[Node]:
+        """Structures worth considering: those that contain a sufficient smaller one are not."""
+        enough = [n.names for n in self.nodes.values() if n.left < self.threshold]
+        kept = [n for n in self.nodes.values() if not any(e < n.names for e in enough)]
+        return sorted(kept, key=lambda n: -n.score)
+
+
+def _differs(block: Block, other: Block) -> bool:
+    """Whether two slip shapes are far enough apart to be worth a second start."""
+    ratio = float(block.shape["slip_deg"]) / float(other.shape["slip_deg"])
+    return not 0.5 < ratio < 2.0 or block.shape.get("slack") != other.shape.get("slack")

@@ -1,0 +1,89 @@
+"""What every effect is: physics in words, its parameters, and its response to a load history."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cyclosweep.effects.history import Floats, History
+
+Shape = Mapping[str, float]
+"""Values of the parameters that enter an effect's response nonlinearly, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of an effect: what it means, in what unit, and where it can lie."""
+
+    name: str
+    unit: str
+    meaning: str
+    lower: float = -np.inf
+    upper: float = np.inf
+    logarithmic: bool = False
+
+
+class Effect:
+    """A kind of physics that the published model leaves out.
+
+    A subclass states the physics and gives its response as columns that enter the twist linearly,
+    for any value of the shape parameters. Registering an instance with
+    `cyclosweep.effects.register` is all it takes to have a new effect diagnosed.
+
+    Attributes
+    ----------
+    name, physics, source, tell_tale : str
+        Name in the vocabulary; two sentences; literature; what betrays it in a recording.
+    family : str
+        Class of look-alikes, named in the report where the recording cannot go further.
+    needs : tuple of str
+        Columns without which the effect cannot be tested.
+    shape_parameters : tuple of Parameter
+        Parameters that enter nonlinearly and are refined by the fit.
+    slips : bool
+        The effect is a friction torque on slip elements, solved in the angle.
+    """
+
+    name: ClassVar[str]
+    physics: ClassVar[str]
+    source: ClassVar[str]
+    tell_tale: ClassVar[str]
+    family: ClassVar[str]
+    needs: ClassVar[tuple[str, ...]] = ()
+    shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
+    slips: ClassVar[bool] = False
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Grid of shapes over which the effect is looked for in this recording."""
+        raise NotImplementedError
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Twist for unit amplitudes [deg], one column an amplitude.
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        raise NotImplementedError
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Parameters that multiply the columns, with their signs as bounds."""
+        raise NotImplementedError
+
+    def untestable(self, history: History) -> str | None:
+        """Reason why this recording cannot show the effect; None where it can."""
+        labels = {
+            "time_s": "a clock",
+            "crank_deg": "the position of the mesh zone",
+            "temperature_c": "a temperature",
+        }
+        for column in self.needs:
+            if getattr(history, column) is None:
+                return f"the recording has no {column}: it needs {labels[column]}"
+        return None
+
+
+def spread(values: Floats) -> float:
+    """Range of values; zero where there are none."""
+    return float(np.ptp(values)) if len(values) else 0.0

@@ -1,0 +1,63 @@
+"""Pins or teeth with unequal clearances come into contact one after another."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cyclosweep.effects.base import Effect, Parameter, Shape
+from cyclosweep.effects.history import Floats, History
+
+
+class ClearanceTakeup(Effect):
+    """Compliance that drops while further pins engage, between two loads.
+
+    Below `first_nm` the first pins carry alone; up to `first_nm + range_nm` the others engage, and
+    the compliance falls by the amplitude. A range of zero is a single kink.
+    """
+
+    name = "clearance_takeup"
+    physics = (
+        "Pins or teeth with larger clearance join in only after some twist. Each one that engages "
+        "drops the slope of the curve by a step."
+    )
+    source = "Kumar et al. 2016, section 4; Xu, Zhong, Mech. Mach. Theory 2019"
+    tell_tale = "slope drops in steps at certain twists"
+    family = "smooth odd curve"
+    shape_parameters = (
+        Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
+        Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
+    )
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Loads of first engagement and ranges, as shares of the largest load."""
+        top = history.largest_torque_nm
+        grid: list[Shape] = [
+            {"first_nm": first * top, "range_nm": width * top}
+            for first in (0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.55, 0.7)
+            for width in (0.01, 0.15, 0.4)
+            if first + width < 0.95
+        ]
+        kinks = ((0.06, 0.2), (0.12, 0.4), (0.25, 0.6), (0.06, 0.2, 0.45), (0.12, 0.3, 0.6))
+        return grid + [
+            {f"kink_{k}_nm": share * top for k, share in enumerate(shares, 1)} for shares in kinks
+        ]
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Twist lost for a unit drop of compliance [deg]."""
+        load, side = history.load_nm, history.side
+        if "first_nm" not in shape:
+            return np.column_stack(
+                [-side * np.maximum(load - kink, 0.0) for kink in shape.values()]
+            )
+        first, width = shape["first_nm"], max(shape["range_nm"], 1e-9)
+        begun = np.maximum(load - first, 0.0)
+        done = np.maximum(load - first - width, 0.0)
+        return (-side * (begun**2 - done**2) / (2 * width))[:, None]
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Compliance lost by the engagement."""
+        count = 1 if "first_nm" in shape else len(shape)
+        return tuple(
+            Parameter(f"compliance_drop_{k}", "deg/(N m)", "compliance lost by engagement", 0.0)
+            for k in range(1, count + 1)
+        )

@@ -1,0 +1,43 @@
+"""Angle sensor mounted off centre: an error periodic in the indicated angle itself."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cyclosweep.effects.base import Effect, Parameter, Shape, spread
+from cyclosweep.effects.history import Floats, History
+
+
+class DialEccentricity(Effect):
+    """Error ``a cos(angle) + b sin(angle)`` of the indicated angle."""
+
+    name = "dial_eccentricity"
+    physics = (
+        "A dial or encoder disc mounted off centre reads too much on one side and too little on "
+        "the other. The error repeats with every turn of the dial."
+    )
+    source = "ISO 230-1:2012, rotary axes; Anandan, Ozdoganlar, Int. J. Mach. Tools 2013"
+    tell_tale = "periodic in the indicated angle itself"
+    family = "dial"
+
+    def untestable(self, history: History) -> str | None:
+        """Need a good part of a turn."""
+        if spread(history.angle_deg) < 30.0:
+            return "the dial turned by less than 30 deg"
+        return super().untestable(history)
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """One order, one turn."""
+        return [{"order": 1.0}]
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Error for unit amplitudes [deg]."""
+        angle = np.radians(history.angle_deg) * shape["order"]
+        return np.column_stack([np.cos(angle), np.sin(angle)])
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Amplitudes of the error."""
+        return (
+            Parameter("cos_deg", "deg", "error in phase with the cosine of the angle"),
+            Parameter("sin_deg", "deg", "error in phase with the sine of the angle"),
+        )

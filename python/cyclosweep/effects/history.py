@@ -1,0 +1,125 @@
+"""What an effect gets to see of a load history: torque, clock, runs, place, and the shaft's path."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class History:
+    """Load history with the state of the model along it.
+
+    Attributes
+    ----------
+    applied_nm : ndarray, shape (n,)
+        Applied torque [N m].
+    elastic_nm : ndarray, shape (n,)
+        Torque that twists the drive: applied torque less friction [N m].
+    angle_deg : ndarray, shape (n,)
+        Twist according to the model, from the datum of the dial [deg].
+    side : ndarray, shape (n,)
+        Flank in contact: +1 or -1.
+    run : ndarray of int, shape (n,)
+        Index of the run, counted from zero in the order recorded.
+    restart : ndarray of bool, shape (n,)
+        True where play, slip and creep start afresh.
+    compliance_deg_per_nm, free_play_deg : float
+        Of the baseline as calibrated so far [deg/(N m)], [deg].
+    datum_deg : float
+        Middle of the dead zone as calibrated so far [deg].
+    time_s, crank_deg, temperature_c : ndarray or None
+        Clock [s], position of the mesh zone [deg], temperature [degC], where recorded.
+    output_pin_count : int
+        Number of output pins of the drive.
+    resets_datum : bool
+        The rig was reset between runs, so that the datum cannot remember.
+    """
+
+    applied_nm: Floats
+    elastic_nm: Floats
+    angle_deg: Floats
+    side: Floats
+    run: Ints
+    restart: Flags
+    compliance_deg_per_nm: float
+    free_play_deg: float
+    datum_deg: float = 0.0
+    time_s: Floats | None = None
+    crank_deg: Floats | None = None
+    temperature_c: Floats | None = None
+    output_pin_count: int = 8
+    resets_datum: bool = False
+
+    def __len__(self) -> int:
+        return len(self.applied_nm)
+
+    def with_state(self, **state: object) -> Self:
+        """Return the same load history with another state of the model."""
+        return replace(self, **state)  # type: ignore[arg-type]
+
+    @cached_property
+    def largest_torque_nm(self) -> float:
+        """Largest magnitude of the applied torque [N m]."""
+        return float(np.abs(self.applied_nm).max(initial=1e-12))
+
+    @property
+    def largest_twist_deg(self) -> float:
+        """Elastic twist at the largest torque [deg]."""
+        return self.largest_torque_nm * self.compliance_deg_per_nm
+
+    @property
+    def load_nm(self) -> Floats:
+        """Magnitude of the elastic torque on the flank in contact, never negative [N m]."""
+        return np.maximum(self.elastic_nm * self.side, 0.0)
+
+    @cached_property
+    def run_starts(self) -> Ints:
+        """Index of the first sample of every run, in order."""
+        return np.flatnonzero(np.r_[True, np.diff(self.run) != 0])
+
+    @cached_property
+    def run_count(self) -> int:
+        """Number of runs."""
+        return int(self.run.max(initial=-1)) + 1
+
+    @cached_property
+    def sense(self) -> Floats:
+        """+1 where the torque rises, -1 where it falls; a hold keeps the sense before it."""
+        step = np.diff(self.applied_nm, prepend=self.applied_nm[:1])
+        step[self.run_starts] = 0.0
+        small = 1e-6 * self.largest_torque_nm
+        sense = np.where(np.abs(step) > small, np.sign(step), 0.0)
+        last = np.maximum.accumulate(np.where(sense != 0, np.arange(len(sense)), 0))
+        filled = sense[last]
+        return np.where(filled == 0, np.where(self.side > 0, 1.0, -1.0), filled)
+
+    @cached_property
+    def start_angle_deg(self) -> Floats:
+        """Angle at which fresh slip elements are anchored: unloaded contact on the first flank."""
+        return self.datum_deg + self.side * self.free_play_deg
+
+    @cached_property
+    def twist_rate_deg_per_s(self) -> Floats:
+        """Rate of twist under contact, by differences of the torque [deg/s]."""
+        if self.time_s is None:
+            raise ValueError("a rate of twist needs a clock")
+        rate = np.zeros(len(self))
+        stops = np.r_[self.run_starts[1:], len(self)]
+        for start, stop in zip(self.run_starts, stops, strict=True):
+            torque, time = self.applied_nm[start:stop], self.time_s[start:stop]
+            back = max((stop - start) // 250, 1)
+            if len(torque) <= back:
+                continue
+            step = time[back:] - time[:-back]
+            moved = torque[back:] - torque[:-back]
+            part = np.divide(moved, step, out=np.zeros_like(moved), where=step > 0)
+            rate[start + back : stop] = part
+            rate[start : start + back] = part[0]
+        return rate * self.compliance_deg_per_nm

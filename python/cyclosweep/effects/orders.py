@@ -1,0 +1,36 @@
+"""Harmonics of the mesh position, shared by the effects that are periodic in it."""
+
+import numpy as np
+
+from cyclosweep.effects.base import Parameter, Shape
+from cyclosweep.effects.history import Floats, History
+
+
+def distinct_positions(history: History) -> int:
+    """Count the positions of the mesh zone in a recording, to a tenth of a degree."""
+    if history.crank_deg is None:
+        return 0
+    return len(np.unique(np.round(history.crank_deg % 360.0, 1)))
+
+
+def harmonics(history: History, shape: Shape) -> Floats:
+    """Cosine and sine of every order in the shape, one pair of columns an order."""
+    assert history.crank_deg is not None
+    angle = np.radians(history.crank_deg)
+    return np.column_stack(
+        [wave(order * angle) for order in shape.values() for wave in (np.cos, np.sin)]
+    )
+
+
+def order_shapes(sets: list[tuple[int, ...]]) -> list[Shape]:
+    """Shapes that name their orders."""
+    return [{f"order_{k}": float(m) for k, m in enumerate(orders, 1)} for orders in sets]
+
+
+def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...]:
+    """One cosine and one sine amplitude an order."""
+    return tuple(
+        Parameter(f"{wave}_{int(order)}", unit, f"{what}, {wave} of order {int(order)}")
+        for order in shape.values()
+        for wave in ("cos", "sin")
+    )

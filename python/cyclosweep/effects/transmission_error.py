@@ -1,0 +1,40 @@
+"""Kinematic error of the profile: an offset that depends on the position, whatever the load."""
+
+from collections.abc import Sequence
+
+from cyclosweep.effects.base import Effect, Parameter, Shape
+from cyclosweep.effects.history import Floats, History
+from cyclosweep.effects.orders import distinct_positions, harmonics, order_amplitudes, order_shapes
+
+
+class TransmissionError(Effect):
+    """Offset periodic in the position of the mesh zone, orders 1 to 3."""
+
+    name = "transmission_error"
+    physics = (
+        "Errors of profile, pitch and eccentricity turn the output by an amount that depends on "
+        "where the mesh zone stands. It does not depend on the load."
+    )
+    source = "Blanche, Yang, J. Mech. Trans. Autom. Des. 111(3), 1989, doi 10.1115/1.3259008"
+    tell_tale = "offset periodic in crank position, orders 1-3, whatever the load"
+    family = "run offsets"
+    needs = ("crank_deg",)
+
+    def untestable(self, history: History) -> str | None:
+        """Need at least three positions."""
+        reason = super().untestable(history)
+        if reason is None and distinct_positions(history) < 3:
+            reason = "the mesh zone stood at fewer than three positions"
+        return reason
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Single orders, and the first few together."""
+        return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3)])
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Offset for unit amplitudes [deg]."""
+        return harmonics(history, shape)
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Amplitudes of the offset."""
+        return order_amplitudes(shape, "kinematic error", "deg")

@@ -1,0 +1,191 @@
+"""Checks of a recording that was read: clock, gaps, saturation, duplicates, sample size."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cyclosweep.recording.faults import Fault
+
+if TYPE_CHECKING:
+    from cyclosweep.recording.recording import Recording
+
+MIN_SAMPLES = 8
+"""Fewest samples from which stiffness, free play, datum and a scatter can be told."""
+
+ABSURD = 1e10
+"""Magnitude that no reading has, in any of the units."""
+
+GAP_FACTOR = 20.0
+"""A step of the clock beyond so many median steps is a gap."""
+
+
+@np.errstate(all="ignore")
+def find_faults(recording: "Recording") -> tuple[Fault, ...]:
+    """Everything that is wrong with a recording, worst first."""
+    if absurd := _absurd(recording):
+        return absurd
+    faults = [
+        *_sample_size(recording),
+        *_runs(recording),
+        *_clock(recording),
+        *_range(recording),
+        *_relation(recording),
+    ]
+    order = {"DATA_FAULT": 0, "INSUFFICIENT_DATA": 1, None: 2}
+    return tuple(sorted(faults, key=lambda fault: order[fault.verdict]))
+
+
+def _absurd(recording: "Recording") -> tuple[Fault, ...]:
+    """Refuse numbers that no torque, angle or clock has."""
+    for name, unit in (("torque_nm", "N m"), ("angle_deg", "deg"), ("time_s", "s")):
+        values = getattr(recording, name)
+        largest = 0.0 if values is None else float(np.abs(values).max(initial=0.0))
+        if largest > ABSURD:
+            reason = f"{name} reaches {largest:.3g} {unit}: no rig reads that."
+            return (Fault("absurd_value", "DATA_FAULT", reason),)
+    return ()
+
+
+def _sample_size(recording: "Recording") -> list[Fault]:
+    """Too few samples."""
+    if recording.is_program or len(recording) >= MIN_SAMPLES:
+        return []
+    return [
+        Fault(
+            "too_few_samples",
+            "INSUFFICIENT_DATA",
+            f"{len(recording)} samples: at least {MIN_SAMPLES} are needed to tell stiffness, free "
+            "play and datum from scatter.",
+        )
+    ]
+
+
+def _runs(recording: "Recording") -> list[Fault]:
+    """Find runs that appear in two places, and metadata that name runs which are not there."""
+    faults = []
+    run = recording.run
+    blocks = 1 + np.count_nonzero(np.diff(run)) if len(run) else 0
+    if blocks > len(recording.runs):
+        faults.append(
+            Fault(
+                "run_split",
+                "DATA_FAULT",
+                f"{len(recording.runs)} run numbers in {blocks} separate blocks of rows: the order "
+                "of events is unknown. Sort the rows as they were recorded.",
+            )
+        )
+    for key in ("conditioning_runs", "holdout_runs"):
+        absent = [k for k in getattr(recording, key) if k not in recording.runs]
+        if absent:
+            faults.append(
+                Fault("run_absent", None, f"{key} names run {absent[0]}, which has no samples.")
+            )
+    return faults
+
+
+def _clock(recording: "Recording") -> list[Fault]:
+    """Time that runs backwards within a run, ticks that repeat, gaps."""
+    time, run = recording.time_s, recording.run
+    if time is None or len(time) < 2:
+        return []
+    faults = []
+    step = np.diff(time)
+    within = np.diff(run) == 0
+    back = np.flatnonzero((step < 0) & within)
+    if len(back):
+        at = int(back[0])
+        faults.append(
+            Fault(
+                "time_backwards",
+                "DATA_FAULT",
+                f"Time runs backwards {len(back)} times, first at sample {at + 2} of run "
+                f"{run[at + 1]} ({time[at]:g} s, then {time[at + 1]:g} s): the order of events is "
+                "unknown.",
+            )
+        )
+    forward = step[within & (step > 0)]
+    ticks = np.count_nonzero(within & (step == 0))
+    if ticks:
+        faults.append(
+            Fault(
+                "clock_ticks",
+                None,
+                f"{ticks} samples share a clock tick with the one before; [merge] same_time = true "
+                "averages them.",
+            )
+        )
+    if len(forward):
+        gaps = within & (step > GAP_FACTOR * np.median(forward))
+        if gaps.any():
+            faults.append(
+                Fault(
+                    "gaps",
+                    None,
+                    f"{np.count_nonzero(gaps)} gaps in the clock, the longest "
+                    f"{step[gaps].max():g} s: what happened in them is unknown.",
+                )
+            )
+    return faults
+
+
+def _range(recording: "Recording") -> list[Fault]:
+    """Constant torque or angle, and plateaus at the end of the range."""
+    torque, angle = recording.torque_nm, recording.angle_deg
+    if angle is None or len(torque) < 2:
+        return []
+    faults = []
+    if np.ptp(torque) <= 1e-9 * np.abs(torque).max():
+        return [
+            Fault(
+                "constant_torque",
+                "INSUFFICIENT_DATA",
+                f"Torque is constant at {torque[0]:g} N m: without a change of load neither "
+                "stiffness nor free play can be told.",
+            )
+        ]
+    if np.ptp(angle) <= 1e-9 * np.abs(angle).max():
+        return [
+            Fault(
+                "constant_angle",
+                "DATA_FAULT",
+                f"Angle stays at {angle[0]:g} deg while torque goes from {torque.min():g} to "
+                f"{torque.max():g} N m: the angle sensor did not move.",
+            )
+        ]
+    for name, values, other, unit in (
+        ("angle", angle, torque, "deg"),
+        ("torque", torque, angle, "N m"),
+    ):
+        for end, level in (("lower", values.min()), ("upper", values.max())):
+            pinned = values == level
+            share = float(np.mean(pinned))
+            moved = np.ptp(other[pinned]) / np.ptp(other)
+            if np.count_nonzero(pinned) >= 5 and moved > 0.1:
+                faults.append(
+                    Fault(
+                        "saturation",
+                        "DATA_FAULT" if share > 0.5 else None,
+                        f"The {name} reading stands at its {end} end, {level:g} {unit}, for "
+                        f"{share:.1%} of the samples while the other reading goes over "
+                        f"{moved:.0%} of its range: it may be saturated.",
+                    )
+                )
+    return faults
+
+
+def _relation(recording: "Recording") -> list[Fault]:
+    """Refuse an angle that does not follow the torque at all."""
+    torque, angle = recording.torque_nm, recording.angle_deg
+    if angle is None or len(torque) < 30 or not np.ptp(torque) or not np.ptp(angle):
+        return []
+    relation = float(np.corrcoef(torque, angle)[0, 1])
+    if np.isfinite(relation) and abs(relation) > 0.05:
+        return []
+    return [
+        Fault(
+            "unrelated",
+            "DATA_FAULT",
+            f"Angle does not follow torque (correlation {relation:.2f}): are these columns torque "
+            "and twist of one test?",
+        )
+    ]

@@ -1,0 +1,144 @@
+"""The TOML file beside a recording that says how to read it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from cyclosweep.drive import one_line, read_toml
+from cyclosweep.errors import InputError
+
+CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
+"""Column names of a recording, each with its unit."""
+
+CanonicalName = Literal["torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c"]
+SelectValue = int | float | str
+
+
+class _Strict(BaseModel):
+    """Unknown keys and values of another type are refused."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class Column(_Strict):
+    """Where a canonical column comes from.
+
+    Attributes
+    ----------
+    column : str
+        Its name in the file.
+    scale : float
+        Factor from the file's unit to the canonical one.
+    offset : float
+        Added after scaling [canonical unit].
+    modulo : float or None
+        The value is known only up to a multiple of this [canonical unit]; steps beyond half of it
+        are taken as a wrap.
+    """
+
+    column: str
+    scale: float = 1.0
+    offset: float = 0.0
+    modulo: float | None = Field(default=None, gt=0)
+
+    @model_validator(mode="after")
+    def _scale_is_not_zero(self) -> Self:
+        if self.scale == 0:
+            raise ValueError("scale must not be 0")
+        return self
+
+
+class Merge(_Strict):
+    """Which neighbouring rows are averaged into one.
+
+    Attributes
+    ----------
+    same_time : bool
+        Average consecutive rows of one run that share a clock tick.
+    """
+
+    same_time: bool = False
+
+
+def _named_column(value: object) -> object:
+    """Accept the short form ``torque_nm = "TORQUE"``."""
+    return {"column": value} if isinstance(value, str) else value
+
+
+class Metadata(_Strict):
+    """How a recording is read, and what is known about it.
+
+    Attributes
+    ----------
+    side : {"input", "output"} or None
+        Shaft at which torque and angle were measured.
+    drive : str or None
+        Built-in name, or a drive file beside the metadata file.
+    angle_resolution_deg : float or None
+        Step of the angle reading [deg]; 0 or None: continuous.
+    history : {"per-run", "continuous"}
+        Whether play, slip and creep start afresh with every run.
+    reset_between_runs : bool
+        The rig was reset, so that the datum cannot remember earlier runs either.
+    conditioning_runs, holdout_runs : list of int
+        Runs that are simulated only, and runs that are kept for the verdict.
+    columns : dict
+        File column, scale and modulo of each canonical column that differs.
+    select : dict
+        Values to keep, by column; `abs_max` limits magnitudes.
+    merge : Merge
+        Rows to average.
+    """
+
+    side: Literal["input", "output"] | None = None
+    drive: str | None = None
+    angle_resolution_deg: float = Field(default=0.0, ge=0)
+    history: Literal["per-run", "continuous"] = "per-run"
+    reset_between_runs: bool = False
+    conditioning_runs: list[int] = Field(default_factory=list)
+    holdout_runs: list[int] = Field(default_factory=list)
+    columns: dict[CanonicalName, Annotated[Column, BeforeValidator(_named_column)]] = Field(
+        default_factory=dict
+    )
+    select: dict[str, list[SelectValue] | dict[str, float]] = Field(default_factory=dict)
+    merge: Merge = Field(default_factory=Merge)
+
+    @model_validator(mode="after")
+    def _select_is_lists_and_limits(self) -> Self:
+        for key, value in self.select.items():
+            if (key == "abs_max") != isinstance(value, dict):
+                expected = "a table of limits" if key == "abs_max" else "a list of values"
+                raise ValueError(f"select.{key}: expected {expected}")
+        both = set(self.conditioning_runs) & set(self.holdout_runs)
+        if both:
+            raise ValueError(f"run {min(both)} is both a conditioning and a holdout run")
+        return self
+
+    @property
+    def keep(self) -> dict[str, list[SelectValue]]:
+        """Values to keep, by column."""
+        return {key: value for key, value in self.select.items() if isinstance(value, list)}
+
+    @property
+    def abs_max(self) -> Mapping[str, float]:
+        """Largest magnitude to keep, by column."""
+        limits = self.select.get("abs_max", {})
+        return limits if isinstance(limits, dict) else {}
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """Read a metadata file.
+
+        Raises
+        ------
+        InputError
+            The file is missing, is not TOML, or has a key or value that is not known.
+        """
+        try:
+            return cls.model_validate(read_toml(path))
+        except ValidationError as error:
+            raise InputError(f"{path}: {one_line(error)}") from None
+        except RecursionError:
+            raise InputError(f"{path}: nested too deeply, expected a flat TOML file") from None

@@ -1,0 +1,212 @@
+"""A torque-twist recording or load programme as arrays, with what is known about it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal, Self
+
+import numpy as np
+import polars as pl
+from numpy.typing import ArrayLike, NDArray
+
+from cyclosweep.errors import InputError
+from cyclosweep.recording import reading, structure
+from cyclosweep.recording.checks import find_faults
+from cyclosweep.recording.faults import Fault
+from cyclosweep.recording.messages import printable
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recording:
+    """Torque and twist of a drive with its output (or input) locked, in the order recorded.
+
+    Attributes
+    ----------
+    name : str
+        Stem of the file.
+    path : Path or None
+        File it was read from.
+    torque_nm : ndarray of float, shape (n,)
+        Torque at the measured shaft [N m].
+    angle_deg : ndarray of float, shape (n,), or None
+        Twist at the measured shaft [deg], unwrapped, positive with the torque; None for a load
+        programme.
+    time_s : ndarray of float or None
+        Clock [s]. Without it only the order of rows is known and rate effects are untestable.
+    run : ndarray of int
+        Trial each sample belongs to.
+    crank_deg : ndarray of float or None
+        Position of the mesh zone at which the output was locked [deg].
+    temperature_c : ndarray of float or None
+        Temperature [degC].
+    side : {"input", "output"}
+        Shaft at which torque and angle were measured.
+    drive : str or None
+        Built-in name of the drive, or path to a drive file.
+    angle_resolution_deg : float
+        Step of the angle reading [deg]; 0 where it is continuous.
+    history : {"per-run", "continuous"}
+        Whether play, slip and creep start afresh with every run.
+    reset_between_runs : bool
+        The rig was reset between runs, so that the datum cannot remember either.
+    conditioning_runs : tuple of int
+        Runs simulated for their effect on the state, neither fitted nor scored.
+    holdout_runs : tuple of int
+        Runs kept for the verdict; empty: chosen by blocks.
+    notes : tuple of str
+        What was recognised and changed while reading.
+    faults : tuple of Fault
+        What is wrong with it; see `cyclosweep.recording.faults` for the rule.
+    sha256 : str or None
+        Hash of the file, for provenance.
+    """
+
+    name: str
+    path: Path | None = None
+    torque_nm: Floats
+    angle_deg: Floats | None = None
+    time_s: Floats | None = None
+    run: Ints
+    crank_deg: Floats | None = None
+    temperature_c: Floats | None = None
+    side: Literal["input", "output"] = "input"
+    drive: str | None = None
+    angle_resolution_deg: float = 0.0
+    history: Literal["per-run", "continuous"] = "per-run"
+    reset_between_runs: bool = False
+    conditioning_runs: tuple[int, ...] = ()
+    holdout_runs: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
+    faults: tuple[Fault, ...] = ()
+    sha256: str | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("torque_nm", "angle_deg", "time_s", "crank_deg", "temperature_c", "run"):
+            given = getattr(self, name)
+            if given is None:
+                continue
+            array = np.asarray(given, dtype=np.int64 if name == "run" else np.float64)
+            if array.ndim != 1 or len(array) != len(self.torque_nm):
+                raise ValueError(
+                    f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
+                )
+            if array.flags.writeable:
+                array = array.copy()
+                array.flags.writeable = False
+            object.__setattr__(self, name, array)
+
+    @classmethod
+    def read(cls, path: str | Path, meta: str | Path | None = None) -> Self:
+        """Read a recording or a load programme.
+
+        Parameters
+        ----------
+        path : path
+            CSV (also gzip, byte-order mark, ``;`` with decimal commas) or Parquet.
+        meta : path, optional
+            TOML file that says how to read it; default: the file of the same stem beside it,
+            where there is one.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read as a recording; one line says why.
+        """
+        try:
+            parts = reading.read(Path(path), None if meta is None else Path(meta))
+        except InputError as error:  # names in the file may hold line breaks
+            raise InputError(printable(str(error))) from None
+        recording = cls(**parts)
+        return replace(recording, faults=(*recording.faults, *find_faults(recording)))
+
+    @classmethod
+    def from_arrays(
+        cls,
+        torque_nm: ArrayLike,
+        angle_deg: ArrayLike | None = None,
+        *,
+        time_s: ArrayLike | None = None,
+        run: ArrayLike | None = None,
+        crank_deg: ArrayLike | None = None,
+        temperature_c: ArrayLike | None = None,
+        name: str = "recording",
+        **known: Any,
+    ) -> Self:
+        """Make a recording of arrays; other attributes by keyword.
+
+        Examples
+        --------
+        >>> Recording.from_arrays([0.0, 5.0, 0.0], [28.0, 41.7, 28.1], side="input").runs
+        (1,)
+        """
+        torque = np.asarray(torque_nm, dtype=np.float64)
+        recording = cls(
+            name=name,
+            torque_nm=torque,
+            angle_deg=_floats(angle_deg),
+            time_s=_floats(time_s),
+            run=np.asarray(np.ones(len(torque)) if run is None else run, dtype=np.int64),
+            crank_deg=_floats(crank_deg),
+            temperature_c=_floats(temperature_c),
+            **known,
+        )
+        return replace(recording, faults=find_faults(recording))
+
+    def __len__(self) -> int:
+        return len(self.torque_nm)
+
+    @property
+    def is_program(self) -> bool:
+        """Whether it is a load programme, without a measured angle."""
+        return self.angle_deg is None
+
+    @property
+    def runs(self) -> tuple[int, ...]:
+        """Numbers of the runs in the order recorded."""
+        if not len(self):
+            return ()
+        first = np.unique(self.run, return_index=True)[1]
+        return tuple(int(k) for k in self.run[np.sort(first)])
+
+    @property
+    def blocking_fault(self) -> Fault | None:
+        """First fault that forces a verdict; contradictions before shortage."""
+        forcing = [fault for fault in self.faults if fault.verdict]
+        return min(forcing, key=lambda fault: fault.verdict != "DATA_FAULT", default=None)
+
+    @cached_property
+    def structure(self) -> "structure.Structure":
+        """Runs, branches, holds, reversals and dead-zone samples."""
+        return structure.find_structure(self)
+
+    def in_runs(self, runs: Iterable[int]) -> NDArray[np.bool_]:
+        """Mask of the samples that belong to the given runs."""
+        return np.isin(self.run, list(runs))
+
+    def take(self, rows: NDArray[np.bool_] | Sequence[int] | Ints | slice) -> Self:
+        """Return a part of the recording, in the order recorded."""
+        parts: dict[str, Any] = {
+            name: None if (array := getattr(self, name)) is None else array[rows]
+            for name in ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
+        }
+        return replace(self, **parts)
+
+    def with_angle(self, angle_deg: ArrayLike | None) -> Self:
+        """Return the same load history with another angle, as for synthetic twins."""
+        return replace(self, angle_deg=_floats(angle_deg))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Canonical columns as a polars frame."""
+        columns = ("time_s", "torque_nm", "angle_deg", "run", "crank_deg", "temperature_c")
+        return pl.DataFrame(
+            {name: array for name in columns if (array := getattr(self, name)) is not None}
+        )
+
+
+def _floats(values: ArrayLike | None) -> Floats | None:
+    """Make an array of floats, where there is one to make."""
+    return None if values is None else np.asarray(values, dtype=np.float64)

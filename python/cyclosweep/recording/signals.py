@@ -1,0 +1,126 @@
+"""What a torque or angle signal shows of itself: wraps, sign, resolution, clock ticks."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
+    """Undo wraps: steps beyond half a period are taken as the shorter way round.
+
+    Parameters
+    ----------
+    values : ndarray of float
+        Signal in file order; non-finite samples are passed over.
+    period : float
+        Where it wraps [unit of the signal].
+
+    Returns
+    -------
+    unwrapped : ndarray of float
+    count : int
+        Number of wraps undone.
+
+    Examples
+    --------
+    >>> unwrap(np.array([350.0, 5.0, 355.0]), 360.0)
+    (array([350., 365., 355.]), 2)
+    """
+    finite = np.isfinite(values)
+    known = values[finite]
+    turns = np.rint(np.diff(known, prepend=known[:1]) / period)
+    unwrapped = values.copy()
+    unwrapped[finite] = known - period * np.cumsum(turns)
+    return unwrapped, int(np.count_nonzero(turns))
+
+
+def wraps_at_360(angle_deg: Floats, torque_nm: Floats) -> bool:
+    """Whether a dial of one turn jumps from one of its ends to the other.
+
+    All readings must lie within one turn, some step must exceed half of it, and the unwrapped
+    angle must follow the torque no worse: a soft drive that is loaded the other way between two
+    readings also makes a long step, but a true one.
+    """
+    if len(angle_deg) < 2:
+        return False
+    low, high = float(angle_deg.min()), float(angle_deg.max())
+    one_turn = (low >= 0 and high <= 360) or (low >= -180 and high <= 180)
+    if not one_turn or np.abs(np.diff(angle_deg)).max() <= 180:
+        return False
+    unwrapped, _ = unwrap(angle_deg, 360.0)
+    return not _relation(torque_nm, unwrapped) < _relation(torque_nm, angle_deg)
+
+
+def _relation(a: Floats, b: Floats) -> float:
+    """Magnitude of the correlation; NaN where one of them is constant."""
+    return abs(float(np.corrcoef(a, b)[0, 1]))
+
+
+def sign_is_reversed(torque_nm: Floats, angle_deg: Floats, run: NDArray[np.generic]) -> bool:
+    """Whether the angle falls where the torque rises, pooled within runs.
+
+    A correlation below -0.5 decides; noise and friction loops leave it far above zero.
+    """
+    if len(torque_nm) < 3:
+        return False
+    label = np.unique(run, return_inverse=True)[1]
+    count = np.bincount(label)
+    torque = torque_nm - (np.bincount(label, torque_nm) / count)[label]
+    angle = angle_deg - (np.bincount(label, angle_deg) / count)[label]
+    spread = np.sqrt(np.mean(torque**2) * np.mean(angle**2))
+    return bool(spread > 0 and np.mean(torque * angle) < -0.5 * spread)
+
+
+def angle_lattice(angle_deg: Floats) -> float:
+    """Step of the angle reading [deg] where all values are multiples of one; else 0.
+
+    Steps below a thousandth of the range, as the printing of decimals makes them, do not matter
+    and count as continuous; so do steps that no dial or encoder has.
+    """
+    levels = np.unique(angle_deg)
+    if len(levels) < 3 or len(levels) > 1000:
+        return 0.0
+    step = float(np.diff(levels).min())
+    span = float(levels[-1] - levels[0])
+    if step < 1e-3 * span:
+        return 0.0
+    places = (levels - levels[0]) / step
+    if np.abs(places - np.rint(places)).max() > 1e-3:
+        return 0.0
+    step = float(f"{span / np.rint(places[-1]):.6g}")
+    return step if _is_graduation(step) else 0.0
+
+
+def _is_graduation(step_deg: float) -> bool:
+    """Whether a dial or an encoder has such steps: 1, 2, 2.5 or 5 times ten to a power, or 360/2^n.
+
+    Even steps of torque on a straight line give even steps of angle too, but not such ones.
+    """
+    mantissa = step_deg / 10.0 ** np.floor(np.log10(step_deg) + 1e-9)
+    power = np.log2(360.0 / step_deg)
+    dial = bool(np.isclose(mantissa, [1.0, 2.0, 2.5, 5.0], rtol=1e-5).any())
+    return dial or bool(abs(power - np.rint(power)) < 1e-5)
+
+
+def merge_same_time(
+    columns: dict[str, Floats | None], time_s: Floats, run: Floats
+) -> tuple[dict[str, Floats | None], int]:
+    """Average neighbouring samples of one run that share a clock tick, in file order.
+
+    Returns
+    -------
+    merged : dict
+        The columns, shorter.
+    largest : int
+        Most samples that became one.
+    """
+    if not len(time_s):
+        return columns, 0
+    starts = np.flatnonzero(np.r_[True, (np.diff(time_s) != 0) | (np.diff(run) != 0)])
+    counts = np.diff(np.r_[starts, len(time_s)])
+    merged = {
+        name: None if values is None else np.add.reduceat(values, starts) / counts
+        for name, values in columns.items()
+    }
+    return merged, int(counts.max())

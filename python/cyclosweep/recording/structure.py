@@ -1,0 +1,177 @@
+"""How a load history is made up: runs, branches, reversals, holds, dead-zone samples."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from cyclosweep.recording.recording import Recording
+
+Direction = Literal["loading", "unloading"]
+
+REVERSAL_SHARE = 0.05
+"""A change of direction counts once the torque has gone back by this share of its range."""
+
+HOLD_SAMPLES = 5
+"""Fewest samples at one torque that count as a hold."""
+
+DEAD_ZONE_SHARE = 0.005
+"""Torque below this share of the largest leaves the twist undetermined, unless told otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """Samples `start` to `stop` (exclusive) over which the magnitude of torque goes one way."""
+
+    run: int
+    start: int
+    stop: int
+    direction: Direction
+    torque_from_nm: float
+    torque_to_nm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """Samples `start` to `stop` (exclusive) at one torque."""
+
+    run: int
+    start: int
+    stop: int
+    torque_nm: float
+    duration_s: float | None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Structure:
+    """Structure of a load history.
+
+    Attributes
+    ----------
+    branches : tuple of Branch
+        In the order recorded; every sample belongs to one.
+    holds : tuple of Hold
+        Plateaus of torque.
+    reversals : ndarray of int
+        Samples at which the torque turns back.
+    sense : ndarray of int8, shape (n,)
+        +1 where torque rises, -1 where it falls.
+    loading : ndarray of bool, shape (n,)
+        Whether the magnitude of torque grows.
+    dead_zone : ndarray of bool, shape (n,)
+        Torque so small that the twist is not determined.
+    """
+
+    branches: tuple[Branch, ...]
+    holds: tuple[Hold, ...]
+    reversals: NDArray[np.int64]
+    sense: NDArray[np.int8]
+    loading: NDArray[np.bool_]
+    dead_zone: NDArray[np.bool_]
+
+
+def find_structure(recording: "Recording") -> Structure:
+    """Split a load history into branches, holds and reversals, each within a run."""
+    torque, run = recording.torque_nm, recording.run
+    n = len(torque)
+    sense = np.ones(n, dtype=np.int8)
+    loading = np.ones(n, dtype=bool)
+    largest = float(np.abs(torque).max(initial=0.0))
+    threshold = REVERSAL_SHARE * float(np.ptp(torque)) if n else 0.0
+    edges = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
+    reversals: list[int] = []
+    branches: list[Branch] = []
+    holds: list[Hold] = []
+    for start, stop in pairwise([*edges, n]):
+        part = torque[start:stop]
+        turns = turning_points(part, threshold)
+        reversals += (turns + start).tolist()
+        bounds = [0, *(turns + 1), len(part)]
+        for a, b in pairwise(start + np.array(bounds)):
+            rising = torque[b - 1] >= torque[max(a - 1, start)]
+            sense[a:b] = 1 if rising else -1
+            crossing = a + _zero_crossing(torque[a:b], rising)
+            loading[a:crossing], loading[crossing:b] = False, True
+        holds += _holds(recording, int(start), int(stop))
+    cuts = np.flatnonzero((np.diff(loading) != 0) | (np.diff(run) != 0)) + 1
+    for a, b in pairwise([0, *cuts, n]):
+        if b > a:
+            direction: Direction = "loading" if loading[a] else "unloading"
+            ends = float(torque[a]), float(torque[b - 1])
+            branches.append(Branch(int(run[a]), int(a), int(b), direction, *ends))
+    return Structure(
+        tuple(branches),
+        tuple(holds),
+        np.array(reversals, dtype=np.int64),
+        sense,
+        loading,
+        np.abs(torque) <= DEAD_ZONE_SHARE * largest,
+    )
+
+
+def turning_points(values: NDArray[np.float64], threshold: float) -> NDArray[np.int64]:
+    """Find the extremes between which a signal goes at least `threshold` one way.
+
+    Smaller wiggles, as noise makes them, are passed over (the rainflow convention).
+
+    Examples
+    --------
+    >>> turning_points(np.array([0.0, 5.0, 4.9, 9.0, 1.0, 1.1, 6.0]), 0.5)
+    array([3, 4])
+    """
+    if len(values) < 3:
+        return np.zeros(0, dtype=np.int64)
+    moving = np.flatnonzero(np.r_[True, np.diff(values) != 0])
+    slope = np.sign(np.diff(values[moving]))
+    inner = moving[1:-1][slope[1:] != slope[:-1]]
+    candidates = [0, *inner.tolist(), len(values) - 1]
+    turns: list[int] = []
+    high = low = candidates[0]
+    direction = 0
+    for index in candidates:
+        value = values[index]
+        if value > values[high]:
+            high = index
+        if value < values[low]:
+            low = index
+        if direction >= 0 and values[high] - value > threshold:
+            if direction > 0 or high > low:
+                turns.append(high)
+            direction, low, high = -1, index, index
+        elif direction <= 0 and value - values[low] > threshold:
+            if direction < 0 or low > high:
+                turns.append(low)
+            direction, low, high = 1, index, index
+    return np.array([turn for turn in turns if turn > 0], dtype=np.int64)
+
+
+def _zero_crossing(torque: NDArray[np.float64], rising: bool) -> int:
+    """Index within one sweep from which the magnitude of torque grows.
+
+    The sum of torque turns there, which noise around zero does not shift.
+    """
+    total = np.cumsum(torque if rising else -torque)
+    lowest = int(np.argmin(total))
+    return lowest + 1 if total[lowest] < 0 else 0
+
+
+def _holds(recording: "Recording", start: int, stop: int) -> list[Hold]:
+    """Plateaus of at least `HOLD_SAMPLES` samples of equal torque within one run."""
+    torque = recording.torque_nm[start:stop]
+    edges = np.flatnonzero(np.r_[True, np.diff(torque) != 0])
+    ends = np.r_[edges[1:], len(torque)]
+    long = ends - edges >= HOLD_SAMPLES
+    time = recording.time_s
+    return [
+        Hold(
+            int(recording.run[start]),
+            start + int(a),
+            start + int(b),
+            float(torque[a]),
+            None if time is None else float(time[start + b - 1] - time[start + a]),
+        )
+        for a, b in zip(edges[long], ends[long], strict=True)
+    ]

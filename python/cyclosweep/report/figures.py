@@ -1,0 +1,271 @@
+"""The figures of a report: the main picture, the zoom with the energy, those of the residual."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cyclosweep.recording import Recording
+from cyclosweep.report.charts import (
+    AFTER,
+    BEFORE,
+    FAINT,
+    MEASURED,
+    MODELLED,
+    QUIET,
+    Band,
+    Figure,
+    Line,
+    Panel,
+    Placed,
+    Points,
+    Series,
+)
+from cyclosweep.report.data import ReportData
+from cyclosweep.report.loops import LOST_MOTION_SHARE, dead_zone_crossings, loop_figures
+from cyclosweep.report.regions import axis_values, located, residual_axis, spans_of
+from cyclosweep.report.residual_figures import map_figure, profiles_figure
+from cyclosweep.report.thin import thin
+from cyclosweep.report.wording import ARCMIN, number
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+NAME_MEASURED = "measured"
+NAME_BEFORE = "simulation before"
+NAME_AFTER = "simulation after"
+
+
+def all_figures(data: ReportData) -> list[Figure]:
+    """Every figure that the data allow, the main picture first."""
+    if data.recording.angle_deg is None or len(data.recording) < 2:
+        return []
+    figures = [main_figure(data), zoom_figure(data)]
+    if data.residual_before_deg is not None:
+        figures += [profiles_figure(data), map_figure(data)]
+    return figures
+
+
+def main_figure(data: ReportData) -> Figure:
+    """Loop measured, before and after; residual before and after with the region shaded."""
+    recording = data.recording
+    shown = _shown_rows(data)
+    loop = Panel(
+        title="Torque–twist loop",
+        x_label=f"torque at the {recording.side} shaft (N m)",
+        y_label=f"twist at the {recording.side} shaft (deg)",
+        series=tuple(_loop_series(data, shown, _reach(len(recording), len(shown)))),
+        spans=tuple(spans_of(data, "torque", labelled=False)),
+    )
+    before, after = data.residual_before_deg, data.residual_after_deg
+    if before is None or after is None:
+        return Figure(
+            key="loop",
+            title="Measured loop",
+            caption="The recording as it was read. There is no simulation to compare it with.",
+            panels=(Placed(panel=loop, row=0, column=0),),
+            row_height=430,
+        )
+    axis = residual_axis(data)
+    x, x_label = axis_values(recording, axis)
+    sigma, _ = data.noise
+    rows = shown[data.scored[shown]]
+    limit = 1.2 * max(np.abs(before[rows]).max(), np.abs(after[rows]).max(), 2 * sigma, 1e-9)
+    chosen = located(data)[rows]
+    inside, outside = rows[chosen], rows[~chosen]
+    panels = [Placed(panel=loop, row=0, column=0, rows=2)]
+    change = " with the effects named below" if data.is_repaired else ", as nothing was repaired"
+    repair: list[Series] = []
+    after_title = "Residual after" if data.is_repaired else "Residual after (no repair)"
+    if data.is_repaired:
+        added = before - after
+        line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
+        repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
+    for row, (residual, colour, title, model) in enumerate(
+        (
+            (before, BEFORE, "Residual before", repair),
+            (after, AFTER, after_title, []),
+        )
+    ):
+        rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))
+        panel = Panel(
+            title=f"{title}: {number(rmse)} deg rms over all samples",
+            x_label=x_label,
+            y_label="residual (deg)",
+            series=(
+                *_noise_band(x[rows], sigma),
+                Points(x[outside], residual[outside], "", FAINT, _dot(len(rows))),
+                Points(x[inside], residual[inside], "", colour, _dot(len(rows))),
+                *model,
+            ),
+            spans=tuple(spans_of(data, axis, labelled=row == 0)),
+            y_range=(-limit, limit),
+            right_factor=ARCMIN,
+            right_label="residual (arcmin)",
+            zero_line=True,
+        )
+        panels.append(Placed(panel=panel, row=row, column=1))
+    return Figure(
+        key="loop",
+        title="Measured loop, simulation before and after, and what is left",
+        caption="Before: the published model with calibrated stiffness, free play and datum. "
+        f"After: the same{change}. Shaded: where simulation and recording "
+        "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
+        f"deviations of the noise ({number(sigma)} deg).",
+        panels=tuple(panels),
+        rows=2,
+        columns=2,
+        row_height=258,
+    )
+
+
+def zoom_figure(data: ReportData) -> Figure:
+    """Loop around zero torque, and the energy lost in each cycle."""
+    recording = data.recording
+    torque, measured = recording.torque_nm, recording.angle_deg
+    assert measured is not None  # all_figures asks first
+    rated = data.rated_torque_nm or float(np.abs(torque).max())
+    share = LOST_MOTION_SHARE
+    enough = min(20, len(torque) // 4)
+    while np.count_nonzero(np.abs(torque) <= share * rated) < enough and share < 0.5:
+        share *= 2
+    near = np.flatnonzero(np.abs(torque) <= share * rated)
+    every = len(near)
+    near = near[thin(every, measured[near], 3000)]
+    reach = _reach(every, len(near))
+    of = "rated" if data.rated_torque_nm else "the largest"
+    sides = _zoom_sides(torque[near], measured[near], share * rated)
+    panels = [
+        Placed(
+            panel=Panel(
+                title=f"Around zero: ±{number(100 * share)} % of {of} torque" if not column else "",
+                x_label=f"torque at the {recording.side} shaft (N m)",
+                y_label=f"twist at the {recording.side} shaft (deg)",
+                series=tuple(_loop_series(data, near[rows], reach)),
+                x_range=x_range,
+            ),
+            row=0,
+            column=column,
+        )
+        for column, (rows, x_range) in enumerate(sides)
+    ]
+    energy = _energy_series(data)
+    if energy:
+        runs = list(recording.runs)
+        step = max(1, len(runs) // 12)
+        panels.append(
+            Placed(
+                panel=Panel(
+                    title="Energy lost in one cycle",
+                    x_label="run",
+                    y_label="energy (J)",
+                    series=tuple(energy),
+                    x_names=tuple((float(k), str(run)) for k, run in enumerate(runs))[::step],
+                    x_range=(-0.6, len(runs) - 0.4),
+                ),
+                row=0,
+                column=len(sides),
+            )
+        )
+    return Figure(
+        key="zoom",
+        title="Around zero torque, and energy",
+        caption="Lost motion is read between +3 % and −3 % of rated torque at mid-width, the "
+        "hysteresis loss as the gap between the branches at zero torque.",
+        panels=tuple(panels),
+        columns=len(sides) + 1,
+        row_height=330,
+    )
+
+
+def _zoom_sides(
+    torque: Floats, angle: Floats, limit: float
+) -> list[tuple[Mask, tuple[float, float]]]:
+    """Both sides of the dead zone in one panel, or in two where it dwarfs everything else."""
+    right = torque >= 0
+    both = np.ones(len(torque), dtype=bool)
+    if not right.any() or right.all():
+        return [(both, (-limit, limit))]
+    within = max(np.ptp(angle[right]), np.ptp(angle[~right]))
+    if np.ptp(angle) < 5 * within:
+        return [(both, (-limit, limit))]
+    return [(~right, (-limit, 0.0)), (right, (0.0, limit))]
+
+
+def _shown_rows(data: ReportData) -> NDArray[np.int64]:
+    """Choose samples to draw, with the extremes of the residual among them."""
+    residual = data.residual_before_deg
+    key = data.recording.angle_deg if residual is None else residual
+    assert key is not None
+    return thin(len(data.recording), key)
+
+
+def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Iterator[Series]:
+    """Measured points and simulated lines over torque."""
+    recording = data.recording
+    measured = recording.angle_deg
+    assert measured is not None
+    torque = recording.torque_nm
+    yield Points(torque[rows], measured[rows], NAME_MEASURED, MEASURED, _dot(len(rows)))
+    for angle, name, colour, dashed in (
+        (data.before_deg, NAME_BEFORE, BEFORE, True),
+        (data.after_deg, NAME_AFTER, AFTER, False),
+    ):
+        if angle is not None:
+            x, y = _with_breaks(recording, rows, angle, torque, reach)
+            yield Line(x, y, name, colour, 1.5, dashed)
+
+
+def _with_breaks(
+    recording: Recording, rows: NDArray[np.int64], y: Floats, x: Floats, reach: int
+) -> tuple[Floats, Floats]:
+    """Put a NaN where the run ends, the dead zone is crossed unseen, or samples are left out.
+
+    Thinned rows leave out some samples anyway; `reach` is how many.
+    """
+    measured = recording.angle_deg
+    assert measured is not None
+    torque, run = recording.torque_nm[rows], recording.run[rows]
+    jump = np.abs(np.diff(torque)) > 0.1 * np.ptp(recording.torque_nm)
+    left_out = np.diff(rows) > reach
+    crossing = dead_zone_crossings(torque, measured[rows])
+    cut = (run[1:] != run[:-1]) | jump | left_out | crossing
+    at = np.flatnonzero(cut) + 1
+    return np.insert(x[rows], at, np.nan), np.insert(y[rows], at, np.nan)
+
+
+def _dot(samples: int) -> float:
+    """Radius of a dot [px]: the fewer, the larger."""
+    return 3.2 if samples <= 100 else 2.0 if samples <= 600 else 1.3
+
+
+def _reach(samples: int, shown: int) -> int:
+    """Longest step between drawn samples that thinning makes."""
+    return 1 if shown >= samples else 4 * -(-samples // shown)
+
+
+def _noise_band(x: Floats, sigma: float) -> tuple[Band, ...]:
+    """Two standard deviations either side of zero."""
+    if sigma <= 0 or not len(x):
+        return ()
+    ends = np.array([x.min(), x.max()])
+    return (Band(ends, np.full(2, -2 * sigma), np.full(2, 2 * sigma), "noise ±2σ", QUIET),)
+
+
+def _energy_series(data: ReportData) -> list[Series]:
+    """Energy per cycle of the measured loop and of both simulations."""
+    recording = data.recording
+    place = {run: float(k) for k, run in enumerate(recording.runs)}
+    series: list[Series] = []
+    for angle, name, colour, hollow, shift in (
+        (recording.angle_deg, NAME_MEASURED, MEASURED, False, 0.0),
+        (data.before_deg, NAME_BEFORE, BEFORE, True, -0.14),
+        (data.after_deg, NAME_AFTER, AFTER, True, 0.14),
+    ):
+        if angle is None:
+            continue
+        energy = loop_figures(recording, angle, data.rated_torque_nm).energy_j
+        if energy:
+            x = np.array([place[run] + shift for run in energy])
+            series.append(Points(x, np.array(list(energy.values())), name, colour, 4.2, hollow))
+    return series

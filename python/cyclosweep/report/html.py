@@ -1,0 +1,222 @@
+"""The report as one HTML page that needs nothing else: no network, no library, no other file."""
+
+from collections.abc import Iterable
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+
+from cyclosweep.report import tables
+from cyclosweep.report.data import ReportData
+from cyclosweep.report.figures import all_figures
+from cyclosweep.report.svg import figure_svg
+from cyclosweep.report.tables import Table
+from cyclosweep.report.wording import number, probability, verdict_words
+
+
+def write_html(data: ReportData, path: str | Path) -> Path:
+    """Write the report.
+
+    Parameters
+    ----------
+    data : ReportData
+        What to report.
+    path : path
+        File to write; it appears whole or not at all.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    path = Path(path)
+    part = path.with_name(path.name + ".tmp")
+    part.write_text(page(data), encoding="utf-8")
+    part.replace(path)
+    return path
+
+
+def page(data: ReportData) -> str:
+    """Whole page."""
+    figures = {figure.key: figure for figure in all_figures(data)}
+
+    def picture(key: str) -> str:
+        figure = figures.get(key)
+        if figure is None:
+            return ""
+        caption = f"<figcaption>{escape(figure.caption)}</figcaption>"
+        return f"<figure>{figure_svg(figure)}{caption}</figure>"
+
+    body = "".join(
+        [
+            _top(data),
+            _verdict(data),
+            picture("loop"),
+            _list("Where simulation and recording differ", tables.regions(data)),
+            _effects(data),
+            _paragraph("What remains without a name", tables.unknown(data)),
+            _paragraph("Next experiment", tables.next_experiment(data)),
+            _section("Loop", picture("zoom") + _table(tables.loop_table(data))),
+            _section("Residuals", picture("profiles")),
+            _section("Residual map", picture("map")),
+            _section("Parameters", _table(tables.parameter_table(data))),
+            _section("Every effect that was tried", _table(tables.hypothesis_table(data))),
+            _list("Explanations that fit", tables.explanations(data)),
+            _list("Not found, with 95 % upper bounds", tables.bounds(data)),
+            _list("What this recording cannot show", tables.untestable(data)),
+            _section("Errors on data not used", _table(tables.held_out_table(data))),
+            _section("Self-check", _table(tables.self_check_table(data))),
+            _recording(data),
+            _provenance(data),
+        ]
+    )
+    style = files("cyclosweep.report").joinpath("style.css").read_text(encoding="utf-8")
+    script = files("cyclosweep.report").joinpath("script.js").read_text(encoding="utf-8")
+    title = escape(f"{data.recording.name}: torque–twist diagnosis")
+    return (
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<title>{title}</title><link rel="icon" href="data:,"><style>{style}</style></head>'
+        f"<body><main>{body}</main><script>{script}</script></body></html>\n"
+    )
+
+
+def _top(data: ReportData) -> str:
+    """Name of the recording and what it is."""
+    recording = data.recording
+    drive = str(data.result.get("drive") or recording.drive or "")
+    about = [
+        Path(drive).name if drive else "",
+        f"{recording.side} shaft",
+        f"{len(recording):,} samples".replace(",", " "),
+        f"{len(recording.runs)} run{'s' if len(recording.runs) != 1 else ''}",
+    ]
+    return (
+        f'<header class="top"><h1>{escape(recording.name)}</h1>'
+        f'<div class="meta">Torque–twist diagnosis<br>{escape(" · ".join(filter(None, about)))}'
+        "</div></header>"
+    )
+
+
+def _verdict(data: ReportData) -> str:
+    """Verdict line with its evidence."""
+    code, words, tone = verdict_words(data.result)
+    figures = "".join(
+        f'<div class="figure-value"><b>{escape(value)}</b><span>{escape(label)}</span>'
+        f"<span>{escape(remark)}</span></div>"
+        for value, label, remark in tables.headline(data)
+    )
+    mismatch = data.result.get("mismatch") or {}
+    sufficiency = data.result.get("sufficiency") or {}
+    evidence = []
+    if mismatch.get("p_value") is not None:
+        evidence.append(f"mismatch of the calibrated model: p {probability(mismatch['p_value'])}")
+    if sufficiency.get("p_value") is not None:
+        evidence.append(f"mismatch left after the repair: p {probability(sufficiency['p_value'])}")
+    if data.result.get("tolerance_deg") is not None:
+        evidence.append(f"tolerance {number(data.result['tolerance_deg'])} deg")
+    return (
+        f'<section class="verdict" style="--tone:{tone}"><div><div><span class="name">'
+        f'{escape(words)}</span><span class="code">{escape(code)}</span></div>'
+        f"<p>{escape(str(data.result.get('statement') or ''))}</p>"
+        f'<p class="soft">{escape("; ".join(evidence))}</p></div>'
+        f'<div class="figures">{figures}</div></section>'
+    )
+
+
+def _effects(data: ReportData) -> str:
+    """Card of every accepted effect."""
+    cards = "".join(
+        f'<div class="card"><h3>{escape(name[:1].upper() + name[1:])}</h3>'
+        f'<p class="size">{escape(size)}</p><p>{escape(physics)}</p>'
+        f'<p class="soft">{escape(evidence)}</p></div>'
+        for name, size, evidence, physics in tables.effect_cards(data)
+    )
+    return _section(
+        "What was left out of the model", f'<div class="cards">{cards}</div>' if cards else ""
+    )
+
+
+def _recording(data: ReportData) -> str:
+    """Forensics: what was read, recognised, changed and found wrong."""
+    recording = data.recording
+    noise = data.result.get("noise") or {}
+    structure = recording.structure
+    rows = [
+        ("samples", f"{len(recording)} in {len(recording.runs)} runs"),
+        ("branches, reversals, holds",
+         f"{len(structure.branches)}, {len(structure.reversals)}, {len(structure.holds)}"),
+        ("torque", _extent(recording.torque_nm, "N m")),
+        ("twist", "–" if recording.angle_deg is None else _extent(recording.angle_deg, "deg")),
+        ("resolution of the angle",
+         f"{number(recording.angle_resolution_deg)} deg" if recording.angle_resolution_deg
+         else "continuous"),
+        ("noise", f"{number(noise.get('sigma_deg'))} deg, lag-one autocorrelation "
+                  f"{number(noise.get('autocorrelation'), 2)}"),
+        ("history", "continuous over the runs" if recording.history == "continuous"
+         else "play, slip and creep start afresh with each run"),
+        ("conditioning runs", ", ".join(map(str, recording.conditioning_runs)) or "none"),
+        ("holdout runs", ", ".join(map(str, recording.holdout_runs)) or "chosen by blocks"),
+    ]  # fmt: skip
+    listed = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in rows)
+    remarks = [*recording.notes, *(fault.reason for fault in recording.faults)]
+    bullets = "".join(f"<li>{escape(text)}</li>" for text in remarks)
+    return _section(
+        "The recording", f"<dl>{listed}</dl>" + (f"<ul>{bullets}</ul>" if bullets else "")
+    )
+
+
+def _extent(values: "Iterable[float]", unit: str) -> str:
+    """Least and largest value."""
+    numbers = list(values)
+    return f"{number(min(numbers))} to {number(max(numbers))} {unit}" if numbers else "–"
+
+
+def _provenance(data: ReportData) -> str:
+    """Hashes, versions, seeds."""
+    rows = dict(data.provenance)
+    if data.recording.sha256:
+        rows.setdefault("recording, SHA-256", data.recording.sha256)
+    listed = "".join(
+        f"<dt>{escape(str(key))}</dt><dd>{escape(str(value))}</dd>" for key, value in rows.items()
+    )
+    return _section("Provenance", f"<dl>{listed}</dl>" if listed else "")
+
+
+def _section(title: str, content: str) -> str:
+    """Section with a heading; nothing where there is no content."""
+    return f"<section><h2>{escape(title)}</h2>{content}</section>" if content else ""
+
+
+def _paragraph(title: str, text: str) -> str:
+    """Section with one paragraph; nothing where there is no text."""
+    return _section(title, f"<p>{escape(text)}</p>" if text else "")
+
+
+def _list(title: str, items: list[str]) -> str:
+    """Section with a bulleted list."""
+    bullets = "".join(f"<li>{escape(item[:1].upper() + item[1:])}</li>" for item in items)
+    return _section(title, f"<ul>{bullets}</ul>" if bullets else "")
+
+
+def _table(table: Table | None) -> str:
+    """Table with its note."""
+    if table is None:
+        return ""
+    words = table.words
+
+    def cell(tag: str, place: int, text: str) -> str:
+        kind = ' class="words"' if place in words else ""
+        return f"<{tag}{kind}>{escape(text)}</{tag}>"
+
+    head = "".join(cell("th", k, text) for k, text in enumerate(table.columns))
+    rows = "".join(
+        ('<tr class="lead">' if place in table.lead else "<tr>")
+        + "".join(cell("td", k, text) for k, text in enumerate(row))
+        + "</tr>"
+        for place, row in enumerate(table.rows)
+    )
+    note = f'<p class="soft">{escape(table.note)}</p>' if table.note else ""
+    return (
+        f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
+        f"</div>{note}"
+    )

@@ -1,0 +1,350 @@
+"""Figures as inline SVG, without any library."""
+
+import re
+from html import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cyclosweep.report.charts import (
+    REGION,
+    Band,
+    Cells,
+    Figure,
+    LegendEntry,
+    Line,
+    Panel,
+    Placed,
+    Points,
+    extent,
+    legend,
+    nice_ticks,
+    tick_text,
+)
+from cyclosweep.report.wording import number
+
+Floats = NDArray[np.float64]
+
+WIDTH = 1120.0
+"""Width of a figure [px]."""
+
+LEFT, RIGHT, RIGHT_SCALE, TOP, BOTTOM = 66.0, 20.0, 62.0, 30.0, 48.0
+LEGEND_ROW = 22.0
+NAMED_LEFT = 104.0
+
+
+def figure_svg(figure: Figure) -> str:
+    """Draw a figure.
+
+    Returns
+    -------
+    str
+        An ``svg`` element that scales with its container.
+    """
+    names, legend_rows = _legend(legend(figure))
+    maps = _first_cells(figure)
+    top = 8 + LEGEND_ROW * max(legend_rows, len(maps))
+    height = top + figure.rows * figure.row_height
+    parts = [
+        f'<svg viewBox="0 0 {WIDTH:g} {height:g}" role="img" aria-label="{escape(figure.title)}" '
+        'xmlns="http://www.w3.org/2000/svg">',
+        names,
+        *(_colour_scale(cells) for cells in maps),
+    ]
+    for place, placed in enumerate(figure.panels):
+        parts.append(_panel(figure, placed, top, f"{figure.key}-{place}"))
+    parts.append("</svg>")
+    return "".join(parts)
+
+
+class _Scale:
+    """From data to pixels, and rounding that keeps the file small."""
+
+    def __init__(self, low: float, high: float, start: float, stop: float) -> None:
+        if not high > low:
+            low, high = low - 0.5, high + 0.5
+        self.low, self.high, self.start, self.stop = low, high, start, stop
+        self.factor = (stop - start) / (high - low)
+
+    def __call__(self, value: float) -> float:
+        return self.start + (value - self.low) * self.factor
+
+    def many(self, values: Floats) -> Floats:
+        """Pixels of many values."""
+        pixels: Floats = np.round(self.start + (values - self.low) * self.factor, 1)
+        return pixels
+
+
+def _panel(figure: Figure, placed: Placed, top: float, key: str) -> str:
+    """Draw one pair of axes in its place."""
+    panel = placed.panel
+    cell_w, cell_h = WIDTH / figure.columns, figure.row_height
+    left = NAMED_LEFT if panel.y_names else LEFT
+    right = RIGHT_SCALE if panel.right_factor else RIGHT
+    x0, x1 = placed.column * cell_w + left, (placed.column + placed.columns) * cell_w - right
+    y0 = top + placed.row * cell_h + TOP
+    y1 = top + (placed.row + placed.rows) * cell_h - BOTTOM
+    x = _Scale(*extent(panel, "x"), x0, x1)
+    y = _Scale(*extent(panel, "y"), y1, y0)
+    clip = f"clip-{key}"
+    out = [
+        f'<clipPath id="{clip}"><rect x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" '
+        f'height="{y1 - y0:.1f}"/></clipPath>',
+        f'<text class="pt" x="{x0:.1f}" y="{y0 - 10:.1f}">{escape(panel.title)}</text>',
+        f'<rect class="plot" x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" '
+        f'height="{y1 - y0:.1f}"/>',
+    ]
+    out.append(_axes(panel, x, y))
+    out.append(f'<g clip-path="url(#{clip})">')
+    out += [_span(span.low, span.high, x, y0, y1) for span in panel.spans]
+    if panel.zero_line and y.low < 0 < y.high:
+        out.append(f'<path class="zero" d="M{x0:.1f} {y(0):.1f}H{x1:.1f}"/>')
+    out += [_series(series, x, y) for series in panel.series]
+    out.append("</g>")
+    for span in panel.spans:
+        if span.label:
+            out.append(_span_label(span.label, span.low, span.high, x, y0))
+    out.append(
+        f'<rect class="hit" x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" '
+        f'height="{y1 - y0:.1f}" data-x="{x.low:.6g} {x.high:.6g}" '
+        f'data-y="{y.low:.6g} {y.high:.6g}"/>'
+        f'<text class="at" x="{x1 - 4:.1f}" y="{y0 - 10:.1f}"></text>'
+    )
+    return "".join(out)
+
+
+def _axes(panel: Panel, x: _Scale, y: _Scale) -> str:
+    """Grid, ticks and labels."""
+    out: list[str] = []
+    bottom, top = y.start, y.stop
+    x_ticks = list(panel.x_names) or _numbered(x, 92.0)
+    y_ticks = list(panel.y_names) or _numbered(y, 44.0)
+    for value, text in x_ticks:
+        at = x(value)
+        if not panel.x_names:
+            out.append(f'<path class="grid" d="M{at:.1f} {bottom:.1f}V{top:.1f}"/>')
+        out.append(
+            f'<text class="tick" text-anchor="middle" x="{at:.1f}" y="{bottom + 17:.1f}">'
+            f"{escape(text)}</text>"
+        )
+    for value, text in y_ticks:
+        at = y(value)
+        if not panel.y_names:
+            out.append(f'<path class="grid" d="M{x.start:.1f} {at:.1f}H{x.stop:.1f}"/>')
+        out.append(
+            f'<text class="tick" text-anchor="end" x="{x.start - 8:.1f}" y="{at + 4:.1f}">'
+            f"{escape(text)}</text>"
+        )
+    if panel.right_factor:
+        right = _Scale(y.low * panel.right_factor, y.high * panel.right_factor, y.start, y.stop)
+        for value, text in _numbered(right, 44.0):
+            out.append(
+                f'<text class="tick" x="{x.stop + 8:.1f}" y="{right(value) + 4:.1f}">'
+                f"{escape(text)}</text>"
+            )
+        out.append(_upright(panel.right_label, x.stop + 50, (top + bottom) / 2))
+    middle = (x.start + x.stop) / 2
+    out.append(
+        f'<text class="label" text-anchor="middle" x="{middle:.1f}" y="{bottom + 37:.1f}">'
+        f"{escape(panel.x_label)}</text>"
+    )
+    offset = NAMED_LEFT - 14 if panel.y_names else 50.0
+    if panel.y_label:
+        out.append(_upright(panel.y_label, x.start - offset, (top + bottom) / 2))
+    return "".join(out)
+
+
+def _upright(text: str, x: float, y: float) -> str:
+    """Label of a vertical axis."""
+    return (
+        f'<text class="label" text-anchor="middle" transform="translate({x:.1f} {y:.1f}) '
+        f'rotate(-90)">{escape(text)}</text>'
+    )
+
+
+def _numbered(scale: _Scale, pixels: float) -> list[tuple[float, str]]:
+    """Round ticks, about one every so many pixels."""
+    count = max(2, int(abs(scale.stop - scale.start) / pixels))
+    ticks = nice_ticks(scale.low, scale.high, count)
+    return [(float(tick), tick_text(float(tick), ticks)) for tick in ticks]
+
+
+def _span(low: float, high: float, x: _Scale, top: float, bottom: float) -> str:
+    """Shade a stretch, at least three pixels wide."""
+    a, b = sorted((x(low), x(high)))
+    if b - a < 3:
+        a, b = (a + b) / 2 - 1.5, (a + b) / 2 + 1.5
+    return (
+        f'<rect class="span" x="{a:.1f}" y="{top:.1f}" width="{b - a:.1f}" '
+        f'height="{bottom - top:.1f}" fill="{REGION}"/>'
+    )
+
+
+def _span_label(text: str, low: float, high: float, x: _Scale, top: float) -> str:
+    """Name a shaded stretch inside it, kept within the panel."""
+    half = 3.3 * len(text)
+    at = min(max((x(low) + x(high)) / 2, x.start + half + 4), x.stop - half - 4)
+    return (
+        f'<text class="spanlabel" text-anchor="middle" x="{at:.1f}" y="{top + 16:.1f}">'
+        f"{escape(text)}</text>"
+    )
+
+
+def _series(series: Line | Points | Band | Cells, x: _Scale, y: _Scale) -> str:
+    """Draw one series."""
+    match series:
+        case Line():
+            dash = ' stroke-dasharray="6 4"' if series.dashed else ""
+            return (
+                f'<path class="{_class(series.name)}" fill="none" stroke="{series.colour}" '
+                f'stroke-width="{series.width:g}" stroke-linejoin="round"{dash} '
+                f'd="{_path(series.x, series.y, x, y)}"/>'
+            )
+        case Points():
+            return _points(series, x, y)
+        case Band():
+            forward = _path(series.x, series.high, x, y)
+            back = _path(series.x[::-1], series.low[::-1], x, y).replace("M", "L", 1)
+            return (
+                f'<path class="{_class(series.name)}" fill="{series.colour}" fill-opacity="0.16" '
+                f'd="{forward}{back}Z"/>'
+            )
+        case Cells():
+            return _cells(series, x, y)
+
+
+def _points(series: Points, x: _Scale, y: _Scale) -> str:
+    """Draw points as one path of round dots, or as rings."""
+    ok = np.isfinite(series.x) & np.isfinite(series.y)
+    px, py = x.many(series.x[ok]), y.many(series.y[ok])
+    name = _class(series.name)
+    if series.hollow:
+        rings = "".join(
+            f'<circle cx="{a:g}" cy="{b:g}" r="{series.size:g}"/>'
+            for a, b in zip(px, py, strict=True)
+        )
+        return (
+            f'<g class="{name}" fill="#fff" stroke="{series.colour}" stroke-width="1.6">{rings}</g>'
+        )
+    dots = "".join(f"M{a:g} {b:g}h0" for a, b in zip(px, py, strict=True))
+    return (
+        f'<path class="{name}" fill="none" stroke="{series.colour}" stroke-linecap="round" '
+        f'stroke-width="{2 * series.size:g}" d="{dots}"/>'
+    )
+
+
+def _path(px: Floats, py: Floats, x: _Scale, y: _Scale) -> str:
+    """Draw a path through points, broken where a value is not finite."""
+    ok = np.isfinite(px) & np.isfinite(py)
+    xs, ys = x.many(np.where(ok, px, 0.0)), y.many(np.where(ok, py, 0.0))
+    pieces: list[str] = []
+    pen_down = False
+    for a, b, good in zip(xs.tolist(), ys.tolist(), ok.tolist(), strict=True):
+        if good:
+            pieces.append(f"{'L' if pen_down else 'M'}{a:g} {b:g}")
+        pen_down = good
+    return "".join(pieces)
+
+
+def _cells(series: Cells, x: _Scale, y: _Scale) -> str:
+    """Draw a map of cells, row 0 at the top."""
+    out = []
+    edges = x.many(series.x_edges)
+    rows = len(series.values)
+    for row in range(rows):
+        top, bottom = y(rows - 1 - row + 0.5), y(rows - 1 - row - 0.5)
+        for column, value in enumerate(series.values[row]):
+            a, b = edges[column], edges[column + 1]
+            if np.isfinite(value):
+                out.append(
+                    f'<rect x="{a:g}" y="{top:.1f}" width="{b - a:.1f}" '
+                    f'height="{bottom - top:.1f}" fill="{diverging(value / series.limit)}" '
+                    f'stroke="#fff" stroke-width="0.6"><title>{value:+.3g} {escape(series.unit)}'
+                    "</title></rect>"
+                )
+            if series.marked[row, column]:
+                out.append(
+                    f'<circle cx="{(a + b) / 2:.1f}" cy="{(top + bottom) / 2:.1f}" r="2" '
+                    'fill="#1d232b"/>'
+                )
+    return "".join(out)
+
+
+def diverging(share: float) -> str:
+    """Colour between orange (-1), near-white (0) and blue (+1), apart for colour-blind readers.
+
+    Examples
+    --------
+    >>> diverging(0.0)
+    '#f6f6f4'
+    """
+    share = min(max(share, -1.0), 1.0)
+    end = (0, 90, 160) if share > 0 else (200, 82, 0)
+    rgb = [round(246 + (c - 246) * abs(share) ** 0.8) for c in end]
+    if share == 0:
+        rgb = [246, 246, 244]
+    return "#" + "".join(f"{c:02x}" for c in rgb)
+
+
+def _legend(entries: list[LegendEntry]) -> tuple[str, int]:
+    """Names of the series at the top, and how many rows they take; a click hides a series."""
+    out = []
+    at, row = LEFT, 0
+    for entry in entries:
+        width = 31 + 6.5 * len(entry.name) + 24
+        if at + width > WIDTH and at > LEFT:
+            at, row = LEFT, row + 1
+        y = 14 + row * LEGEND_ROW
+        match entry.kind:
+            case "line" | "dashed":
+                dash = ' stroke-dasharray="6 4"' if entry.kind == "dashed" else ""
+                sign = (
+                    f'<path d="M{at:.0f} {y:g}h24" stroke="{entry.colour}" stroke-width="2.2" '
+                    f'fill="none"{dash}/>'
+                )
+            case "points":
+                sign = f'<circle cx="{at + 12:.0f}" cy="{y:g}" r="3.6" fill="{entry.colour}"/>'
+            case "ring":
+                sign = (
+                    f'<circle cx="{at + 12:.0f}" cy="{y:g}" r="3.6" fill="#fff" '
+                    f'stroke="{entry.colour}" stroke-width="1.6"/>'
+                )
+            case "area":
+                sign = (
+                    f'<rect x="{at:.0f}" y="{y - 6:g}" width="24" height="12" '
+                    f'fill="{entry.colour}" fill-opacity="0.28"/>'
+                )
+        out.append(
+            f'<g class="key" data-for="{_class(entry.name)}">{sign}'
+            f'<text x="{at + 31:.0f}" y="{y + 4:g}">{escape(entry.name)}</text></g>'
+        )
+        at += width
+    return "".join(out), row + 1 if entries else 0
+
+
+def _first_cells(figure: Figure) -> list[Cells]:
+    """First map of a figure, whose colours hold for all of them."""
+    maps = [s for placed in figure.panels for s in placed.panel.series if isinstance(s, Cells)]
+    return maps[:1]
+
+
+def _colour_scale(cells: Cells) -> str:
+    """Colours of a map from -limit to +limit, at the top right."""
+    steps, width = 21, 9.0
+    start = WIDTH - RIGHT - steps * width - 70
+    boxes = "".join(
+        f'<rect x="{start + k * width:.1f}" y="8" width="{width:g}" height="12" '
+        f'fill="{diverging(2 * k / (steps - 1) - 1)}"/>'
+        for k in range(steps)
+    )
+    return (
+        f'<text class="tick" text-anchor="end" x="{start - 6:.1f}" y="18">'
+        f"{number(-cells.limit)}</text>{boxes}"
+        f'<text class="tick" x="{start + steps * width + 6:.1f}" y="18">'
+        f"+{number(cells.limit)} {escape(cells.unit)}</text>"
+    )
+
+
+def _class(name: str) -> str:
+    """Class name of a series."""
+    return "s-" + re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")

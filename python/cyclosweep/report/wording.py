@@ -1,0 +1,115 @@
+"""Numbers and names as a test engineer reads them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+ARCMIN = 60.0
+"""Minutes of arc in a degree."""
+
+VERDICTS = {
+    "IDENTIFIED": ("Cause identified", "#0b6e4f"),
+    "AMBIGUOUS": ("More than one cause fits", "#8a5a00"),
+    "UNKNOWN_PHYSICS": ("Cause outside the known effects", "#8a2be2"),
+    "NOTHING_MISSING": ("Nothing is missing from the model", "#0b6e4f"),
+    "INSUFFICIENT_DATA": ("The recording cannot tell", "#8a5a00"),
+    "DATA_FAULT": ("The recording is faulty", "#a61b1b"),
+}
+"""Verdict in plain words, and its colour."""
+
+
+def verdict_words(result: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Return verdict, its plain words and its colour."""
+    code = str(result.get("verdict") or "")
+    words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
+    if code == "UNKNOWN_PHYSICS" and result.get("effects"):
+        words = "Known effects found, and something without a name"
+    return code, words, tone
+
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: Any, digits: int = 3) -> str:
+    """Write a number with so many significant digits and a true minus sign.
+
+    Examples
+    --------
+    >>> number(0.012345), number(-1234.5), number(0), number(None)
+    ('0.0123', '−1234', '0', '–')
+    >>> number(158_300.0), number(1.2e-7)
+    ('158 000', '1.20×10⁻⁷')
+    """
+    if value is None:
+        return "–"
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value)
+    value = float(value)
+    if value != value:
+        return "–"
+    if value in (float("inf"), float("-inf")):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    magnitude = abs(value)
+    if magnitude >= 1e7 or magnitude < 1e-4:
+        mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
+        return f"{mantissa}×10{str(int(power)).translate(_SUPERSCRIPT)}".replace("-", "−")
+    if magnitude >= 10 ** (digits - 1):
+        rounded = float(f"{value:.{digits}g}") if magnitude >= 1e5 else value
+        grouped = f"{rounded:,.0f}" if magnitude >= 1e4 else f"{rounded:.0f}"
+        return grouped.replace(",", " ").replace("-", "−")
+    return f"{value:.{digits}g}".replace("-", "−")
+
+
+def angle(value_deg: Any, digits: int = 3) -> str:
+    """Write an angle in deg and arcmin.
+
+    Examples
+    --------
+    >>> angle(0.5)
+    '0.5 deg (30 arcmin)'
+    """
+    if not isinstance(value_deg, int | float):
+        return "–"
+    return f"{number(value_deg, digits)} deg ({number(value_deg * ARCMIN, digits)} arcmin)"
+
+
+def interval(ends: Any, digits: int = 3) -> str:
+    """Write an interval.
+
+    Examples
+    --------
+    >>> interval([0.8, 1.0])
+    '0.8 … 1'
+    """
+    if not ends or len(ends) != 2 or any(end is None for end in ends):
+        return "–"
+    return f"{number(ends[0], digits)} … {number(ends[1], digits)}"
+
+
+def probability(value: Any) -> str:
+    """Write a p-value or a probability.
+
+    Examples
+    --------
+    >>> probability(0.00001), probability(0.034)
+    ('< 0.001', '0.034')
+    >>> probability(1.0)
+    '> 0.999'
+    """
+    if not isinstance(value, int | float):
+        return "–"
+    if 0 <= value < 0.001:
+        return "< 0.001"
+    return "> 0.999" if 0.999 < value <= 1 else number(value, 2)
+
+
+def plain(name: str) -> str:
+    """Write a name of the vocabulary in words.
+
+    Examples
+    --------
+    >>> plain("overload_softening")
+    'overload softening'
+    """
+    return name.replace("_", " ")

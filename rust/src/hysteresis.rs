@@ -1,0 +1,323 @@
+//! History operators: slip elements solved in the angle, play, creep states, remembered datum.
+//!
+//! A locked-output torsion test is quasi-static, so at every sample the applied torque balances the
+//! elastic torque of the drive and the friction in its contacts:
+//!
+//! ```text
+//! T_i = T_e(theta_i - offset_i) + sum_j w_j (Y + mu |T_e|) clip((theta_i - z_j)/delta_j, -1, 1)
+//! ```
+//!
+//! with `T_e` a linear spring behind a dead zone, and `z_j` the anchor of slip element `j`
+//! (Maxwell-slip or generalised Prandtl-Ishlinskii model, see Al-Bender, Lampaert and Swevers,
+//! IEEE Trans. Autom. Control 50(11), 2005, doi 10.1109/TAC.2005.858676). The equation is monotone in
+//! the angle, so it has one solution a sample, found by a safeguarded Newton step.
+
+/// Friction of the contacts: slip elements in parallel that share one limit.
+#[derive(Debug, Clone)]
+pub struct SlipElements<'a> {
+    /// Presliding distance of each element, in the unit of the angle, positive.
+    pub slip_angle: &'a [f64],
+    /// Share of the friction limit that each element carries; the shares normally add up to one.
+    pub share: &'a [f64],
+    /// Friction limit without load, in the unit of the torque.
+    pub limit: f64,
+    /// Friction limit in proportion to the transmitted torque, below one.
+    pub load_factor: f64,
+    /// 0: presliding distance independent of load. 1: it grows with the limit (constant stiffness).
+    pub growth: f64,
+    /// Elastic torque at which the given slip distances hold when they grow with the limit.
+    pub reference_torque: f64,
+}
+
+/// Elastic law of the drive: a linear spring behind a symmetric dead zone.
+#[derive(Debug, Clone, Copy)]
+pub struct Spring {
+    /// Half width of the dead zone, in the unit of the angle.
+    pub free_play: f64,
+    /// Twist for one unit of torque.
+    pub compliance: f64,
+}
+
+impl Spring {
+    /// Elastic torque and its slope at a twist measured from the datum.
+    fn torque(&self, twist: f64) -> (f64, f64) {
+        let slope = 1.0 / self.compliance;
+        if twist > self.free_play {
+            ((twist - self.free_play) * slope, slope)
+        } else if twist < -self.free_play {
+            ((twist + self.free_play) * slope, slope)
+        } else {
+            (0.0, 0.0)
+        }
+    }
+}
+
+impl SlipElements<'_> {
+    fn load_limit(&self, elastic_torque: f64) -> f64 {
+        self.limit + self.load_factor * elastic_torque.abs()
+    }
+
+    /// How much longer than given the slip distances are under this limit.
+    fn stretch(&self, limit: f64) -> f64 {
+        if self.growth == 0.0 {
+            return 1.0;
+        }
+        let reference = self.load_limit(self.reference_torque);
+        (limit / reference).max(1e-9).powf(self.growth)
+    }
+
+    /// Sum of the elements' states (each within its share) and its slope in the angle.
+    fn state(&self, angle: f64, anchor: &[f64], stretch: f64) -> (f64, f64) {
+        let mut sum = 0.0;
+        let mut slope = 0.0;
+        for ((&slip, &share), &z) in self.slip_angle.iter().zip(self.share).zip(anchor) {
+            let reach = slip * stretch;
+            let ratio = (angle - z) / reach;
+            let clipped = ratio.clamp(-1.0, 1.0);
+            sum += share * clipped;
+            if clipped == ratio {
+                slope += share / reach;
+            }
+        }
+        (sum, slope)
+    }
+
+    /// Drags every anchor along so that no element is stretched beyond its reach.
+    fn settle(&self, angle: f64, anchor: &mut [f64], stretch: f64) {
+        for (&slip, z) in self.slip_angle.iter().zip(anchor) {
+            let reach = slip * stretch;
+            *z = z.clamp(angle - reach, angle + reach);
+        }
+    }
+}
+
+/// Angle and friction torque for a torque history.
+///
+/// `offset` is everything that shifts the datum, sample by sample; `restart[i]` marks a sample before
+/// which the elements are fresh, anchored at `start_angle[i]`.
+pub fn solve_slip(
+    torque: &[f64],
+    offset: &[f64],
+    restart: &[bool],
+    start_angle: &[f64],
+    spring: Spring,
+    elements: &SlipElements<'_>,
+    angle: &mut [f64],
+    friction: &mut [f64],
+) {
+    let mut anchor = vec![0.0; elements.slip_angle.len()];
+    let mut guess = 0.0;
+    for i in 0..torque.len() {
+        if i == 0 || restart[i] {
+            anchor.fill(start_angle[i]);
+            guess = start_angle[i];
+        }
+        let (solved, force, stretch) =
+            balance(torque[i], offset[i], spring, elements, &anchor, guess);
+        elements.settle(solved, &mut anchor, stretch);
+        angle[i] = solved;
+        friction[i] = force;
+        guess = solved;
+    }
+}
+
+/// The one angle at which elastic torque and friction add up to the applied torque.
+fn balance(
+    torque: f64,
+    offset: f64,
+    spring: Spring,
+    elements: &SlipElements<'_>,
+    anchor: &[f64],
+    guess: f64,
+) -> (f64, f64, f64) {
+    let evaluate = |angle: f64| {
+        let (elastic, stiffness) = spring.torque(angle - offset);
+        let limit = elements.load_limit(elastic);
+        let stretch = elements.stretch(limit);
+        let (state, slope) = elements.state(angle, anchor, stretch);
+        let growth = elements.load_factor * stiffness * elastic.signum() * state;
+        let force = limit * state;
+        (
+            elastic + force - torque,
+            stiffness + growth + limit * slope,
+            force,
+            stretch,
+        )
+    };
+    // The friction can never exceed its limit, which brackets the elastic torque.
+    let bound = (torque.abs() + elements.limit) / (1.0 - elements.load_factor).max(0.05);
+    let reach = spring.free_play + spring.compliance * bound * (1.0 + 1e-9) + 1e-9;
+    let (mut low, mut high) = (offset - reach, offset + reach);
+    let mut angle = guess.clamp(low, high);
+    let tolerance = 1e-9 * (1e-3 + torque.abs());
+    let mut best = evaluate(angle);
+    for _ in 0..100 {
+        if best.0.abs() <= tolerance || high - low <= 1e-13 * (1.0 + high.abs()) {
+            break;
+        }
+        if best.0 > 0.0 {
+            high = angle;
+        } else {
+            low = angle;
+        }
+        let newton = angle - best.0 / best.1;
+        angle = if newton.is_finite() && newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        best = evaluate(angle);
+    }
+    (angle, best.2, best.3)
+}
+
+/// State of slip elements along a given angle history: sum of the shares, each between -1 and 1.
+pub fn slip_state(
+    angle: &[f64],
+    restart: &[bool],
+    start_angle: &[f64],
+    elements: &SlipElements<'_>,
+    out: &mut [f64],
+) {
+    let mut anchor = vec![0.0; elements.slip_angle.len()];
+    for i in 0..angle.len() {
+        if i == 0 || restart[i] {
+            anchor.fill(start_angle[i]);
+        }
+        elements.settle(angle[i], &mut anchor, 1.0);
+        out[i] = elements.state(angle[i], &anchor, 1.0).0;
+    }
+}
+
+/// Play operator: the output follows the input once the gap of half width `half_width` is taken up.
+pub fn play(input: &[f64], half_width: f64, restart: &[bool], start: &[f64], out: &mut [f64]) {
+    let mut state = 0.0;
+    for i in 0..input.len() {
+        if i == 0 || restart[i] {
+            state = start[i];
+        }
+        state = state.clamp(input[i] - half_width, input[i] + half_width);
+        out[i] = state;
+    }
+}
+
+/// Kelvin-Voigt state: follows the input with a time constant, exactly for a piecewise linear input.
+pub fn creep_state(
+    input: &[f64],
+    time: &[f64],
+    restart: &[bool],
+    time_constant: f64,
+    out: &mut [f64],
+) {
+    let mut state = 0.0;
+    for i in 0..input.len() {
+        if i == 0 || restart[i] {
+            // Fresh: the load was put on just before the first sample.
+            state = 0.0;
+        } else {
+            let step = ((time[i] - time[i - 1]) / time_constant).max(0.0);
+            let decay = (-step).exp();
+            let slope = if step > 1e-12 {
+                (input[i] - input[i - 1]) / step
+            } else {
+                0.0
+            };
+            // x' = (u - x)/tau with u linear over the step.
+            state = input[i] - slope + (state - input[i - 1] + slope) * decay;
+        }
+        out[i] = state;
+    }
+}
+
+/// Datum that remembers earlier runs: after each run it moves by that run's push, and forgets slowly.
+///
+/// `push[r]` is what run `r` does to the datum, `memory` the part of the shift kept from run to run.
+pub fn remembered_datum(push: &[f64], memory: f64, out: &mut [f64]) {
+    let mut shift = 0.0;
+    for (value, &p) in out.iter_mut().zip(push) {
+        *value = shift;
+        shift = memory * shift + p;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn single(limit: f64, slip: &[f64]) -> SlipElements<'_> {
+        SlipElements {
+            slip_angle: slip,
+            share: &[1.0],
+            limit,
+            load_factor: 0.0,
+            growth: 0.0,
+            reference_torque: 1.0,
+        }
+    }
+
+    #[test]
+    fn loop_width_is_twice_friction_times_compliance() {
+        let up: Vec<f64> = (0..=100).map(|k| k as f64 * 0.1).collect();
+        let torque: Vec<f64> = up.iter().chain(up.iter().rev()).copied().collect();
+        let n = torque.len();
+        let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
+        let spring = Spring {
+            free_play: 0.0,
+            compliance: 2.0,
+        };
+        solve_slip(
+            &torque,
+            &vec![0.0; n],
+            &vec![false; n],
+            &vec![0.0; n],
+            spring,
+            &single(0.5, &[0.01]),
+            &mut angle,
+            &mut friction,
+        );
+        let width = angle[151] - angle[50];
+        assert!((width - 2.0 * 0.5 * 2.0).abs() < 1e-9, "{width}");
+    }
+
+    #[test]
+    fn creep_reaches_the_load_and_a_ramp_lags_by_the_time_constant() {
+        let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.1).collect();
+        let mut out = vec![0.0; time.len()];
+        let mut restart = vec![false; time.len()];
+        restart[0] = true;
+        creep_state(&time, &time, &restart, 5.0, &mut out);
+        assert!((time[1999] - out[1999] - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn remembered_datum_saturates() {
+        let mut out = vec![0.0; 200];
+        remembered_datum(&[1.0; 200], 0.5, &mut out);
+        assert!(out[0] == 0.0 && (out[199] - 2.0).abs() < 1e-9);
+    }
+
+    proptest! {
+        #[test]
+        fn balance_holds_and_friction_stays_within_its_limit(
+            torque in prop::collection::vec(-30.0..30.0f64, 2..60),
+            limit in 0.0..2.0f64, load in 0.0..0.3f64, growth in prop::sample::select(vec![0.0, 1.0]),
+        ) {
+            let n = torque.len();
+            let slip = [0.05, 0.4, 2.0];
+            let elements = SlipElements {
+                slip_angle: &slip, share: &[0.5, 0.3, 0.2], limit, load_factor: load, growth,
+                reference_torque: 10.0,
+            };
+            let spring = Spring { free_play: 3.0, compliance: 2.5 };
+            let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
+            solve_slip(&torque, &vec![0.0; n], &vec![false; n], &vec![0.0; n], spring, &elements,
+                       &mut angle, &mut friction);
+            for i in 0..n {
+                let elastic = spring.torque(angle[i]).0;
+                prop_assert!(friction[i].abs() <= limit + load * elastic.abs() + 1e-9);
+                prop_assert!((elastic + friction[i] - torque[i]).abs() < 1e-6);
+            }
+        }
+    }
+}

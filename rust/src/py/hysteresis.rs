@@ -1,0 +1,169 @@
+//! Python bindings of the history operators: checks of lengths, then plain slices.
+use crate::hysteresis::{self, SlipElements, Spring};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+type Column<'py> = PyReadonlyArray1<'py, f64>;
+type Flags<'py> = PyReadonlyArray1<'py, bool>;
+
+fn same_length(expected: usize, found: &[usize]) -> PyResult<()> {
+    match found.iter().find(|&&n| n != expected) {
+        Some(n) => Err(PyValueError::new_err(format!(
+            "arrays differ in length: {expected} and {n}"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Angle and friction torque of a spring behind a dead zone with slip elements in parallel.
+#[pyfunction]
+#[pyo3(signature = (torque, offset, restart, start_angle, slip_angle, share, *, free_play, compliance,
+                    limit, load_factor=0.0, growth=0.0, reference_torque=1.0))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "keyword arguments on the Python side"
+)]
+fn solve_slip<'py>(
+    py: Python<'py>,
+    torque: Column<'py>,
+    offset: Column<'py>,
+    restart: Flags<'py>,
+    start_angle: Column<'py>,
+    slip_angle: Column<'py>,
+    share: Column<'py>,
+    free_play: f64,
+    compliance: f64,
+    limit: f64,
+    load_factor: f64,
+    growth: f64,
+    reference_torque: f64,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let n = torque.len()?;
+    same_length(n, &[offset.len()?, restart.len()?, start_angle.len()?])?;
+    same_length(slip_angle.len()?, &[share.len()?])?;
+    let (torque, offset) = (torque.as_slice()?, offset.as_slice()?);
+    let (restart, start_angle) = (restart.as_slice()?, start_angle.as_slice()?);
+    let elements = SlipElements {
+        slip_angle: slip_angle.as_slice()?,
+        share: share.as_slice()?,
+        limit,
+        load_factor,
+        growth,
+        reference_torque,
+    };
+    let spring = Spring {
+        free_play,
+        compliance,
+    };
+    let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
+    py.detach(|| {
+        hysteresis::solve_slip(
+            torque,
+            offset,
+            restart,
+            start_angle,
+            spring,
+            &elements,
+            &mut angle,
+            &mut friction,
+        );
+    });
+    Ok((angle.into_pyarray(py), friction.into_pyarray(py)))
+}
+
+/// State of slip elements along a given angle history.
+#[pyfunction]
+fn slip_state<'py>(
+    py: Python<'py>,
+    angle: Column<'py>,
+    restart: Flags<'py>,
+    start_angle: Column<'py>,
+    slip_angle: Column<'py>,
+    share: Column<'py>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let n = angle.len()?;
+    same_length(n, &[restart.len()?, start_angle.len()?])?;
+    same_length(slip_angle.len()?, &[share.len()?])?;
+    let elements = SlipElements {
+        slip_angle: slip_angle.as_slice()?,
+        share: share.as_slice()?,
+        limit: 1.0,
+        load_factor: 0.0,
+        growth: 0.0,
+        reference_torque: 1.0,
+    };
+    let mut out = vec![0.0; n];
+    let (angle, restart, start) = (
+        angle.as_slice()?,
+        restart.as_slice()?,
+        start_angle.as_slice()?,
+    );
+    py.detach(|| hysteresis::slip_state(angle, restart, start, &elements, &mut out));
+    Ok(out.into_pyarray(py))
+}
+
+/// Play operator.
+#[pyfunction]
+fn play<'py>(
+    py: Python<'py>,
+    input: Column<'py>,
+    half_width: f64,
+    restart: Flags<'py>,
+    start: Column<'py>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let n = input.len()?;
+    same_length(n, &[restart.len()?, start.len()?])?;
+    let mut out = vec![0.0; n];
+    hysteresis::play(
+        input.as_slice()?,
+        half_width,
+        restart.as_slice()?,
+        start.as_slice()?,
+        &mut out,
+    );
+    Ok(out.into_pyarray(py))
+}
+
+/// Kelvin-Voigt state of an input history.
+#[pyfunction]
+fn creep_state<'py>(
+    py: Python<'py>,
+    input: Column<'py>,
+    time: Column<'py>,
+    restart: Flags<'py>,
+    time_constant: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let n = input.len()?;
+    same_length(n, &[time.len()?, restart.len()?])?;
+    let mut out = vec![0.0; n];
+    hysteresis::creep_state(
+        input.as_slice()?,
+        time.as_slice()?,
+        restart.as_slice()?,
+        time_constant,
+        &mut out,
+    );
+    Ok(out.into_pyarray(py))
+}
+
+/// Datum that remembers what earlier runs did, one value a run.
+#[pyfunction]
+fn remembered_datum<'py>(
+    py: Python<'py>,
+    push: Column<'py>,
+    memory: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let mut out = vec![0.0; push.len()?];
+    hysteresis::remembered_datum(push.as_slice()?, memory, &mut out);
+    Ok(out.into_pyarray(py))
+}
+
+/// Adds the operators to the extension module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(solve_slip, module)?)?;
+    module.add_function(wrap_pyfunction!(slip_state, module)?)?;
+    module.add_function(wrap_pyfunction!(play, module)?)?;
+    module.add_function(wrap_pyfunction!(creep_state, module)?)?;
+    module.add_function(wrap_pyfunction!(remembered_datum, module)?)
+}

@@ -1,0 +1,1 @@
+"""Tests, in four kinds: unit, property, parity, golden and validation (see CONTRIBUTING)."""

@@ -1,0 +1,1 @@
+"""Material shared by the tests."""

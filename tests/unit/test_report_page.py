@@ -1,0 +1,172 @@
+"""The page: complete, self-contained, safe, and whole also where the diagnosis is not."""
+
+import re
+import shutil
+import subprocess
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_up_report import make
+
+from cyclosweep.recording import Recording
+from cyclosweep.report import ReportData, write_html
+from cyclosweep.report.html import page
+
+FAULTY = {
+    "verdict": "DATA_FAULT",
+    "statement": "Time runs backwards.",
+    "noise": {"sigma_deg": None, "autocorrelation": None, "resolution_deg": 0.0},
+}
+
+
+@pytest.fixture(scope="module")
+def whole() -> ReportData:
+    return make()
+
+
+def svgs(text: str) -> list[ET.Element]:
+    return [ET.fromstring(part) for part in re.findall(r"<svg.*?</svg>", text, re.DOTALL)]
+
+
+def test_every_part_is_there(whole: ReportData) -> None:
+    text = page(whole)
+    for heading in (
+        "Where simulation and recording differ", "What was left out of the model",
+        "Next experiment", "Loop", "Residuals", "Residual map", "Parameters",
+        "Every effect that was tried", "Explanations that fit", "Not found, with 95 % upper bounds",
+        "What this recording cannot show", "Errors on data not used", "Self-check",
+        "The recording", "Provenance",
+    ):  # fmt: skip
+        assert f"<h2>{heading}</h2>" in text
+    for words in ("arcmin", "N m", "lost motion", "hysteresis loss", "energy lost in one cycle"):
+        assert words in text
+    assert "IDENTIFIED" in text
+    assert "rig-3-monday" in text
+
+
+def test_nothing_is_fetched(whole: ReportData) -> None:
+    text = page(whole)
+    assert not re.search(r"""(src|href)\s*=\s*["'](?!data:)""", text)
+    assert not re.search(r"@import|url\(\s*['\"]?(?!#)", text)
+    assert set(re.findall(r"https?://[^\s\"'<]+", text)) <= {"http://www.w3.org/2000/svg"}
+    assert len(text.encode()) < 1_000_000
+
+
+def test_main_picture_comes_first_and_is_complete(whole: ReportData) -> None:
+    text = page(whole)
+    assert text.index("<svg") < text.index("<h2>")
+    first = svgs(text)[0]
+    words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
+    for name in (
+        "measured", "simulation before", "simulation after", "what the repair adds",
+        "located region", "residual (arcmin)", "torque at the input shaft (N m)",
+    ):  # fmt: skip
+        assert name in words
+    assert any(word.startswith("Residual before") for word in words)
+    assert any(word.startswith("Residual after") for word in words)
+    shaded = [e for e in first.iter() if e.get("class") == "span"]
+    assert len(shaded) == 6  # two regions in each of three panels
+
+
+def test_nothing_is_drawn_outside_the_page(whole: ReportData) -> None:
+    for svg in svgs(page(whole)):
+        _, _, width, height = map(float, (svg.get("viewBox") or "").split())
+        for element in svg.iter():
+            if element.tag.endswith("}text") and element.get("x"):
+                anchor = {"end": 1.0, "middle": 0.5}.get(element.get("text-anchor") or "", 0.0)
+                long = 5.5 * len(element.text or "")
+                left = float(element.get("x") or 0) - anchor * long
+                assert left >= 0
+                assert left + long <= width or element.get("class") == "at"
+                assert 0 <= float(element.get("y") or 0) <= height
+
+
+def test_foreign_text_is_escaped(whole: ReportData) -> None:
+    recording = replace(whole.recording, name="<script>x</script>", notes=('<img src="x">',))
+    result = {**whole.result, "statement": "<b>bold</b> & more"}
+    text = page(replace(whole, recording=recording, result=result))
+    assert "<script>x" not in text
+    assert "<img" not in text
+    assert "&lt;b&gt;bold&lt;/b&gt; &amp; more" in text
+
+
+@pytest.mark.parametrize(
+    "recording",
+    [
+        Recording.from_arrays([], []),
+        Recording.from_arrays([1.0], [2.0]),
+        Recording.from_arrays([1.0, 2.0], [2.0, 3.0]),
+        Recording.from_arrays(np.ones(50), np.arange(50.0)),
+        Recording.from_arrays(np.arange(50.0), np.ones(50), time_s=np.arange(50.0)[::-1]),
+        Recording.from_arrays(np.arange(12.0) + 1, 28 + 2.7 * np.arange(12.0)),
+    ],
+    ids=["empty", "one", "two", "constant torque", "constant angle", "a dozen"],
+)
+@pytest.mark.parametrize("predicted", [False, True])
+def test_poor_recordings_have_a_page_too(recording: Recording, predicted: bool) -> None:
+    assert recording.angle_deg is not None
+    simulated = np.zeros(len(recording)) if predicted else None
+    data = ReportData(recording=recording, result=FAULTY, before_deg=simulated, after_deg=simulated)
+    text = page(data)
+    assert "The recording is faulty" in text
+    assert "NaN" not in text
+    assert "nan" not in re.sub(r"[a-z]nan|nan[a-z]", "", text)
+    svgs(text)
+
+
+def test_a_programme_alone_has_a_page() -> None:
+    program = Recording.from_arrays(np.arange(30.0))
+    assert "<svg" not in page(ReportData(recording=program, result=FAULTY))
+
+
+def test_many_samples_are_thinned() -> None:
+    text = page(make(runs=40, samples=3000))
+    assert len(text.encode()) < 2_000_000
+
+
+def test_an_event_in_time_is_shown_over_time(whole: ReportData) -> None:
+    region = {"torque_nm": [-32.0, 32.0], "direction": "both", "run": [4, 4],
+              "time_s": [3000.0, 3100.0], "mean_residual_deg": 0.5,
+              "share_of_excess": 0.9}  # fmt: skip
+    result = {**whole.result, "mismatch": {"p_value": 0.001, "regions": [region]}}
+    first = svgs(page(replace(whole, result=result)))[0]
+    words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
+    assert words.count("time (s)") == 2
+
+
+def test_unknown_physics_has_shape_place_and_size(whole: ReportData) -> None:
+    rest = {"shape": "step of the angle", "place": "from t = 2671 s (run 7)", "size_deg": 0.16}
+    result = {
+        **whole.result, "verdict": "UNKNOWN_PHYSICS", "effects": [], "unknown": rest,
+        "undecided": [{"name": "creep", "upper95_deg": 0.9}],
+    }  # fmt: skip
+    text = page(replace(whole, result=result))
+    assert "Step of the angle of 0.16 deg (9.6 arcmin), from t = 2671 s (run 7)." in text
+    assert "Creep: could be as large as 0.9 deg (54 arcmin), above the tolerance" in text
+    assert "Residual after (no repair)" in text
+    assert "What was left out of the model" not in text
+
+
+def test_the_file_appears_whole(tmp_path: Path, whole: ReportData) -> None:
+    path = write_html(whole, tmp_path / "report.html")
+    assert path.read_text(encoding="utf-8") == page(whole)
+    assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
+
+
+def test_chromium_shows_it_without_an_error(tmp_path: Path, whole: ReportData) -> None:
+    browser = shutil.which("chromium") or shutil.which("chromium-browser")
+    if browser is None:
+        pytest.skip("no chromium here")
+    path = write_html(whole, tmp_path / "report.html")
+    done = subprocess.run(
+        [
+            browser, "--headless=new", "--no-sandbox", "--disable-gpu", "--dump-dom",
+            "--enable-logging=stderr", f"--user-data-dir={tmp_path / 'profile'}", path.as_uri(),
+        ],
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert 'data-ready="yes"' in done.stdout, "the script ran to its end"
+    assert "CONSOLE" not in done.stderr

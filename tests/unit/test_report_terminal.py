@@ -1,0 +1,61 @@
+"""The terminal summary and the PNG files."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from made_up_report import make
+from rich.console import Console
+
+from cyclosweep.errors import InputError
+from cyclosweep.recording import Recording
+from cyclosweep.recording.faults import Fault
+from cyclosweep.report import ReportData, print_summary, write_png, write_report
+
+
+def printed(data: ReportData, width: int) -> str:
+    stream = io.StringIO()
+    print_summary(data, Console(file=stream, width=width, color_system=None))
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+def test_summary_fits_and_is_complete(width: int) -> None:
+    text = printed(make(), width)
+    assert max(len(line) for line in text.splitlines()) <= width
+    squeezed = " ".join(text.split())
+    for words in (
+        "IDENTIFIED", "1.31 → 0.21 deg", "friction", "0.51 … 0.59", "21.5 to 32.6 N m",
+        "Next experiment", "rig compliance".capitalize(),
+    ):  # fmt: skip
+        assert words in squeezed
+    assert "…" not in text.replace(" … ", "")
+
+
+def test_brackets_in_remarks_are_not_markup() -> None:
+    data = make()
+    fault = Fault("clock_ticks", None, "use [merge] same_time = true")
+    text = printed(replace(data, recording=replace(data.recording, faults=(fault,))), 80)
+    assert "[merge]" in text
+
+
+def test_pictures(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    files = write_png(make(runs=2, samples=200), tmp_path / "pictures")
+    assert [path.name for path in files] == ["loop.png", "zoom.png", "profiles.png", "map.png"]
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in files)
+    assert len(list((tmp_path / "pictures").iterdir())) == 4
+
+
+def test_the_name_chooses_the_form(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    data = make(runs=2, samples=200)
+    assert write_report(data, tmp_path / "a.html").read_text("utf-8").startswith("<!doctype html>")
+    assert write_report(data, tmp_path / "b.png").read_bytes().startswith(b"\x89PNG")
+    assert (write_report(data, tmp_path / "pictures") / "loop.png").is_file()
+    with pytest.raises(InputError, match=r"\.pdf"):
+        write_report(data, tmp_path / "c.pdf")
+    program = ReportData(recording=Recording.from_arrays([1.0, 2.0]), result={})
+    with pytest.raises(InputError, match="no angles"):
+        write_report(program, tmp_path / "d.png")
