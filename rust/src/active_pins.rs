@@ -134,7 +134,7 @@ impl PinMap {
                 max,
             };
         }
-        let origin = self.clocking * lattice + 0.5 * per_pitch;
+        let origin = self.first_hole_in_pitches() * per_pitch;
         let travel = 1.0 + 1.0 / self.ratio;
         let up = |edge: f64| {
             floor_integral((travel - edge) * lattice - origin)
@@ -212,13 +212,11 @@ impl PinMap {
     /// zero.
     #[inline(always)]
     pub(crate) fn nearest_left_hole(&self) -> f64 {
-        let pins = f64::from(self.pins);
-        let base = self.clocking * pins + 0.5;
-        let nearest = base - ceil(base);
-        if nearest < TIE * pins - 1.0 {
-            nearest + 1.0
+        let first = self.first_hole_in_pitches();
+        if first < TIE * f64::from(self.pins) {
+            first
         } else {
-            nearest
+            first - 1.0
         }
     }
 
@@ -250,13 +248,24 @@ impl PinMap {
         }
     }
 
-    /// Angle (turns) of the first hole from ring pin 0 on, within one pitch: holes bear no
-    /// numbers, and a clocking of many turns would cost digits.
+    /// Angle (turns) of the first hole from ring pin 0 on, within one pitch.
     #[inline]
     fn first_hole(&self) -> f64 {
-        let pitch = 1.0 / f64::from(self.pins);
-        let clocking = self.clocking % pitch;
-        (clocking + 0.5 * pitch).rem_euclid(pitch)
+        self.first_hole_in_pitches() / f64::from(self.pins)
+    }
+
+    /// Where the first hole from ring pin 0 on stands, from 0 to 1 pitch: holes bear no numbers,
+    /// and a clocking of many turns would cost digits.
+    #[inline(always)]
+    fn first_hole_in_pitches(&self) -> f64 {
+        let pins = f64::from(self.pins);
+        let clocking = if self.clocking.abs() <= 1.0 {
+            self.clocking
+        } else {
+            self.clocking % (1.0 / pins)
+        };
+        let place = clocking * pins + 0.5;
+        place - floor(place)
     }
 }
 

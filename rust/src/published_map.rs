@@ -42,7 +42,7 @@ impl Windows {
                 visit(from, next, (opened - closed) as u32);
                 from = next;
             }
-            if opens <= closes {
+            if opened < self.len && opens <= closes {
                 opened += 1;
             } else {
                 closed += 1;

@@ -190,6 +190,21 @@ pub fn shaft_scale(youngs_modulus: f64, poisson: f64) -> Result<f64, DesignError
     Ok(32.0 / (PI * shear_modulus(youngs_modulus, poisson)?))
 }
 
+/// Compliance C_OS^t (rad/(N m)) of the whole shaft.
+///
+/// # Errors
+/// See [`shaft_factor`] and [`shear_modulus`].
+pub fn shaft_compliance(
+    segments: impl IntoIterator<Item = Segment>,
+    youngs_modulus: f64,
+    poisson: f64,
+    keyway_coefficient: f64,
+) -> Result<f64, DesignError> {
+    let scale = shaft_scale(youngs_modulus, poisson)?;
+    let coefficient = non_negative("keyway_coefficient", keyway_coefficient)?;
+    Ok(scale * shaft_factor(segments, coefficient)?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
