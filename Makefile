@@ -7,12 +7,13 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
-.PHONY: help env demo test test-rust test-python lint bench docs golden clean
+.PHONY: help env demo test test-rust test-python test-grid lint bench docs golden clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo    set up, sweep 1,050,000 variants to Parquet, validate the 87:1 case"
 	@echo "make test    set up, run all tests"
+	@echo "make test-grid  closed form against a 0.01 deg grid on 10,000 random drives, some minutes"
 	@echo "make lint    rustfmt, clippy, ruff, mypy, stubtest"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make docs    regenerate the tables in docs that come from code"
@@ -37,6 +38,9 @@ test-rust:
 
 test-python: env
 	$(BIN)/python -m pytest
+
+test-grid: env
+	CYCLOSWEEP_GRID_DRIVES=10000 $(BIN)/python -m pytest tests/property/test_active_pins_grid.py
 
 lint: env
 	cargo fmt --check

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import socket
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import polars as pl
+from filelock import FileLock, Timeout
 
 import cyclosweep._core as _core
 from cyclosweep.errors import InputError
@@ -44,9 +46,14 @@ class Part:
     stop: int
 
     @property
+    def stem(self) -> str:
+        """Name of the file without its ending."""
+        return f"part-{self.index:06d}"
+
+    @property
     def name(self) -> str:
         """Name of the file."""
-        return f"part-{self.index:06d}.parquet"
+        return f"{self.stem}.parquet"
 
 
 @dataclass(frozen=True)
@@ -147,6 +154,22 @@ class Dataset:
             return record_of(rows, part.start, part.stop, self.study)
         return record
 
+    @contextlib.contextmanager
+    def lock(self, part_stem: str, timeout: float = -1) -> Iterator[None]:
+        """Hold a part against other writers; the lock dies with its process.
+
+        Raises
+        ------
+        filelock.Timeout
+            When another writer holds it for longer than ``timeout`` [s].
+        """
+        path = self.folder / f".{part_stem}.lock"
+        with FileLock(path, timeout=timeout):
+            try:
+                yield
+            finally:
+                path.unlink(missing_ok=True)
+
     def write(self, part: Part) -> Record:
         """Compute a part and put it in place, whole or not at all.
 
@@ -210,7 +233,8 @@ class Dataset:
     def finish(self, records: list[Record]) -> None:
         """Write the manifest of what is there and sweep up after killed writers."""
         for path in self.folder.glob("part-*.tmp"):
-            path.unlink(missing_ok=True)
+            with contextlib.suppress(Timeout), self.lock(path.name.split(".")[0], timeout=0):
+                path.unlink(missing_ok=True)
         self.write_manifest(records)
 
     def write_manifest(self, records: list[Record]) -> None:

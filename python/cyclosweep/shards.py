@@ -218,12 +218,8 @@ def write_part(dataset: Dataset, part: Part) -> Record:
 
     A lock that dies with its process keeps two writers from the same part.
     """
-    lock = dataset.folder / f".{part.name}.lock"
-    with FileLock(lock):
-        try:
-            return dataset.record(part) or dataset.write(part)
-        finally:
-            lock.unlink(missing_ok=True)
+    with dataset.lock(part.stem):
+        return dataset.record(part) or dataset.write(part)
 
 
 def write_parts(dataset: Dataset, parts: Sequence[Part]) -> list[Record | Exception]:

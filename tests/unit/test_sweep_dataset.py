@@ -193,6 +193,14 @@ def test_damaged_parts_are_written_again_and_no_others(
         assert path.stat().st_mtime_ns == times[path.name]
 
 
+def test_a_part_in_another_s_place_is_written_again(tmp_path: Path) -> None:
+    sink(tmp_path)
+    moved = (tmp_path / "part-000003.parquet").read_bytes()
+    (tmp_path / "part-000005.parquet").write_bytes(moved)
+    sink(tmp_path)
+    assert_whole(tmp_path)
+
+
 @pytest.mark.parametrize("damage", ["deleted", "emptied", "halved"])
 def test_a_damaged_manifest_is_made_again(tmp_path: Path, damage: str) -> None:
     sink(tmp_path)

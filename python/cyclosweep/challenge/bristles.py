@@ -39,10 +39,10 @@ class Bristles:
     slip_distance_deg: Array
 
     @classmethod
-    def draw(cls, rng: np.random.Generator) -> Bristles:
-        """Draw a bundle: exponent chi in -0.7..0.3, macro-slip at 1.2 to 5 deg of the input."""
+    def draw(cls, rng: np.random.Generator, shortest: float, longest: float) -> Bristles:
+        """Draw a bundle of exponent chi in -0.7..0.3; macro-slip between two angles [deg]."""
         chi = rng.uniform(-0.7, 0.3)
-        longest = np.exp(rng.uniform(np.log(1.2), np.log(5.0)))
+        longest = np.exp(rng.uniform(np.log(shortest), np.log(longest)))
         rank = (np.arange(COUNT) + rng.uniform(0.1, 0.9, COUNT)) / COUNT
         distance = longest * rank ** (1.0 / (chi + 1.0))
         distance = np.maximum(distance, 0.01 * longest)

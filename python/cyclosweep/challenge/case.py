@@ -12,11 +12,17 @@ import polars as pl
 from numpy.typing import NDArray
 
 from cyclosweep.challenge.aliens import ALIASES, ALIENS
-from cyclosweep.challenge.concealment import Concealed, alias_amplitude, conceal
+from cyclosweep.challenge.concealment import (
+    Concealed,
+    alias_amplitude,
+    conceal,
+    opposed_signs,
+    rival_overlaps,
+)
 from cyclosweep.challenge.dial import divided
 from cyclosweep.challenge.noise import Noise
-from cyclosweep.challenge.nominal import COMPLIANCE_DEG_PER_NM
 from cyclosweep.challenge.oracle import oracle_statistic
+from cyclosweep.challenge.prediction import fitting_error
 from cyclosweep.challenge.programme import Programme, make_programme
 from cyclosweep.challenge.rig import measure
 from cyclosweep.challenge.specimen import EITHER_SIGN, Specimen
@@ -49,12 +55,16 @@ class Case:
     resolution_deg: float
     truth: dict[str, Any]
 
-    def write(self, folder: str | Path) -> Path:
-        """Write ``recording.csv``, ``recording.toml`` and ``program.csv``; no answer among them."""
+    def write(self, folder: str | Path, *, program: bool = True) -> Path:
+        """Write ``recording.csv``, ``recording.toml`` and ``program.csv``; no answer among them.
+
+        Without ``program`` the held-out programme is left out.
+        """
         target = Path(folder)
         target.mkdir(parents=True, exist_ok=True)
         self.recording.write_csv(target / "recording.csv")
-        self.program.write_csv(target / "program.csv")
+        if program:
+            self.program.write_csv(target / "program.csv")
         (target / "recording.toml").write_text(
             'side = "input"\n'
             'drive = "reference-87"\n'
@@ -77,18 +87,18 @@ def _frame(programme: Programme, torque_nm: Array, angle_deg: Array | None) -> p
     return pl.DataFrame(columns)
 
 
-def _causes(found: Concealed) -> list[dict[str, Any]]:
+def _causes(found: Concealed, aliases: set[str]) -> list[dict[str, Any]]:
     """Answer's entry of every cause."""
     view = found.visibility
     return [
         {
             "name": name,
-            "kind": "alias" if name in ALIASES else "alien" if name in ALIENS else "effect",
+            "kind": "alias" if name in aliases else "alien" if name in ALIENS else "effect",
             "amplitude": amplitude,
             "d": float(view.d[k]),
             "d_alone": float(view.d_alone[k]),
             "absorbed": float(view.absorbed[k]),
-            "size_deg": float(view.rms_deg[k]),
+            "rms_deg": float(view.rms_deg[k]),
             "peak_deg": float(view.peak_deg[k]),
             "raw_rms_deg": float(view.raw_rms_deg[k]),
             "raw_peak_deg": float(view.raw_peak_deg[k]),
@@ -109,6 +119,9 @@ def make_case(
     sigma_deg: float = 0.2,
     resolution_deg: float = 0.0,
     signs: Sequence[float] | None = None,
+    pulling_apart: bool = False,
+    fixed_amplitudes: dict[str, float] | None = None,
+    rivals: bool = False,
     tier: str = "",
 ) -> Case:
     """Make a concealed recording.
@@ -131,6 +144,13 @@ def make_case(
         Noise of one reading and division of the dial [deg]; the family ``resolution`` draws both.
     signs : sequence of float, optional
         Signs of the causes that may have either; drawn if absent.
+    pulling_apart : bool
+        Turn signs so that the causes' projected signatures cancel where physics lets them.
+    fixed_amplitudes : dict, optional
+        Further causes at amplitudes given outright, whatever their visibility; they count as
+        exact aliases in the answer.
+    rivals : bool
+        Add to the answer how much each other effect resembles the first cause.
     tier : str
         Label of the concealment, kept in the answer.
 
@@ -160,7 +180,12 @@ def make_case(
         drawn = np.asarray(signs, dtype=float)
     either = [s if n in EITHER_SIGN else 1.0 for n, s in zip(visible, drawn, strict=True)]
     aliases = {n: alias_amplitude(n, streams[4]) for n in effects if n in ALIASES}
+    aliases |= fixed_amplitudes or {}
     found = conceal(specimen, first, law, visible, wanted, either, lost, aliases)
+    if pulling_apart:
+        turned = opposed_signs(found, visible, either)
+        if turned != either:
+            found = conceal(specimen, first, law, visible, wanted, turned, lost, aliases)
 
     recorded = first.take(found.seen)
     clean = found.response.angle_deg[found.seen]
@@ -172,7 +197,7 @@ def make_case(
     later_read = divided(
         later_clean + law.errors(later_seen, slope, streams[5]), law.resolution_deg
     )
-    causes = _causes(found)
+    causes = _causes(found, set(aliases))
     for k, cause in enumerate(causes):
         if cause["kind"] == "alias":
             continue
@@ -184,6 +209,7 @@ def make_case(
             law,
             slope,
         )
+    excess = fitting_error(found, first, later, second, specimen, law)
     truth: dict[str, Any] = {
         "seed": seed,
         "tier": tier,
@@ -196,13 +222,15 @@ def make_case(
         "causes": causes,
         "calibration": {
             "compliance_deg_per_nm": slope,
-            "compliance_scale": slope / COMPLIANCE_DEG_PER_NM,
             "free_play_deg": specimen.free_play_deg,
             "datum_deg": specimen.datum_deg,
         },
         "noise_rms_deg": float(np.sqrt(np.mean((read - clean) ** 2))),
+        "held_out_fitting_rms_deg": excess,
         "held_out_noise_rms_deg": float(np.sqrt(np.mean((later_read - later_clean) ** 2))),
     }
+    if rivals and visible:
+        truth["rivals"] = rival_overlaps(specimen, first, law, found)
     return Case(
         recording=_frame(recorded, found.response.shown_torque_nm[found.seen], read),
         program=_frame(later_seen, later.shown_torque_nm[later.recorded], None),

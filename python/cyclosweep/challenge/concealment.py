@@ -13,7 +13,7 @@ from cyclosweep.challenge.noise import Noise
 from cyclosweep.challenge.programme import Programme
 from cyclosweep.challenge.rig import Response, measure
 from cyclosweep.challenge.signature import Visibility, visibility
-from cyclosweep.challenge.specimen import Specimen
+from cyclosweep.challenge.specimen import EITHER_SIGN, VOCABULARY, Specimen
 
 Array = NDArray[np.float64]
 
@@ -27,6 +27,8 @@ FIRST_GUESS = {
 }
 LARGEST_DEG = 8.0
 LARGEST_OFFSET_DEG = 3.0
+LARGEST_WARMING_DEG = 8.0
+"""Largest change of datum or play over ten kelvins that a bench could show [deg]."""
 OFFSETS = frozenset({"datum_drift", "transmission_error", "thermal_drift", "dial_eccentricity"})
 TOLERANCE = 2e-3
 
@@ -127,6 +129,8 @@ def conceal(
             raise ConcealmentError(str(error)) from error
         reached = found.visibility.d[: len(names)]
         if len(names) == 0 or np.all(np.abs(reached / target - 1.0) < TOLERANCE):
+            if abs(amplitudes.get("thermal_drift", 0.0)) > LARGEST_WARMING_DEG:
+                raise ConcealmentError("the drive would have to warm up more than this one does")
             bounds = [LARGEST_OFFSET_DEG if name in OFFSETS else LARGEST_DEG for name in names]
             if np.any(found.visibility.raw_peak_deg[: len(names)] > bounds):
                 raise ConcealmentError("a cause would have to be larger than any bench shows")
@@ -138,6 +142,44 @@ def conceal(
         if np.any(sizes > 1e4):
             raise ConcealmentError("a cause stays invisible on this programme")
     raise ConcealmentError("no amplitude gives the wanted visibility")
+
+
+def rival_overlaps(
+    specimen: Specimen, programme: Programme, noise: Noise, found: Concealed
+) -> dict[str, float]:
+    """Overlap of the first cause's signature with that of every other effect on this specimen.
+
+    Returns
+    -------
+    dict
+        Magnitude of the cosine of the projected, whitened signatures, by effect; effects that
+        this programme cannot show are left out. Rivals have the specimen's own shapes, so a
+        rival free to change its shape may come closer still.
+    """
+    recorded = programme.take(found.seen)
+    first = next(iter(found.amplitudes))
+    base = measure(specimen, programme, {}).angle_deg
+    overlaps = {}
+    for name in VOCABULARY:
+        if name == first:
+            continue
+        small = measure(specimen, programme, {name: 0.2 * FIRST_GUESS.get(name, 0.3)})
+        pair = np.column_stack([found.signatures_deg[:, 0], (small.angle_deg - base)[found.seen]])
+        view = visibility(pair, recorded, noise, specimen.compliance_deg_per_nm)
+        if view.d_alone[1] > 1e-3:
+            overlaps[name] = abs(float(view.cosine[0, 1]))
+    return overlaps
+
+
+def opposed_signs(found: Concealed, names: Sequence[str], signs: Sequence[float]) -> list[float]:
+    """Signs with which each free cause pulls against the sum of those before it."""
+    turned = list(signs)
+    overlap = found.visibility.cosine
+    for k in range(1, len(names)):
+        pull = sum(turned[j] * signs[j] * float(overlap[j, k]) for j in range(k))
+        if names[k] in EITHER_SIGN and pull > 0.0:
+            turned[k] = -signs[k]
+    return turned
 
 
 def alias_amplitude(name: str, rng: np.random.Generator) -> float:

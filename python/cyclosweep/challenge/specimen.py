@@ -101,8 +101,9 @@ class Specimen:
             datum_deg=zero,
             pins=Pins.draw(rng),
             joint=Joint.draw(rng),
-            friction=Bristles.draw(rng),
-            load_friction=Bristles.draw(rng),
+            friction=Bristles.draw(rng, 1.2, 5.0),
+            # At rated load; a bristle's slip distance grows with its load.
+            load_friction=Bristles.draw(rng, 0.5, 2.0),
             chain=CreepChain.draw(rng),
             datum=Datum.draw(rng),
             profile=Profile.draw(rng),

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from cyclosweep import __version__
-from cyclosweep.cli import diagnose, sweep, validate
+from cyclosweep.cli import challenge, diagnose, sweep, validate
 from cyclosweep.cli.output import fail
 from cyclosweep.errors import DesignError, InputError, SweepError
 
@@ -26,6 +26,7 @@ app.command()(sweep.sweep)
 app.command()(sweep.shard)
 app.command()(diagnose.simulate)
 app.command()(diagnose.diagnose)
+app.command()(challenge.challenge)
 
 
 def _version(wanted: bool) -> None:

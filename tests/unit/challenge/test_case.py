@@ -17,7 +17,7 @@ def test_d_is_as_wanted(name: str) -> None:
     assert cause["name"] == name
     assert cause["d"] == pytest.approx(12.0, rel=3e-3)
     white = 12.0 * truth["noise"]["sigma_deg"] / np.sqrt(truth["readings"])
-    assert cause["size_deg"] == pytest.approx(white, rel=3e-3)
+    assert cause["rms_deg"] == pytest.approx(white, rel=3e-3)
 
 
 def test_two_causes_each_have_their_own_d() -> None:

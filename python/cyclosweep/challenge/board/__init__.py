@@ -1,0 +1,1 @@
+"""How a challenge's figures are shown."""

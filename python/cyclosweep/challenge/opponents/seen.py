@@ -1,0 +1,193 @@
+"""What every opponent sees: the recording, the calibrated baseline's residual, a library."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+ALIKE = 0.95
+"""Correlation above which one of two columns is left out."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """What an opponent says of a recording.
+
+    Attributes
+    ----------
+    score : float
+        Its statistic; the larger, the more is missing.
+    flagged : bool
+        Whether it says at its defaults that something is missing.
+    named : tuple of str or None
+        Effects it selects; None for a test that names nothing.
+    """
+
+    score: float
+    flagged: bool
+    named: tuple[str, ...] | None
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A recording as read from its files.
+
+    Attributes
+    ----------
+    time_s, torque_nm, angle_deg, crank_deg, temperature_c : array
+        Columns of the recording.
+    run : array of int
+        Trial number.
+    resolution_deg : float
+        Division of the dial [deg].
+    """
+
+    time_s: Array
+    torque_nm: Array
+    angle_deg: Array
+    run: NDArray[np.int64]
+    crank_deg: Array
+    temperature_c: Array
+    resolution_deg: float
+
+    @classmethod
+    def read(cls, folder: Path) -> Seen:
+        """Read a recording from its folder."""
+        table = pl.read_csv(folder / "recording.csv")
+        about = tomllib.loads((folder / "recording.toml").read_text())
+
+        def column(name: str) -> Array:
+            return table[name].cast(pl.Float64).to_numpy()
+
+        return cls(
+            column("time_s"),
+            column("torque_nm"),
+            column("angle_deg"),
+            table["run"].to_numpy().astype(np.int64),
+            column("crank_deg"),
+            column("temperature_c"),
+            float(about.get("angle_resolution_deg", 0.0)),
+        )
+
+    @cached_property
+    def baseline(self) -> Array:
+        """Orthonormal columns of the published model with free datum, play and compliance."""
+        torque = self.torque_nm
+        table = np.column_stack([np.ones_like(torque), np.sign(torque), torque])
+        left, singular, _ = np.linalg.svd(table, full_matrices=False)
+        return np.asarray(left[:, singular > 1e-9 * singular[0]])
+
+    @cached_property
+    def residual(self) -> Array:
+        """Angle left over by the calibrated baseline [deg]."""
+        return np.asarray(self.angle_deg - self.baseline @ (self.baseline.T @ self.angle_deg))
+
+    @cached_property
+    def direction(self) -> Array:
+        """Sign of the last torque change: one while loading upwards, minus one downwards."""
+        step = np.sign(np.diff(self.torque_nm, prepend=0.0))
+        start = np.flatnonzero(np.diff(self.run, prepend=self.run[0] - 1))
+        step[start] = np.sign(self.torque_nm[start])
+        for k in range(1, step.size):
+            if step[k] == 0.0:
+                step[k] = step[k - 1]
+        return np.asarray(step)
+
+    @cached_property
+    def library(self) -> tuple[Array, list[str]]:
+        """Textbook columns, baseline taken out, of unit rms; and the effect each stands for.
+
+        Taking the baseline out of the columns makes every regression a joint one, which is
+        kinder to the opponents than regressing the residual on the raw columns. Columns that
+        hardly differ from one before them are left out, as a careful engineer would.
+        """
+        raw = _textbook(self)
+        table = np.column_stack([column for _, column in raw])
+        free = table - self.baseline @ (self.baseline.T @ table)
+        size = np.sqrt(np.mean(free**2, axis=0))
+        before = np.sqrt(np.mean(table**2, axis=0))
+        chosen: list[int] = []
+        for k in range(len(raw)):
+            if size[k] <= 1e-3 * max(float(before[k]), 1e-12):
+                continue
+            unit = free[:, k] / size[k]
+            alike = [abs(float(np.mean(unit * free[:, j] / size[j]))) for j in chosen]
+            if max(alike, default=0.0) < ALIKE:
+                chosen.append(k)
+        return free[:, chosen] / size[chosen], [raw[k][0] for k in chosen]
+
+
+def _relaxing(seen: Seen, time_constant_s: float) -> Array:
+    """Torque seen through a first-order lag that starts afresh with each run [N m]."""
+    out = np.zeros_like(seen.torque_nm)
+    state = 0.0
+    for k in range(out.size):
+        if k == 0 or seen.run[k] != seen.run[k - 1]:
+            state = 0.0
+        else:
+            decay = np.exp(-(seen.time_s[k] - seen.time_s[k - 1]) / time_constant_s)
+            state = seen.torque_nm[k] + (state - seen.torque_nm[k]) * decay
+        out[k] = state
+    return out
+
+
+def _last_extreme(seen: Seen) -> Array:
+    """Last turning point of the run before, zero in the first [N m]."""
+    out = np.zeros_like(seen.torque_nm)
+    extreme = 0.0
+    for number in dict.fromkeys(seen.run.tolist()):
+        here = seen.run == number
+        out[here] = extreme
+        torque = seen.torque_nm[here]
+        turns = np.flatnonzero(np.diff(np.sign(np.diff(torque))) != 0)
+        extreme = float(torque[turns[-1] + 1]) if turns.size else float(torque[-1])
+    return out
+
+
+def _textbook(seen: Seen) -> list[tuple[str, Array]]:
+    """Columns that a careful engineer would offer a regression, with the effect of each."""
+    torque, side, size = seen.torque_nm, np.sign(seen.torque_nm), np.abs(seen.torque_nm)
+    top = float(size.max())
+    rate = np.zeros_like(torque)
+    same = np.diff(seen.run) == 0
+    rate[1:][same] = (np.diff(torque) / np.maximum(np.diff(seen.time_s), 1e-9))[same]
+    columns: list[tuple[str, Array]] = [
+        ("friction_hysteresis", seen.direction),
+        ("load_dependent_friction", seen.direction * size),
+        ("contact_stiffening", side * size ** (2.0 / 3.0)),
+        ("datum_drift", _last_extreme(seen)),
+        ("creep", _relaxing(seen, 30.0) - torque),
+        ("creep", _relaxing(seen, 300.0) - torque),
+        ("thermal_drift", seen.temperature_c),
+        ("viscous_drag", rate),
+        ("load_asymmetry", size),
+        ("load_asymmetry", size**2),
+    ]
+    columns += [("clearance_takeup", side * np.minimum(size, f * top)) for f in (0.25, 0.5)]
+    columns += [("overload_softening", side * np.maximum(size - f * top, 0.0)) for f in (0.5, 0.7)]
+    for order in (1, 2, 3):
+        phase = np.deg2rad(order * seen.crank_deg)
+        columns += [("transmission_error", np.cos(phase)), ("transmission_error", np.sin(phase))]
+    for order in (1, 2):
+        phase = np.deg2rad(order * seen.crank_deg)
+        columns += [
+            ("phase_dependent_compliance", torque * np.cos(phase)),
+            ("phase_dependent_compliance", torque * np.sin(phase)),
+        ]
+    # The fitted angle, not the read one: that carries the very noise it would have to explain.
+    turn = np.deg2rad(seen.angle_deg - seen.residual)
+    columns += [("dial_eccentricity", np.cos(turn)), ("dial_eccentricity", np.sin(turn))]
+    return columns
+
+
+def effects_of(names: list[str], chosen: Array | list[int]) -> tuple[str, ...]:
+    """Effects that the chosen columns stand for, each once."""
+    return tuple(sorted({names[int(k)] for k in chosen}))

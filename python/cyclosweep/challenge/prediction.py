@@ -1,0 +1,78 @@
+"""How well the true model itself predicts, once its parameters come from the recording."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cyclosweep.challenge.concealment import Concealed
+from cyclosweep.challenge.noise import Noise
+from cyclosweep.challenge.programme import Programme
+from cyclosweep.challenge.rig import Response, measure
+from cyclosweep.challenge.signature import calibration
+from cyclosweep.challenge.specimen import Specimen
+
+Array = NDArray[np.float64]
+
+ORDERS = {"transmission_error": (1, 2, 3), "phase_dependent_compliance": (1, 2, 3, 4)}
+"""Orders of crank position that the true model has to fit."""
+
+
+def _freedom(names: list[str], signatures_deg: Array, programme: Programme) -> Array:
+    """Columns along which the true model's fit can move, shape (N, K)."""
+    columns = [calibration(programme), signatures_deg]
+    for name in names:
+        if name in ORDERS:
+            phase = np.deg2rad(np.outer(programme.crank_deg, ORDERS[name]))
+            waves = np.hstack([np.cos(phase), np.sin(phase)])
+            if name == "phase_dependent_compliance":
+                waves = waves * programme.torque_nm[:, None]
+            columns.append(waves)
+    return np.hstack(columns)
+
+
+def fitting_error(
+    found: Concealed,
+    first: Programme,
+    later: Response,
+    second: Programme,
+    specimen: Specimen,
+    noise: Noise,
+) -> float:
+    """Expected error that the true model's fit adds on the held-out programme, as rms [deg].
+
+    Calibration, each cause's amplitude and the waves over crank position are fitted to the
+    recording by generalised least squares; other shapes are taken as known, so that a real fit
+    of the true model does somewhat worse.
+
+    Parameters
+    ----------
+    found : Concealed
+        The causes on the first programme.
+    first, second : Programme
+        The recorded and the held-out programme.
+    later : Response
+        Noise-free readings of the held-out programme.
+    specimen, noise
+        Drive and true noise.
+    """
+    names = list(found.amplitudes)
+    held = []
+    for name in names:
+        rest = {other: a for other, a in found.amplitudes.items() if other != name}
+        off = measure(specimen, second, rest)
+        held.append((later.angle_deg - off.angle_deg)[later.recorded])
+    there = second.take(later.recorded)
+    signatures = np.column_stack(held) if held else np.zeros((len(there), 0))
+    seen = first.take(found.seen)
+    fitted = noise.whiten(
+        _freedom(names, found.signatures_deg, seen), seen, specimen.compliance_deg_per_nm
+    )
+    size = np.linalg.norm(fitted, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    predicted = _freedom(names, signatures, there) / size
+    # Directions that the recording does not determine are left where they are, as a fit would.
+    _, singular, turned = np.linalg.svd(fitted / size, full_matrices=False)
+    known = singular > 1e-6 * singular[0]
+    spread = (predicted @ turned[known].T) / singular[known]
+    return float(np.sqrt(np.mean(np.sum(spread**2, axis=1)) / noise.information()))

@@ -1,0 +1,363 @@
+"""A whole challenge: recordings, sealed answers, diagnoses, opponents and score; resumable."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import polars as pl
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from cyclosweep.challenge.board.gallery import Exhibit, choose, exhibit
+from cyclosweep.challenge.board.page import write_page
+from cyclosweep.challenge.board.terminal import print_board
+from cyclosweep.challenge.diagnosing import command, diagnose_batch, predict, read_diagnosis
+from cyclosweep.challenge.opponents.contest import absent, meet_opponents
+from cyclosweep.challenge.plan import Entry, make_entry, make_plan
+from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
+from cyclosweep.challenge.scoring.score import Score, make_score
+from cyclosweep.challenge.seal import new_passphrase, root_hash, seal, unseal
+
+T = TypeVar("T")
+
+RECORD_SEED = 100_000
+"""Records use seeds from here on; development uses seeds below ten thousand."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a challenge is run, apart from what it is made of.
+
+    Attributes
+    ----------
+    workers : int
+        Processes at a time.
+    batch : int
+        Recordings shown to one process of the diagnosis.
+    limit_s : float
+        Time allowed for one recording [s].
+    diagnose_flags : tuple of str
+        Further flags of ``cyclosweep diagnose``.
+    removal_flag : str
+        Flag that takes an effect out of the library, followed by its name.
+    program : tuple of str
+        Command that starts ``cyclosweep``; with this interpreter where empty.
+    opponents : str
+        ``all``, ``cheap`` or ``none``.
+    costly_limit : int
+        Recordings of each stratum that the costly opponents see.
+    passphrase : str
+        Key of the answers; drawn at random and kept beside the run where empty.
+    """
+
+    workers: int = 1
+    batch: int = 20
+    limit_s: float = 60.0
+    diagnose_flags: tuple[str, ...] = ()
+    removal_flag: str = "--without"
+    program: tuple[str, ...] = ()
+    opponents: str = "all"
+    costly_limit: int = 300
+    passphrase: str = ""
+
+
+class Folders:
+    """Where a run keeps what: recordings are never in one folder with answers."""
+
+    def __init__(self, out: Path) -> None:
+        self.out = out
+        self.recordings = out / "recordings"
+        self.answers = out / "answers"
+        self.diagnoses = out / "diagnoses"
+        self.opponents = out / "opponents"
+        for folder in (self.recordings, self.answers, self.diagnoses, self.opponents):
+            folder.mkdir(parents=True, exist_ok=True)
+
+    def passphrase(self, given: str) -> str:
+        """Key of this run's answers."""
+        if given:
+            return given
+        file = self.out / "answers.key"
+        if not file.exists():
+            file.touch(mode=0o600)
+            file.write_text(new_passphrase())
+        return file.read_text().strip()
+
+    def hashes(self) -> dict[str, str]:
+        """Return the published hash of every sealed answer, by key."""
+        file = self.answers / "HASHES.txt"
+        lines = file.read_text().splitlines() if file.exists() else []
+        return dict(line.split(" ", 1) for line in lines if line)
+
+    def publish(self, hashes: dict[str, str]) -> str:
+        """Write all hashes and their root; return the root."""
+        text = "".join(f"{key} {hashes[key]}\n" for key in sorted(hashes))
+        partial = self.answers / "HASHES.tmp"
+        partial.write_text(text)
+        partial.replace(self.answers / "HASHES.txt")
+        root = root_hash(hashes.items())
+        (self.answers / "ROOT.txt").write_text(f"{root} {len(hashes)} answers\n")
+        return root
+
+
+def _prepare(entry: Entry, recordings: Path, answers: Path, passphrase: str) -> tuple[str, str]:
+    """Make one case, write its recording, seal its answer; return key and hash."""
+    case = make_entry(entry)
+    # With nothing missing there is no repaired model whose predictions would be scored, and a
+    # programme for each of ten thousand nulls would take gigabytes.
+    predicted = entry.stratum.tier != "C6"
+    case.write(recordings / entry.key, program=predicted)
+    answer = dict(case.truth)
+    if predicted:
+        answer["held_out_clean_deg"] = case.held_out_clean_deg.round(5).tolist()
+        answer["held_out_read_deg"] = case.held_out_read_deg.round(5).tolist()
+    return entry.key, seal(answer, answers / f"{entry.key}.sealed", passphrase)
+
+
+def _pool(workers: int, processes: bool) -> Executor:
+    """Return threads, or processes that do not fork with one linear-algebra thread each."""
+    if not processes:
+        return ThreadPoolExecutor(workers)
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+
+
+def _results(
+    workers: int, processes: bool, jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]]
+) -> Iterator[T]:
+    """Results of jobs as they come; a single worker is this process itself."""
+    if workers == 1:
+        for function, arguments in jobs:
+            yield function(*arguments)
+        return
+    pool = _pool(workers, processes)
+    try:
+        futures = [pool.submit(function, *arguments) for function, arguments in jobs]
+        for future in as_completed(futures):
+            yield future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _work(
+    title: str,
+    workers: int,
+    jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]],
+    console: Console,
+    done: Callable[[T], None] = lambda _: None,
+    *,
+    processes: bool = True,
+) -> None:
+    """Run jobs, showing progress; ``done`` takes each result as it comes."""
+    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(title, total=len(jobs))
+        for result in _results(workers, processes, jobs):
+            done(result)
+            progress.advance(task)
+
+
+def prepare(plan: Sequence[Entry], folders: Folders, options: Options, console: Console) -> str:
+    """Write every recording and seal every answer; return the root hash."""
+    passphrase = folders.passphrase(options.passphrase)
+    hashes = folders.hashes()
+    missing = [entry for entry in plan if entry.key not in hashes]
+    made = 0
+
+    def keep(result: tuple[str, str]) -> None:
+        nonlocal made
+        hashes[result[0]] = result[1]
+        made += 1
+        if made % 200 == 0:
+            folders.publish(hashes)
+
+    jobs = [
+        (_prepare, (entry, folders.recordings, folders.answers, passphrase)) for entry in missing
+    ]
+    _work("recordings", options.workers, jobs, console, keep)
+    return folders.publish(hashes)
+
+
+def _removed(entry: Entry, folders: Folders, options: Options) -> str:
+    """Effect that a case's diagnosis has to do without; empty for none."""
+    if entry.stratum.tier != "C5-removed":
+        return ""
+    answer = unseal(
+        folders.answers / f"{entry.key}.sealed",
+        folders.passphrase(options.passphrase),
+        folders.hashes()[entry.key],
+    )
+    return str(answer["removed"])
+
+
+def diagnose(plan: Sequence[Entry], folders: Folders, options: Options, console: Console) -> None:
+    """Let the diagnosis see every recording, in processes of its own."""
+    waiting: dict[tuple[str, ...], list[str]] = {}
+    for entry in plan:
+        if not (folders.diagnoses / entry.key / "diagnosis.json").exists():
+            removed = _removed(entry, folders, options)
+            flags: tuple[str, ...] = (options.removal_flag, removed) if removed else ()
+            waiting.setdefault(flags, []).append(entry.key)
+    jobs: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
+    program = options.program or tuple(command())
+    for flags, keys in waiting.items():
+        for k in range(0, len(keys), options.batch):
+            some = {key: folders.recordings / key for key in keys[k : k + options.batch]}
+            every = (*options.diagnose_flags, *flags)
+            jobs.append(
+                (diagnose_batch, (some, folders.diagnoses, every, options.limit_s, program))
+            )
+    _work("diagnoses", options.workers, jobs, console, processes=False)
+
+
+def predict_all(
+    plan: Sequence[Entry], folders: Folders, options: Options, console: Console
+) -> None:
+    """Let every model that named something predict its specimen's second programme."""
+    program = options.program or tuple(command())
+    jobs = []
+    for entry in plan:
+        target = folders.diagnoses / entry.key
+        model, done = target / "model.json", target / "prediction.csv"
+        named = read_diagnosis(folders.diagnoses, entry.key).get("verdict") == "IDENTIFIED"
+        later = folders.recordings / entry.key / "program.csv"
+        if named and model.exists() and later.exists() and not done.exists():
+            jobs.append((predict, (model, later, done, options.limit_s, program)))
+    _work("predictions", options.workers, jobs, console, processes=False)
+
+
+def held_out_ratio(answer: dict[str, Any], prediction: Path) -> HeldOut:
+    """Error of a prediction over the true model's own, both against what was read [-]."""
+    if not prediction.exists():
+        return HeldOut()
+    predicted = pl.read_csv(prediction)["angle_deg"].cast(pl.Float64).to_numpy()
+    read = np.array(answer["held_out_read_deg"])
+    clean = np.array(answer["held_out_clean_deg"])
+    if predicted.size != read.size or not np.isfinite(predicted).any():
+        return HeldOut()
+    there = np.isfinite(predicted)
+    error = np.sqrt(np.mean((predicted - read)[there] ** 2))
+    own = np.sqrt(np.mean((clean - read)[there] ** 2))
+    fitted = np.hypot(own, answer["held_out_fitting_rms_deg"])
+    return HeldOut(known=float(error / own), fitted=float(error / fitted))
+
+
+def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> list[Outcome]:
+    """Open the answers, check their hashes and lay them beside the diagnoses."""
+    passphrase = folders.passphrase(options.passphrase)
+    hashes = folders.hashes()
+    outcomes = []
+    for entry in plan:
+        answer = unseal(folders.answers / f"{entry.key}.sealed", passphrase, hashes[entry.key])
+        ratio = held_out_ratio(answer, folders.diagnoses / entry.key / "prediction.csv")
+        for column in ("held_out_clean_deg", "held_out_read_deg"):
+            answer.pop(column, None)
+        outcomes.append(make_outcome(answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
+    return outcomes
+
+
+def gallery(outcomes: list[Outcome], folders: Folders, options: Options) -> list[Exhibit]:
+    """Let the repaired models of some cases predict their own recordings, and lay them out."""
+    program = options.program or tuple(command())
+    items = []
+    for outcome in choose(outcomes):
+        kept = folders.diagnoses / outcome.key
+        recording = folders.recordings / outcome.key / "recording.csv"
+        again = kept / "again.csv"
+        if (kept / "model.json").exists() and not again.exists():
+            loads = kept / "loads.csv"
+            pl.read_csv(recording).drop("angle_deg").write_csv(loads)
+            predict(kept / "model.json", loads, again, options.limit_s, program)
+        statement = str(read_diagnosis(folders.diagnoses, outcome.key).get("statement", ""))
+        items.append(exhibit(outcome, statement, recording, again))
+    return items
+
+
+def run_challenge(
+    cases: int,
+    seed: int,
+    out: str | Path,
+    workers: int = 1,
+    *,
+    mix: str = "all",
+    samples: int = 3000,
+    options: Options | None = None,
+    console: Console | None = None,
+) -> Score:
+    """Run a challenge, or go on with one that was interrupted.
+
+    Parameters
+    ----------
+    cases : int
+        Number of cases; a larger number on the same folder adds to it.
+    seed : int
+        Seed of the challenge.
+    out : str or pathlib.Path
+        Folder of the run.
+    workers : int
+        Processes at a time.
+    mix : {"all", "null", "open", "concealed", "contest"}
+        Which strata take part.
+    samples : int
+        Readings of each recording.
+    options : Options, optional
+        Everything else; ``workers`` above wins.
+    console : rich.console.Console, optional
+        Where progress, root hash and table go; standard error if absent.
+
+    Returns
+    -------
+    Score
+        Figures, curves and tables; also in ``score.json`` and ``score.html`` of the folder.
+
+    Raises
+    ------
+    SealError
+        If an answer was changed after it was sealed.
+    ValueError
+        If the folder holds a challenge of another seed, mix or size.
+    """
+    chosen = Options(**(vars(options or Options()) | {"workers": max(1, workers)}))
+    screen = console or Console(stderr=True)
+    folders = Folders(Path(out))
+    about = {"seed": seed, "mix": mix, "samples": samples}
+    _claim(folders.out, about)
+    plan = make_plan(cases, seed, mix, samples)
+    root = prepare(plan, folders, chosen, screen)
+    screen.print(f"answers sealed: SHA-256 {root} over {len(folders.hashes())} answers")
+    diagnose(plan, folders, chosen, screen)
+    predict_all(plan, folders, chosen, screen)
+    if chosen.opponents != "none" and absent():
+        screen.print(f"without their libraries (extra: challenge): {', '.join(absent())}")
+    meetings = meet_opponents(
+        plan, folders.recordings, folders.opponents, chosen.opponents, chosen.costly_limit
+    )
+    _work("opponents", chosen.workers, meetings, screen)
+    outcomes = open_answers(plan, folders, chosen)
+    score = make_score(outcomes, folders.opponents, about | {"root": root})
+    (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
+    (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))
+    exhibits = gallery(outcomes, folders, chosen)
+    write_page(score, exhibits, folders.out / "score.html")
+    print_board(score, screen)
+    return score
+
+
+def _claim(out: Path, own: dict[str, Any]) -> None:
+    """Make sure that a folder holds one challenge only."""
+    file = out / "challenge.json"
+    if file.exists():
+        found = json.loads(file.read_text())
+        if found != own:
+            raise ValueError(f"{file}: found {found}, expected {own}; use another folder")
+    else:
+        file.write_text(json.dumps(own))

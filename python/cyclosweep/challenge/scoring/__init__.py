@@ -1,0 +1,1 @@
+"""Figures of a challenge, each with its interval and its target."""

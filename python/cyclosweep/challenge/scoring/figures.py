@@ -1,0 +1,308 @@
+"""The table of figures to reach: each with its value, interval, target and whether it is met."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from cyclosweep.challenge.noise import NOISES
+from cyclosweep.challenge.oracle import oracle_d
+from cyclosweep.challenge.scoring.calibration import calibration_error, stated_and_true
+from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share, share_of
+from cyclosweep.challenge.scoring.outcome import Outcome
+from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
+
+LEVEL = 0.01
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One line of the table.
+
+    Attributes
+    ----------
+    name : str
+        What is measured.
+    estimate : Estimate
+        Value with its 95 % interval.
+    target : str
+        What is to be reached, in words.
+    required : str
+        What must be reached, where that is less; empty where nothing is.
+    met, met_required : bool or None
+        Whether value or bound is on the right side; None where there are too few cases to say.
+    """
+
+    name: str
+    estimate: Estimate
+    target: str
+    required: str
+    met: bool | None
+    met_required: bool | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the line as plain data."""
+        return asdict(self)
+
+
+def _figure(
+    name: str,
+    estimate: Estimate,
+    *,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    must: float | None = None,
+    by_upper_bound: bool = False,
+    within: tuple[float, float] | None = None,
+) -> Figure:
+    """Compare an estimate with its target."""
+
+    def judge(low: float | None, high: float | None) -> bool | None:
+        if estimate.count == 0 or math.isnan(estimate.value):
+            return None
+        if by_upper_bound and share(0, estimate.count).high > (high or 1.0):
+            return None
+        seen = estimate.high if by_upper_bound else estimate.value
+        return (low is None or seen >= low) and (high is None or seen <= high)
+
+    of = "upper bound " if by_upper_bound else ""
+    if within is not None:
+        target, met = f"{within[0]:g} to {within[1]:g}", judge(*within)
+    elif at_least is not None:
+        target, met = f"{of}at least {at_least:g}", judge(at_least, None)
+    elif at_most is not None:
+        target, met = f"{of}at most {at_most:g}", judge(None, at_most)
+    else:
+        target, met = "none", None
+    required, met_required = "", None
+    if must is not None:
+        lower = at_least is not None
+        required = f"{of}at {'least' if lower else 'most'} {must:g}"
+        met_required = judge(must, None) if lower else judge(None, must)
+    return Figure(name, estimate, target, required, met, met_required)
+
+
+Chosen = Sequence[Outcome]
+
+
+def false_alarms(outcomes: Chosen) -> list[Figure]:
+    """Count false alarms by noise family, and how often nothing missing is said so."""
+    nulls = [o for o in outcomes if o.tier == "C6"]
+    figures = [
+        _figure(
+            f"false alarms, {family}",
+            share_of([o.alarm for o in nulls if o.noise == family]),
+            at_most=0.02,
+            must=0.02,
+            by_upper_bound=True,
+        )
+        for family in NOISES
+    ]
+    plain = [o for o in nulls if o.programme == "rich" and o.noise == "white"]
+    said = share_of([o.verdict == "NOTHING_MISSING" for o in plain])
+    figures.append(_figure("nothing missing said so, rich, white", said, at_least=0.90))
+    return figures
+
+
+def power(outcomes: Chosen) -> list[Figure]:
+    """Visibility for nine detections in ten, beside the test that knows the effect."""
+    figures = []
+    for programme in ("rich", "poor"):
+        single = [o for o in outcomes if o.tier == "C0" and o.programme == programme]
+        needed = d_for_power([o.d for o in single], [o.alarm for o in single], LEVEL)
+        known = [abs(o.oracle_z) > oracle_d(0.5, LEVEL) for o in single]
+        oracle = d_for_power([o.d for o in single], known, LEVEL)
+        target = 1.30 if programme == "rich" else None
+        figures += [
+            _figure(f"d for 90 % power, {programme}", needed),
+            _figure(f"the same of the test that knows the effect, {programme}", oracle),
+            _figure(
+                f"d for 90 % power over the knowing test's, {programme}",
+                relative_to_oracle(needed, LEVEL),
+                at_most=target,
+            ),
+        ]
+    return figures
+
+
+def naming(outcomes: Chosen) -> list[Figure]:
+    """Single effects named right, and explanation sets."""
+    targets: dict[str, dict[float, tuple[float, float | None]]] = {
+        "rich": {6.0: (0.92, None), 10.0: (0.98, 0.90), 20.0: (0.99, 0.90)},
+        "poor": {6.0: (0.80, None), 10.0: (0.90, None), 20.0: (0.95, None)},
+    }
+    figures = []
+    for programme, rows in targets.items():
+        for d, (target, must) in rows.items():
+            there = [
+                o
+                for o in outcomes
+                if o.tier == "C0" and o.programme == programme and abs(o.d / d - 1.0) < 0.02
+            ]
+            figures.append(
+                _figure(
+                    f"named right, single effect, d = {d:g}, {programme}",
+                    share_of([o.named_right for o in there]),
+                    at_least=target,
+                    must=must,
+                )
+            )
+            figures.append(
+                _figure(
+                    f"the same if only the nearest rival were in doubt, d = {d:g}, {programme}",
+                    bootstrapped([o.naming_bound for o in there]),
+                )
+            )
+    for programme, size in (("rich", 1.3), ("poor", 1.8)):
+        single = [o for o in outcomes if o.tier in {"C0", "C1", "C2"} and o.programme == programme]
+        said = [o for o in single if o.explanations and o.alarm]
+        figures += [
+            _figure(
+                f"explanation set covers the truth, {programme}",
+                share_of([o.covered for o in said]),
+                at_least=0.95,
+            ),
+            _figure(
+                f"mean size of the explanation set, {programme}",
+                bootstrapped([len(o.explanations) for o in said]),
+                at_most=size,
+            ),
+        ]
+    ten = [o for o in outcomes if o.tier == "C3"]
+    figures.append(
+        _figure(
+            "two effects ten to one, both right, rich",
+            share_of([o.named_right for o in ten]),
+            at_least=0.80,
+            must=0.70,
+        )
+    )
+    for tier in ("C1", "C2", "C4"):
+        there = [o for o in outcomes if o.tier == tier]
+        figures.append(_figure(f"named right, {tier}", share_of([o.named_right for o in there])))
+    return figures
+
+
+def sizes(outcomes: Chosen) -> list[Figure]:
+    """Amplitude errors against their bound, interval coverage, calibration parameters' bias."""
+    named = [s for o in outcomes if o.named_right and len(o.causes) == 1 for s in o.sizes]
+    large = [s for s in named if s.d >= 9.9]
+    error = [s.error for s in large]
+    covered = [s.low_deg <= s.true_deg <= s.high_deg for s in named if math.isfinite(s.low_deg)]
+    figures = [
+        _figure(
+            "amplitude error over the Cramer-Rao bound, d at least 10",
+            bootstrapped(error, "rms"),
+            at_most=1.10,
+        ),
+        _figure("95 % interval of the size covers it", share_of(covered), within=(0.93, 0.97)),
+    ]
+    right = [o for o in outcomes if o.named_right]
+    for name in sorted({key for o in right for key in o.pulls}):
+        pulls = [o.pulls[name] for o in right if name in o.pulls]
+        bias = bootstrapped(pulls)
+        figures.append(
+            _figure(
+                f"bias of {name} after the repair, in standard errors",
+                Estimate(abs(bias.value), *_folded(bias), bias.count),
+                at_most=0.5,
+            )
+        )
+    return figures
+
+
+def _folded(estimate: Estimate) -> tuple[float, float]:
+    """Bounds of the magnitude of a signed estimate."""
+    low, high = sorted((abs(estimate.low), abs(estimate.high)))
+    return (0.0 if estimate.low < 0.0 < estimate.high else low), high
+
+
+def prediction(outcomes: Chosen) -> list[Figure]:
+    """Held-out error over the true model's, where the effect was named."""
+    there = [o.held_out for o in outcomes if o.named_right and math.isfinite(o.held_out.known)]
+    fitted, known = [h.fitted for h in there], [h.known for h in there]
+    return [
+        _figure(
+            "held-out error over the fitted true model's, mean",
+            bootstrapped(fitted),
+            at_most=1.02,
+            must=1.05,
+        ),
+        _figure(
+            "held-out error over the fitted true model's, median", bootstrapped(fitted, "median")
+        ),
+        _figure("held-out error over the true model's at its true parameters", bootstrapped(known)),
+    ]
+
+
+def unknown(outcomes: Chosen) -> list[Figure]:
+    """Causes off the list, deleted members and exact aliases."""
+    figures = []
+    for tier, words, must in (
+        ("C5-alien", "cause on nobody's list", (0.80, 0.10)),
+        ("C5-removed", "effect taken out of the library", (0.60, None)),
+    ):
+        there = [o for o in outcomes if o.tier == tier]
+        figures += [
+            _figure(
+                f"{words}: recognised",
+                share_of([o.recognised for o in there]),
+                at_least=0.90,
+                must=must[0],
+            ),
+            _figure(
+                f"{words}: given a false name",
+                share_of([bool(o.false_names) for o in there]),
+                at_most=0.05,
+                must=must[1],
+            ),
+        ]
+    aliased = [o for o in outcomes if o.tier == "C7"]
+    figures.append(
+        _figure(
+            "exact aliases called untestable",
+            share_of([set(o.aliases) <= set(o.untestable) and not o.alarm for o in aliased]),
+            at_least=1.0,
+            must=1.0,
+        )
+    )
+    return figures
+
+
+def probabilities(outcomes: Chosen) -> list[Figure]:
+    """Calibration of the stated probabilities of explanations."""
+    there = [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C3", "C4"}]
+    stated, _ = stated_and_true(there)
+    if not stated:
+        empty = Estimate(math.nan, math.nan, math.nan, 0)
+        return [_figure("calibration error of stated probabilities", empty, at_most=0.03)]
+    rng = np.random.default_rng(99)
+    drawn = [
+        calibration_error([there[k] for k in rng.integers(0, len(there), len(there))])
+        for _ in range(200)
+    ]
+    low, high = np.nanquantile(drawn, [0.025, 0.975])
+    estimate = Estimate(calibration_error(there), float(low), float(high), len(stated))
+    return [_figure("calibration error of stated probabilities", estimate, at_most=0.03)]
+
+
+def effort(outcomes: Chosen) -> list[Figure]:
+    """Time of a diagnosis, and how many gave no answer."""
+    return [
+        _figure(
+            "time of a diagnosis, seconds",
+            bootstrapped([o.elapsed_s for o in outcomes], "median"),
+            at_most=10.0,
+        ),
+        _figure("no answer at all", share_of([bool(o.failure) for o in outcomes]), at_most=0.0),
+    ]
+
+
+def all_figures(outcomes: Chosen) -> list[Figure]:
+    """Every line of the table, none left out."""
+    parts = (false_alarms, power, naming, sizes, prediction, unknown, probabilities, effort)
+    return [figure for part in parts for figure in part(outcomes)]

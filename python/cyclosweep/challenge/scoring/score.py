@@ -1,0 +1,167 @@
+"""Everything a challenge found, ready to be shown or stored."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from cyclosweep.challenge.oracle import oracle_d
+from cyclosweep.challenge.scoring.calibration import Bin, calibration_bins
+from cyclosweep.challenge.scoring.confusion import confusion
+from cyclosweep.challenge.scoring.figures import Figure, all_figures
+from cyclosweep.challenge.scoring.intervals import Estimate, share_of
+from cyclosweep.challenge.scoring.outcome import Outcome
+from cyclosweep.challenge.scoring.rivals import OpponentCurve, opponent_curves
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Share of cases against visibility on one programme.
+
+    Attributes
+    ----------
+    who, programme : str
+        Whose curve it is, and on which programme.
+    points : tuple of (float, Estimate)
+        Visibility and share with its interval.
+    """
+
+    who: str
+    programme: str
+    points: tuple[tuple[float, Estimate], ...]
+
+
+@dataclass(frozen=True)
+class Score:
+    """Result of a challenge.
+
+    Attributes
+    ----------
+    about : dict
+        Seed, mix, root hash and number of cases.
+    figures : list of Figure
+        The table of figures, none left out.
+    curves : list of Curve
+        Detection, naming and the oracle's detection against visibility.
+    opponents : list of OpponentCurve
+        The opponents' detection at their own false-alarm settings.
+    confusion : dict of polars.DataFrame
+        Confusion matrix by programme.
+    calibration : list of Bin
+        Stated probabilities against frequencies.
+    verdicts : polars.DataFrame
+        Verdicts counted by stratum.
+    """
+
+    about: dict[str, Any]
+    figures: list[Figure]
+    curves: list[Curve]
+    opponents: list[OpponentCurve]
+    confusion: dict[str, pl.DataFrame]
+    calibration: list[Bin]
+    verdicts: pl.DataFrame
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data that JSON can hold; not-a-number becomes null."""
+        plain = {
+            "schema": "cyclosweep.challenge/1",
+            "about": self.about,
+            "figures": [figure.as_dict() for figure in self.figures],
+            "curves": [
+                {
+                    "who": curve.who,
+                    "programme": curve.programme,
+                    "points": [{"d": d, **vars(e)} for d, e in curve.points],
+                }
+                for curve in self.curves
+            ],
+            "opponents": [opponent.as_dict() for opponent in self.opponents],
+            "confusion": {name: table.to_dicts() for name, table in self.confusion.items()},
+            "calibration": [{"stated": b.stated, **vars(b.frequency)} for b in self.calibration],
+            "verdicts": self.verdicts.to_dicts(),
+        }
+        cleaned: dict[str, Any] = _nulled(plain)
+        return cleaned
+
+
+def _nulled(value: Any) -> Any:
+    """Return the same data with not-a-number and infinities as null."""
+    if isinstance(value, dict):
+        return {key: _nulled(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_nulled(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _curves(outcomes: Sequence[Outcome]) -> list[Curve]:
+    """Curves of the diagnosis and of the test that knows the effect."""
+    threshold = oracle_d(0.5, 0.01)
+    curves = []
+    for programme in ("rich", "poor"):
+        single = [o for o in outcomes if o.tier == "C0" and o.programme == programme]
+        levels = sorted({round(o.d) for o in single})
+        told: dict[str, list[bool]] = {
+            "detected": [o.alarm for o in single],
+            "named right": [o.named_right for o in single],
+            "test that knows the effect": [abs(o.oracle_z) > threshold for o in single],
+        }
+        for who, flags in told.items():
+            points = tuple(
+                (
+                    float(d),
+                    share_of([f for o, f in zip(single, flags, strict=True) if round(o.d) == d]),
+                )
+                for d in levels
+            )
+            curves.append(Curve(who, programme, points))
+    return curves
+
+
+def make_score(outcomes: Sequence[Outcome], opponents: Path, about: dict[str, Any]) -> Score:
+    """Score the outcomes of a challenge.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        One for every case.
+    opponents : pathlib.Path
+        Folder with what the opponents said, a JSON file a case.
+    about : dict
+        What the challenge was made of.
+    """
+    said = {file.stem: json.loads(file.read_text()) for file in sorted(opponents.glob("*.json"))}
+    verdicts = (
+        pl.DataFrame(
+            {
+                "stratum": [o.stratum for o in outcomes],
+                "verdict": [o.verdict for o in outcomes],
+            },
+            schema={"stratum": pl.String, "verdict": pl.String},
+        )
+        .group_by("stratum", "verdict")
+        .len("cases")
+        .sort("stratum", "verdict")
+    )
+    named = [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C5-alien"} and o.d > 9.0]
+    return Score(
+        about=about | {"cases": len(outcomes)},
+        figures=all_figures(outcomes),
+        curves=_curves(outcomes),
+        opponents=opponent_curves(outcomes, said),
+        confusion={
+            programme: confusion([o for o in named if o.programme == programme])
+            for programme in ("rich", "poor")
+        },
+        calibration=calibration_bins(
+            [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C3", "C4"}]
+        ),
+        verdicts=verdicts,
+    )

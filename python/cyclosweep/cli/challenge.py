@@ -1,0 +1,49 @@
+"""`cyclosweep challenge`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from cyclosweep.cli.output import AsJson, interruptible, print_json
+from cyclosweep.errors import InputError
+
+
+def challenge(
+    cases: Annotated[
+        int, typer.Option("--cases", metavar="N", min=1, help="Number of concealed recordings.")
+    ],
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="S", min=0, help="Seed; records use 100000 and above.")
+    ],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the run.")],
+    workers: Annotated[int, typer.Option(min=1, help="Processes at a time.")] = 1,
+    mix: Annotated[
+        Literal["all", "null", "open", "concealed", "contest"],
+        typer.Option(help="Which kinds of case take part."),
+    ] = "all",
+    opponents: Annotated[
+        Literal["all", "cheap", "none"], typer.Option(help="Who else sees the recordings.")
+    ] = "all",
+    as_json: AsJson = False,
+) -> None:
+    """Conceal effects, diagnose them blind, and score what was said against sealed answers.
+
+    The same command on the same DIR goes on where it stopped; a larger N adds cases.
+    """
+    from cyclosweep.challenge.runner import Options, run_challenge
+    from cyclosweep.challenge.seal import SealError
+
+    try:
+        with interruptible(f"the same command goes on from {out}"):
+            score = run_challenge(
+                cases, seed, out, workers, mix=mix, options=Options(opponents=opponents)
+            )
+    except SealError as error:
+        raise InputError(f"{out}: {error}") from error
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    if as_json:
+        print_json(score.as_dict())

@@ -1,0 +1,98 @@
+"""Measured loops: read as they are, turned into a null, and with effects laid over them."""
+
+import gzip
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cyclosweep.challenge.measured import (
+    INJECTABLE,
+    injected,
+    left_over,
+    read_loops,
+    repeated_null,
+    repeats,
+    signature,
+    write_loops,
+)
+from cyclosweep.challenge.measured_run import run_measured
+
+STAND_IN = Path(__file__).parent / "stand_in.py"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """Ramps like the measured ones: a line with play, three rows a clock tick."""
+    rng = np.random.default_rng(1)
+    target = tmp_path / "loops" / "ramp.csv.gz"
+    target.parent.mkdir()
+    with gzip.open(target, "wt", encoding="utf-8-sig") as out:
+        out.write("TIME,POSITION,TORQUE,CONTROL_TORQUE,Q_CURRENT,FAULT,test_nr\n")
+        clock = 0.0
+        for ramp in (0, 100, 101, 102):
+            top = 4.0 if ramp == 0 else 40.0
+            for command in top * np.sin(np.linspace(0.0, 2.0 * np.pi, 300)):
+                clock += 0.015
+                torque = np.clip(command, -25.0, 25.0)
+                angle = np.sign(torque) + 0.1 * torque + 0.002 * rng.normal()
+                for _ in range(3):
+                    out.write(f"{clock},{angle / 360.0},{torque},{command},0,0,{ramp}\n")
+    return target
+
+
+def test_reads_ticks_of_large_ramps_below_the_current_limit(file: Path) -> None:
+    loops = read_loops(file)
+    assert set(loops.run) == {100, 101, 102}
+    assert np.abs(loops.torque_nm).max() <= 24.0
+    assert np.all(np.diff(loops.time_s) > 0.0)
+    assert np.abs(loops.angle_deg).max() == pytest.approx(3.4, abs=0.05)
+
+
+def test_null_has_the_noise_of_one_repeat_and_nothing_else(file: Path) -> None:
+    null = repeated_null(read_loops(file))
+    columns = np.column_stack(
+        [np.ones_like(null.torque_nm), np.sign(null.torque_nm), null.torque_nm]
+    )
+    left = null.angle_deg - columns @ np.linalg.lstsq(columns, null.angle_deg)[0]
+    assert np.std(left) == pytest.approx(0.002, rel=0.15)
+    assert np.abs(null.torque_nm).min() >= 3.0
+
+
+@pytest.mark.parametrize("name", INJECTABLE)
+def test_injected_size_is_what_a_calibration_leaves(name: str, file: Path) -> None:
+    loops = read_loops(file)
+    change = injected(loops, name, 0.3, np.random.default_rng(3)).angle_deg - loops.angle_deg
+    assert np.sqrt(np.mean(left_over(loops, change) ** 2)) == pytest.approx(0.3, rel=1e-6)
+
+
+def test_other_effects_are_refused(file: Path) -> None:
+    with pytest.raises(ValueError, match="creep"):
+        signature("creep", read_loops(file), np.random.default_rng(1))
+
+
+def test_written_loops_say_how_to_read_them(file: Path, tmp_path: Path) -> None:
+    write_loops(read_loops(file), tmp_path / "a", "thirteen.toml", conditioning=True)
+    text = (tmp_path / "a" / "recording.toml").read_text()
+    assert 'side = "output"' in text
+    assert "conditioning_runs = [100]" in text
+
+
+def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: Path) -> None:
+    drive = tmp_path / "thirteen.toml"
+    drive.write_text('name = "thirteen"\n')
+    program = (sys.executable, str(STAND_IN))
+    rows = run_measured(file.parent, tmp_path / "out", drive, sizes_deg=(0.3,), program=program)
+    assert [row.kind for row in rows] == ["as measured", "repeated loops", *INJECTABLE]
+    assert rows[0].found is None
+    assert all(row.verdict != "FAILURE" for row in rows)
+    assert run_measured(tmp_path / "nowhere", tmp_path / "none", drive) == []
+
+
+@pytest.mark.shared
+def test_all_real_files_repeat_but_the_one_that_drifts(shared_recordings: Path) -> None:
+    for path in sorted((shared_recordings / "cycloidal-13-to-1").glob("*.csv.gz")):
+        null = repeated_null(read_loops(path))
+        assert null.torque_nm.size > 400
+        assert repeats(null) is ("910_unr_runin1" not in path.name)

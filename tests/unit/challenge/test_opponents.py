@@ -1,0 +1,87 @@
+"""Opponents see files only, find what is plain, and are quiet at their tuned setting."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from challenge_answers import outcome, said, truth
+
+from cyclosweep.challenge import make_case
+from cyclosweep.challenge.opponents import contest
+from cyclosweep.challenge.opponents.contest import CHEAP, COSTLY, NEEDS, meet_opponents
+from cyclosweep.challenge.opponents.seen import Seen
+from cyclosweep.challenge.opponents.subset import best_subset, bic_subset
+from cyclosweep.challenge.plan import make_plan
+from cyclosweep.challenge.scoring.rivals import opponent_curves
+
+pytestmark = pytest.mark.filterwarnings("ignore")
+
+
+def seen(folder: Path, **more: object) -> Seen:
+    make_case(31, samples=1200, **more).write(folder)  # type: ignore[arg-type]
+    return Seen.read(folder)
+
+
+@pytest.mark.parametrize("name", [*CHEAP, *COSTLY])
+def test_each_scores_a_plain_effect_above_nothing(name: str, tmp_path: Path) -> None:
+    if name in NEEDS:
+        pytest.importorskip(NEEDS[name])
+    opponent = contest._entrants([name])[name]
+    quiet = opponent(seen(tmp_path / "a"))
+    loud = opponent(seen(tmp_path / "b", effects=("friction_hysteresis",), d=60.0))
+    assert loud.score > quiet.score
+    assert loud.flagged
+
+
+def test_library_is_free_of_the_baseline_and_of_near_duplicates(tmp_path: Path) -> None:
+    recording = seen(tmp_path)
+    table, names = recording.library
+    assert np.abs(recording.baseline.T @ table).max() < 1e-6
+    overlap = np.abs(table.T @ table) / len(table) - np.eye(len(names))
+    assert overlap.max() < 0.96
+    assert len(set(names)) >= 10
+
+
+def test_best_subset_agrees_with_least_squares(tmp_path: Path) -> None:
+    recording = seen(tmp_path, effects=("creep",), d=40.0)
+    table, names = recording.library
+    found = best_subset(recording, 1e9)
+    single = []
+    for k in range(len(names)):
+        weight = table[:, k] @ recording.residual / (table[:, k] @ table[:, k])
+        left = recording.residual - weight * table[:, k]
+        single.append(recording.residual.size * -np.log(np.var(left) / np.var(recording.residual)))
+    assert found.score == pytest.approx(max(single) - 1e9, abs=1e-2)
+    assert "creep" in (bic_subset(recording).named or ())
+
+
+def test_only_recordings_fit_for_comparison_are_shown(tmp_path: Path) -> None:
+    plan = make_plan(200, 1)
+    jobs = meet_opponents(plan, tmp_path, tmp_path, "cheap", 5)
+    fit = [
+        e
+        for e in plan
+        if e.stratum.tier in {"C0", "C6"}
+        and e.stratum.noise == "white"
+        and e.stratum.programme in {"rich", "poor"}
+    ]
+    assert len(jobs) == len(fit)
+    assert meet_opponents(plan, tmp_path, tmp_path, "none", 5) == []
+    with pytest.raises(ValueError, match="opponents"):
+        meet_opponents(plan, tmp_path, tmp_path, "some", 5)
+
+
+def test_tuned_threshold_lets_one_in_a_hundred_through() -> None:
+    rng = np.random.default_rng(8)
+    nulls, singles, words = [], [], {}
+    for k in range(400):
+        nulls.append(outcome({**truth(tier="C6"), "key": f"n{k}"}, said("NOTHING_MISSING")))
+        words[f"n{k}"] = {"x": {"score": rng.normal(), "flagged": True, "named": None}}
+    for k in range(100):
+        singles.append(outcome({**truth("creep"), "key": f"s{k}"}, said("NOTHING_MISSING")))
+        words[f"s{k}"] = {"x": {"score": rng.normal() + 5.0, "flagged": True, "named": None}}
+    (curve,) = opponent_curves([*nulls, *singles], words)
+    assert curve.tuned_alarms.value <= 0.01
+    assert curve.default_alarms.value == 1.0
+    assert curve.tuned_power[0][1].value > 0.97
+    assert curve.tuned_naming == ()

@@ -1,0 +1,66 @@
+"""A whole challenge in small, with a stand-in for the diagnosis."""
+
+import io
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from cyclosweep.challenge.runner import Options, run_challenge
+from cyclosweep.challenge.seal import SealError
+from cyclosweep.challenge.verify import verify_run
+
+STAND_IN = Path(__file__).parent / "stand_in.py"
+OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
+
+
+def run(cases: int, out: Path, options: Options = OPTIONS) -> tuple[dict, str]:
+    text = io.StringIO()
+    console = Console(file=text, width=160)
+    run_challenge(cases, 17, out, 1, mix="open", samples=500, options=options, console=console)
+    return json.loads((out / "score.json").read_text()), text.getvalue()
+
+
+def test_runs_goes_on_and_notices_a_changed_answer(tmp_path: Path) -> None:
+    score, text = run(6, tmp_path)
+    assert score["about"]["cases"] == 6
+    assert text.index("answers sealed: SHA-256") < text.index("figure")
+    assert (tmp_path / "score.html").exists()
+    first = (tmp_path / "diagnoses" / "case-000003" / "diagnosis.json").stat().st_mtime_ns
+    shown = sorted(p.name for p in (tmp_path / "recordings" / "case-000000").iterdir())
+    assert shown == ["program.csv", "recording.csv", "recording.toml"]
+
+    score, _ = run(8, tmp_path)
+    assert score["about"]["cases"] == 8
+    again = (tmp_path / "diagnoses" / "case-000003" / "diagnosis.json").stat().st_mtime_ns
+    assert again == first
+
+    answer = tmp_path / "answers" / "case-000001.sealed"
+    other = tmp_path / "answers" / "case-000002.sealed"
+    answer.write_bytes(other.read_bytes())
+    with pytest.raises(SealError, match="published"):
+        run(8, tmp_path)
+
+
+def test_a_finished_run_can_be_checked_from_its_folder(tmp_path: Path) -> None:
+    run(3, tmp_path)
+    assert verify_run(tmp_path) == []
+    recording = tmp_path / "recordings" / "case-000001" / "recording.csv"
+    recording.write_text(recording.read_text().replace("1", "2", 1))
+    (complaint,) = verify_run(tmp_path)
+    assert complaint == "case-000001/recording.csv: not what the seed gives"
+
+
+def test_a_folder_holds_one_challenge_only(tmp_path: Path) -> None:
+    run(1, tmp_path)
+    with pytest.raises(ValueError, match="another folder"):
+        run_challenge(1, 18, tmp_path, 1, mix="open", samples=500, options=OPTIONS)
+
+
+def test_a_diagnosis_that_breaks_is_counted_not_hidden(tmp_path: Path) -> None:
+    broken = Options(program=(sys.executable, "-c", "raise SystemExit(1)"), opponents="none")
+    score, _ = run(2, tmp_path, broken)
+    failures = [f for f in score["figures"] if f["name"] == "no answer at all"]
+    assert failures[0]["estimate"]["value"] == 1.0

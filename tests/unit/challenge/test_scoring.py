@@ -1,0 +1,147 @@
+"""Scoring against outcomes whose figures are known."""
+
+import math
+
+import numpy as np
+import pytest
+from challenge_answers import outcome, said, truth
+from scipy import stats
+
+from cyclosweep.challenge.oracle import oracle_d
+from cyclosweep.challenge.scoring.calibration import calibration_error
+from cyclosweep.challenge.scoring.confusion import confusion
+from cyclosweep.challenge.scoring.figures import all_figures
+from cyclosweep.challenge.scoring.intervals import bootstrapped, share
+from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
+from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
+
+
+def test_named_right_takes_exactly_the_true_set() -> None:
+    t = truth("creep", "viscous_drag")
+    assert outcome(t, said("IDENTIFIED", "viscous_drag", "creep")).named_right
+    assert not outcome(t, said("IDENTIFIED", "creep")).named_right
+    assert not outcome(t, said("AMBIGUOUS", "viscous_drag", "creep")).named_right
+
+
+@pytest.mark.parametrize(
+    ("verdict", "alarm"),
+    [
+        ("IDENTIFIED", True),
+        ("AMBIGUOUS", True),
+        ("UNKNOWN_PHYSICS", True),
+        ("NOTHING_MISSING", False),
+        ("INSUFFICIENT_DATA", False),
+        ("DATA_FAULT", False),
+    ],
+)
+def test_alarms(verdict: str, alarm: bool) -> None:
+    assert outcome(truth(tier="C6"), said(verdict)).alarm is alarm
+
+
+def test_unknown_is_recognised_by_its_verdict_or_by_a_class_and_never_with_a_false_name() -> None:
+    t = truth("hum", tier="C5-alien", kind="alien")
+    assert outcome(t, said("UNKNOWN_PHYSICS")).recognised
+    assert outcome(t, said("IDENTIFIED", "periodic")).recognised
+    assert not outcome(t, said("UNKNOWN_PHYSICS", "creep")).recognised
+    assert outcome(t, said("IDENTIFIED", "creep")).false_names == ("creep",)
+    assert not outcome(t, said("NOTHING_MISSING")).recognised
+
+
+def test_pulls_and_sizes() -> None:
+    repaired = {
+        "parameters": {
+            "compliance_deg_per_nm": {"estimate": 2.8, "std_error": 0.1},
+            "free_play_deg": {"estimate": 27.2, "std_error": 0.1},
+        }
+    }
+    done = make_outcome(truth("creep"), said("IDENTIFIED", "creep", repaired=repaired), HeldOut())
+    assert done.pulls["compliance_deg_per_nm"] == pytest.approx(0.0)
+    assert done.pulls["free_play_deg"] == pytest.approx(2.0)
+    assert done.sizes[0].estimate_deg == 0.55
+    assert done.sizes[0].error == pytest.approx(1.0)
+
+
+def test_a_diagnosis_that_failed_counts_as_nothing_said() -> None:
+    done = outcome(truth("creep"), {"failure": "exit status 1"})
+    assert done.verdict == "FAILURE"
+    assert not done.alarm
+    assert done.failure
+
+
+def test_clopper_pearson_against_its_definition() -> None:
+    estimate = share(7, 100)
+    assert stats.binom.sf(6, 100, estimate.low) == pytest.approx(0.025)
+    assert stats.binom.cdf(7, 100, estimate.high) == pytest.approx(0.025)
+    assert share(0, 10).low == 0.0
+    assert share(10, 10).high == 1.0
+    assert math.isnan(share(0, 0).value)
+
+
+def test_power_curve_is_found_again() -> None:
+    rng = np.random.default_rng(3)
+    d = np.repeat([3.0, 4.0, 5.0, 6.0, 10.0], 400)
+    hits = np.abs(d + rng.normal(size=d.size)) > stats.norm.isf(0.005)
+    needed = d_for_power(list(d), [bool(h) for h in hits])
+    assert needed.value == pytest.approx(oracle_d(), abs=0.15)
+    assert relative_to_oracle(needed).low < 1.0 < relative_to_oracle(needed).high
+
+
+def test_calibration_error_of_honest_and_boastful_probabilities() -> None:
+    def one(probability: float, right: bool) -> Outcome:
+        explanation = [{"effects": ["creep" if right else "hum"], "probability": probability}]
+        return outcome(truth("creep"), said("IDENTIFIED", explanation_set=explanation))
+
+    honest = [one(0.8, k % 5 != 0) for k in range(100)]
+    boastful = [one(0.99, k % 2 == 0) for k in range(100)]
+    assert calibration_error(honest) == pytest.approx(0.0, abs=1e-9)
+    assert calibration_error(boastful) == pytest.approx(0.49, abs=1e-9)
+
+
+def test_confusion_counts_every_single_cause_once() -> None:
+    table = confusion(
+        [
+            outcome(truth("creep"), said("IDENTIFIED", "creep")),
+            outcome(truth("creep"), said("IDENTIFIED", "viscous_drag")),
+            outcome(truth("creep"), said("AMBIGUOUS", "creep", "viscous_drag")),
+            outcome(truth("hum", kind="alien"), said("UNKNOWN_PHYSICS")),
+        ]
+    )
+    assert table["cause"].to_list() == ["creep", "hum"]
+    assert table["creep"][0] == table["viscous_drag"][0] == table["ambiguous"][0] == 1
+    assert table["unknown"][1] == 1
+
+
+def test_every_figure_of_the_table_is_there_even_without_cases() -> None:
+    figures = all_figures([])
+    words = " ".join(f.name for f in figures)
+    for needed in (
+        "false alarms",
+        "nothing missing",
+        "90 % power",
+        "named right",
+        "explanation set",
+        "ten to one",
+        "Cramer-Rao",
+        "held-out",
+        "nobody's list",
+        "taken out of the library",
+        "aliases",
+        "stated probabilities",
+        "time",
+    ):
+        assert needed in words, needed
+    assert all(f.met is None for f in figures)
+
+
+def test_too_few_recordings_cannot_miss_a_bound_they_could_not_reach() -> None:
+    few = [outcome(truth(tier="C6"), said("NOTHING_MISSING")) for _ in range(50)]
+    many = few * 10
+    assert all_figures(few)[0].met is None
+    assert all_figures(many)[0].met is True
+    loud = [*many, *[outcome(truth(tier="C6"), said("IDENTIFIED", "creep")) for _ in range(20)]]
+    assert all_figures(loud)[0].met is False
+
+
+def test_rms_bootstrap() -> None:
+    estimate = bootstrapped([3.0, -3.0, 3.0, -3.0], "rms")
+    assert estimate.value == estimate.low == estimate.high == 3.0
