@@ -294,9 +294,8 @@ def run_shards(
             run.drain(executor, window=1 if alone else None)
     if run.failed:
         first = min(run.failed)
-        more = f" and {len(run.failed) - 1} more" if len(run.failed) > 1 else ""
         raise SweepError(
-            f"{dataset.folder}: part {first}{more} failed: {_reason(run.failed[first])}; "
+            f"{dataset.folder}: part {first} failed: {_reason(run.failed[first])}; "
             f"{len(run.records)} of {len(parts)} parts written, "
             "the same command goes on from there"
         )

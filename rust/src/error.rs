@@ -263,7 +263,7 @@ pub fn positive(parameter: &'static str, value: f64) -> Result<f64, DesignError>
 /// [`DesignError::NonFinite`] or [`DesignError::Negative`].
 #[inline(always)]
 pub fn non_negative(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
-    if value >= 0.0 && value <= f64::MAX {
+    if (0.0..=f64::MAX).contains(&value) {
         Ok(value)
     } else {
         Err(negative(parameter, value))
