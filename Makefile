@@ -51,7 +51,9 @@ lint: env
 	$(BIN)/python -m mypy.stubtest cyclosweep._core
 
 bench: env
-	$(BIN)/python benches/run.py
+	$(BIN)/python -m pip install --quiet numba matplotlib
+	$(BIN)/python benches/run.py --full
+	$(BIN)/python benches/instructions.py
 
 docs: env
 	$(BIN)/python docs/generate.py

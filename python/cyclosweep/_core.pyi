@@ -34,7 +34,7 @@ SEGMENT_FIELDS: Final[list[str]]
 __version__: Final[str]
 
 _Reals = npt.NDArray[np.float64]
-_Evaluated = tuple[npt.NDArray[np.uint8], bool, list[_Reals]]
+_Evaluated = tuple[npt.NDArray[np.uint8], bool, _Reals]
 
 class DesignError(ValueError): ...
 

@@ -53,4 +53,19 @@ def dask_executor(workers: int | None, scheduler: str | None) -> Iterator[Execut
                 client = stack.enter_context(Client(scheduler, timeout=10))
             except OSError as error:
                 raise SweepError(f"scheduler {scheduler}: {error}") from None
-        yield stack.enter_context(client.get_executor(retries=2))
+        # Not pure: a part that is tried again is a new task, not the failed one's result.
+        executor = client.get_executor(retries=1, pure=False)
+        executor._max_workers = max(sum(client.nthreads().values()), workers or 1)
+        yield stack.enter_context(_closing(executor))
+
+
+@contextlib.contextmanager
+def _closing(executor: Executor) -> Iterator[Executor]:
+    """Wait for what runs after a good end, and for nothing after a bad one."""
+    try:
+        yield executor
+    except BaseException:
+        with contextlib.suppress(Exception):
+            executor.shutdown(wait=False)
+        raise
+    executor.shutdown(wait=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -15,6 +16,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -33,6 +35,9 @@ __all__ = ["Engine", "run_shards", "shard", "sink"]
 Engine = Literal["threads", "processes", "dask"]
 ENGINES: tuple[Engine, ...] = ("threads", "processes", "dask")
 _ATTEMPTS = 3
+_VARIANTS_PER_DASK_TASK = 2**20
+# The study that tasks bring to this process over and over.
+_STUDIES: dict[tuple[str, Objective | None], Study] = {}
 
 
 def sink(
@@ -106,6 +111,13 @@ def sink(
         raise InputError(f"rows_per_part: found {rows_per_part}, expected at least 1")
     dataset = Dataset(study, Path(folder), rows_per_part)
     make = _engine(engine, workers, scheduler) if executor is None else _lend(executor)
+    parts_per_task = 1
+    if engine == "dask":
+        # A worker elsewhere stands in another folder; its tasks cost a message each.
+        dataset = replace(dataset, folder=dataset.folder.absolute())
+        parts_per_task = max(
+            1, min(_VARIANTS_PER_DASK_TASK // rows_per_part, dataset.part_count // 8)
+        )
     with _exclusive(dataset, resume=resume, fresh=fresh):
         records = []
         missing = []
@@ -122,7 +134,9 @@ def sink(
                 bar.advance(record.stop - record.start)
 
             try:
-                records += run_shards(dataset, missing, make, advance)
+                records += run_shards(
+                    dataset, missing, make, advance, parts_per_task=parts_per_task
+                )
             except BaseException:
                 with contextlib.suppress(OSError):
                     dataset.finish(dataset.records())
@@ -208,11 +222,37 @@ def write_part(dataset: Dataset, part: Part) -> Record:
         return dataset.record(part) or dataset.write(part)
 
 
+def write_parts(dataset: Dataset, parts: Sequence[Part]) -> list[Record | Exception]:
+    """Write several parts, what a worker runs: a record or the reason for each.
+
+    A study's tables are made once a process, however many tasks bring it along.
+    """
+    dataset = replace(dataset, study=_known_here(dataset.study))
+    outcomes: list[Record | Exception] = []
+    for part in parts:
+        try:
+            outcomes.append(write_part(dataset, part))
+        except Exception as error:
+            outcomes.append(error)
+    return outcomes
+
+
+def _known_here(study: Study) -> Study:
+    key = (study.hash, study.objective)
+    found = _STUDIES.get(key)
+    if found is None:
+        _STUDIES.clear()
+        found = _STUDIES.setdefault(key, study)
+    return found
+
+
 def run_shards(
     dataset: Dataset,
     parts: Sequence[Part],
     make_executor: Callable[[], contextlib.AbstractContextManager[Executor]],
     on_done: Callable[[Record], None] = lambda record: None,
+    *,
+    parts_per_task: int = 1,
 ) -> list[Record]:
     """Write parts through any executor, each attempted up to three times.
 
@@ -226,6 +266,8 @@ def run_shards(
         Gives a context manager of an executor; called again when a worker's death broke it.
     on_done : callable
         Called with each part's record.
+    parts_per_task : int
+        Parts that travel to a worker together.
 
     Returns
     -------
@@ -234,57 +276,101 @@ def run_shards(
     Raises
     ------
     SweepError
-        When parts failed for good, naming the first; the others are written before.
+        When parts failed for good, naming the first; the others are written before. When the
+        scheduler of the executor is gone.
     """
-    waiting = list(reversed(parts))
-    attempts = dict.fromkeys((part.index for part in parts), 0)
-    failed: dict[int, BaseException] = {}
-    records: list[Record] = []
-    while waiting:
+    run = _Run(dataset, on_done)
+    tasks = [
+        list(parts[first : first + parts_per_task])
+        for first in range(0, len(parts), parts_per_task)
+    ]
+    run.waiting.extend(tasks)
+    while run.waiting or run.suspects:
+        # What ran while a worker died goes on alone, so that only the culprit dies again.
+        alone = not run.waiting
+        if alone:
+            run.waiting.append([run.suspects.popleft()])
         with make_executor() as executor:
-            window = 2 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
-            running: dict[Future[Record], Part] = {}
-            broken = False
-            try:
-                while (waiting and not broken) or running:
-                    while waiting and not broken and len(running) < window:
-                        part = waiting.pop()
-                        attempts[part.index] += 1
-                        try:
-                            running[executor.submit(write_part, dataset, part)] = part
-                        except BrokenExecutor as gone:
-                            broken = True
-                            if attempts[part.index] < _ATTEMPTS:
-                                waiting.append(part)
-                            else:  # A lent executor is the same one every time.
-                                failed[part.index] = gone
-                                waiting.clear()
-                    done, _ = wait(running, return_when=FIRST_COMPLETED)
-                    for future in done:
-                        part = running.pop(future)
-                        error = future.exception()
-                        if error is None:
-                            records.append(future.result())
-                            on_done(records[-1])
-                            continue
-                        broken = broken or isinstance(error, BrokenExecutor)
-                        if attempts[part.index] < _ATTEMPTS and not _is_hopeless(error):
-                            waiting.append(part)
-                        else:
-                            failed[part.index] = error
-                            if _is_hopeless(error):
-                                waiting.clear()
-            except BaseException:
-                for future in running:
-                    future.cancel()
-                raise
-    if failed:
-        first = min(failed)
+            run.drain(executor, window=1 if alone else None)
+    if run.failed:
+        first = min(run.failed)
         raise SweepError(
-            f"{dataset.folder}: part {first} failed: {_reason(failed[first])}; "
-            f"{len(records)} of {len(parts)} parts written, the same command goes on from there"
+            f"{dataset.folder}: part {first} failed: {_reason(run.failed[first])}; "
+            f"{len(run.records)} of {len(parts)} parts written, "
+            "the same command goes on from there"
         )
-    return records
+    return run.records
+
+
+class _Run:
+    """The state of one `run_shards`: what waits, what was tried how often, what came of it."""
+
+    def __init__(self, dataset: Dataset, on_done: Callable[[Record], None]) -> None:
+        self.dataset = dataset
+        self.on_done = on_done
+        self.waiting: deque[list[Part]] = deque()
+        self.suspects: deque[Part] = deque()
+        self.attempts: Counter[int] = Counter()
+        self.failed: dict[int, BaseException] = {}
+        self.records: list[Record] = []
+
+    def drain(self, executor: Executor, window: int | None) -> None:
+        """Run what waits until nothing does or the executor is broken."""
+        if window is None:
+            window = 2 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
+        running: dict[Future[list[Record | Exception]], list[Part]] = {}
+        broken = False
+        try:
+            while (self.waiting and not broken) or running:
+                while self.waiting and not broken and len(running) < window:
+                    task = self.waiting.popleft()
+                    self.attempts.update(part.index for part in task)
+                    try:
+                        running[executor.submit(write_parts, self.dataset, task)] = task
+                    except BrokenExecutor as gone:
+                        broken = True
+                        self.again(task, gone, crashed=True)
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    task = running.pop(future)
+                    broken = self.settle(task, future) or broken
+        except BaseException:
+            for future in running:
+                future.cancel()
+            raise
+
+    def settle(self, task: list[Part], future: Future[list[Record | Exception]]) -> bool:
+        """Take in what became of a task; true when the executor broke under it."""
+        if future.cancelled():
+            raise SweepError(
+                f"{self.dataset.folder}: the scheduler is gone; {len(self.records)} parts "
+                "written, the same command goes on from there"
+            )
+        error = future.exception()
+        if error is not None:
+            self.again(task, error, crashed=True)
+            return isinstance(error, BrokenExecutor)
+        for part, outcome in zip(task, future.result(), strict=True):
+            if isinstance(outcome, Record):
+                self.records.append(outcome)
+                self.on_done(outcome)
+            else:
+                self.again([part], outcome, crashed=False)
+        return False
+
+    def again(self, task: list[Part], error: BaseException, *, crashed: bool) -> None:
+        """Have parts tried once more, or give them up."""
+        for part in task:
+            if _is_hopeless(error):
+                self.failed[part.index] = error
+                self.waiting.clear()
+                self.suspects.clear()
+            elif self.attempts[part.index] >= _ATTEMPTS:
+                self.failed[part.index] = error
+            elif crashed:
+                self.suspects.append(part)
+            else:
+                self.waiting.append([part])
 
 
 def _is_hopeless(error: BaseException) -> bool:

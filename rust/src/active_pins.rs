@@ -3,10 +3,12 @@
 //! Angles in this file are in turns (1 turn = 2 pi rad): an eighth of a turn is then a binary
 //! number and the ideal map comes out exact.
 
+use crate::rounding::{ceil, floor};
+
 /// Most output pins a design may have.
 pub const MAX_PINS: usize = 64;
 /// Angles closer than this (turns) count as equal: sectors shorter than it are rounding.
-const TIE: f64 = 1e-12;
+pub(crate) const TIE: f64 = 1e-12;
 
 /// Rule by which a hole-pin contact counts as active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,52 +90,6 @@ pub struct PinMap {
     pub clocking: f64,
 }
 
-/// Windows of one disc's holes by the published map: starts and ends, each ascending (turns).
-struct Windows {
-    starts: [f64; MAX_PINS + 2],
-    ends: [f64; MAX_PINS + 2],
-    len: usize,
-}
-
-impl Windows {
-    #[inline]
-    fn push(&mut self, start: f64, end: f64) {
-        if end > start {
-            self.starts[self.len] = start;
-            self.ends[self.len] = end;
-            self.len += 1;
-        }
-    }
-
-    /// Calls `visit(start, end, count)` for every stretch longer than rounding; count is that of
-    /// one disc. The stretches cover the turn from 0 to 1.
-    #[inline]
-    fn for_each_sector(&self, mut visit: impl FnMut(f64, f64, u32)) {
-        let (mut opened, mut closed, mut from) = (0, 0, 0.0);
-        while opened < self.len || closed < self.len {
-            let opens = if opened < self.len {
-                self.starts[opened]
-            } else {
-                f64::INFINITY
-            };
-            let closes = self.ends[closed];
-            let next = opens.min(closes);
-            if next - from > TIE {
-                visit(from, next, (opened - closed) as u32);
-                from = next;
-            }
-            if opened < self.len && opens <= closes {
-                opened += 1;
-            } else {
-                closed += 1;
-            }
-        }
-        if 1.0 - from > TIE {
-            visit(from, 1.0, 0);
-        }
-    }
-}
-
 impl PinMap {
     /// Torque transfer efficiency eta_OP (Eqs. 1-3) of a mean number of active contacts:
     /// `mean / (n_discs N_OP / 2)`, which is Eq. (2) for two discs.
@@ -164,12 +120,13 @@ impl PinMap {
     /// All holes of all discs stand on one lattice of lcm(N, n) points, each gcd(N, n)-fold, so
     /// the count is a difference of two floor functions: its extremes are the window's width in
     /// lattice steps rounded down and up, and its integral is that of a floor function.
-    #[inline]
+    #[inline(always)]
     fn equal_windows(&self, low: f64, high: f64) -> ActiveCount {
         let fold = gcd(self.pins, self.discs);
-        let lattice = f64::from(self.pins / fold * self.discs);
+        let per_pitch = small_quotient(self.discs, fold);
+        let lattice = f64::from(self.pins) * per_pitch;
         let width = (high - low) * lattice;
-        let (min, max) = (width.floor() as u32 * fold, width.ceil() as u32 * fold);
+        let (min, max) = (floor(width) as u32 * fold, ceil(width) as u32 * fold);
         if min == max {
             return ActiveCount {
                 mean: f64::from(min),
@@ -177,82 +134,14 @@ impl PinMap {
                 max,
             };
         }
-        let origin = self.first_hole();
+        let origin = self.first_hole_in_pitches() * per_pitch;
         let travel = 1.0 + 1.0 / self.ratio;
         let up = |edge: f64| {
-            floor_integral((travel - origin - edge) * lattice)
-                - floor_integral((-origin - edge) * lattice)
+            floor_integral((travel - edge) * lattice - origin)
+                - floor_integral(-edge * lattice - origin)
         };
         let mean = f64::from(fold) * (up(low) - up(high)) / (lattice * travel);
         ActiveCount { mean, min, max }
-    }
-
-    /// Counts by the criterion `published-map`, a reconstruction that matches the published map
-    /// and not the authors' own rule.
-    ///
-    /// Hole angles are reduced to (-180, 180] deg; a hole at or below zero belongs to the left
-    /// half. A left hole's window is `[phi + 90 + delta, phi + 270 - delta] i / (i + 1)`; its
-    /// start is clipped at 0, its end at 180 except for the hole of that half nearest ring pin 0
-    /// (which, at a low ratio, opens a second time before the turn ends). The right half follows
-    /// the same rule on its own holes and is then mirrored, theta -> 360 - theta. One disc's
-    /// count is multiplied by the number of discs.
-    #[inline]
-    #[must_use]
-    pub fn published_map(&self) -> ActiveCount {
-        let windows = self.published_windows();
-        let mut sum = 0.0;
-        for k in 0..windows.len {
-            sum += windows.ends[k] - windows.starts[k];
-        }
-        let (mut min, mut max) = (u32::MAX, 0);
-        windows.for_each_sector(|_, _, count| {
-            min = min.min(count);
-            max = max.max(count);
-        });
-        ActiveCount {
-            mean: sum * f64::from(self.discs),
-            min: min * self.discs,
-            max: max * self.discs,
-        }
-    }
-
-    fn published_windows(&self) -> Windows {
-        let mut windows = Windows {
-            starts: [0.0; MAX_PINS + 2],
-            ends: [0.0; MAX_PINS + 2],
-            len: 0,
-        };
-        let shrink = self.ratio / (self.ratio + 1.0);
-        let pitch = 1.0 / f64::from(self.pins);
-        let (open, close) = (0.25 + self.delta, 0.75 - self.delta);
-        let nearest = self.nearest_left_hole();
-        let left = (((0.5 - TIE + nearest) / pitch).floor() as u32 + 1).min(self.pins);
-        for m in (0..left).rev() {
-            let phi = nearest - f64::from(m) * pitch;
-            let end = (phi + close) * shrink;
-            let end = if m == 0 { end } else { end.min(0.5) };
-            windows.push(((phi + open) * shrink).max(0.0), end);
-        }
-        for m in 0..self.pins - left {
-            let phi = -(nearest + pitch) - f64::from(m) * pitch;
-            let end = (phi + close) * shrink;
-            let end = if m == 0 { end } else { end.min(0.5) };
-            windows.push(1.0 - end, 1.0 - ((phi + open) * shrink).max(0.0));
-        }
-        let again_left = (nearest + 1.0 + open) * shrink;
-        let again_right = (1.0 + open - nearest - pitch) * shrink;
-        if again_left < 1.0 || (left < self.pins && again_right < 1.0) {
-            if again_left < 1.0 {
-                windows.push(again_left, ((nearest + 1.0 + close) * shrink).min(1.0));
-            }
-            if left < self.pins && again_right < 1.0 {
-                let end = ((1.0 + close - nearest - pitch) * shrink).min(1.0);
-                windows.push(1.0 - end, 1.0 - again_right);
-            }
-            windows.starts[..windows.len].sort_unstable_by(f64::total_cmp);
-            windows.ends[..windows.len].sort_unstable_by(f64::total_cmp);
-        }
-        windows
     }
 
     /// Participation of the pins by statics, over one turn of the mesh zone.
@@ -312,24 +201,22 @@ impl PinMap {
     #[must_use]
     pub fn first_hole_window(&self) -> (f64, f64) {
         let shrink = self.ratio / (self.ratio + 1.0);
-        let nearest = self.nearest_left_hole();
+        let nearest = self.nearest_left_hole() / f64::from(self.pins);
         (
             (nearest + 0.25 + self.delta) * shrink,
             (nearest + 0.75 - self.delta) * shrink,
         )
     }
 
-    /// Angle (turns) of the left half's hole nearest ring pin 0, above minus one pitch and not
-    /// above zero.
-    #[inline]
-    fn nearest_left_hole(&self) -> f64 {
-        let pitch = 1.0 / f64::from(self.pins);
-        let base = self.first_hole();
-        let nearest = base - (base / pitch).ceil() * pitch;
-        if nearest < TIE - pitch {
-            nearest + pitch
+    /// Angle (pitches) of the left half's hole nearest ring pin 0, above minus one and not above
+    /// zero.
+    #[inline(always)]
+    pub(crate) fn nearest_left_hole(&self) -> f64 {
+        let first = self.first_hole_in_pitches();
+        if first < TIE * f64::from(self.pins) {
+            first
         } else {
-            nearest
+            first - 1.0
         }
     }
 
@@ -361,20 +248,31 @@ impl PinMap {
         }
     }
 
-    /// Angle (turns) of the first hole from ring pin 0 on, within one pitch: holes bear no
-    /// numbers, and a clocking of many turns would cost digits.
+    /// Angle (turns) of the first hole from ring pin 0 on, within one pitch.
     #[inline]
     fn first_hole(&self) -> f64 {
-        let pitch = 1.0 / f64::from(self.pins);
-        let clocking = self.clocking % pitch;
-        (clocking + 0.5 * pitch).rem_euclid(pitch)
+        self.first_hole_in_pitches() / f64::from(self.pins)
+    }
+
+    /// Where the first hole from ring pin 0 on stands, from 0 to 1 pitch: holes bear no numbers,
+    /// and a clocking of many turns would cost digits.
+    #[inline(always)]
+    fn first_hole_in_pitches(&self) -> f64 {
+        let pins = f64::from(self.pins);
+        let clocking = if self.clocking.abs() <= 1.0 {
+            self.clocking
+        } else {
+            self.clocking % (1.0 / pins)
+        };
+        let place = clocking * pins + 0.5;
+        place - floor(place)
     }
 }
 
 /// Integral of the floor function from 0 to `y`.
 #[inline]
 fn floor_integral(y: f64) -> f64 {
-    let n = y.floor();
+    let n = floor(y);
     n * (0.5 * (n - 1.0) + (y - n))
 }
 
@@ -383,7 +281,7 @@ fn floor_integral(y: f64) -> f64 {
 #[inline]
 fn odd_integral(y: f64, m: f64) -> f64 {
     use std::f64::consts::PI;
-    let steps = y.floor();
+    let steps = floor(y);
     let rest = y - steps;
     let swing = 0.25 / (PI / m).cos();
     // One step holds (m + 1)/2 loaded points over its first half and (m - 1)/2 over its second.
@@ -400,9 +298,27 @@ fn odd_integral(y: f64, m: f64) -> f64 {
         }
 }
 
-#[inline]
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
+/// `whole / part` of two small counts without a division.
+#[inline(always)]
+fn small_quotient(whole: u32, part: u32) -> f64 {
+    f64::from(if part == 1 { whole } else { whole / part })
+}
+
+/// Greatest common divisor of the pins and the discs, of which there are one to four in a design.
+#[inline(always)]
+fn gcd(pins: u32, discs: u32) -> u32 {
+    match discs {
+        1 => 1,
+        2 => 2 - pins % 2,
+        4 => 1 << pins.trailing_zeros().min(2),
+        _ => {
+            let (mut a, mut b) = (pins, discs);
+            while b != 0 {
+                (a, b) = (b, a % b);
+            }
+            a
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,19 +6,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use crate::error::{DesignError, Status};
-use crate::inputs::{Input, SCALARS, SEGMENT_FIELDS, factor};
+use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
+use crate::known::{Known, filed};
 use crate::outputs::{Assembly, Block, Output};
 use crate::shaft::SegmentKind;
+use crate::shaft_plan::ShaftPlan;
 use crate::space::{Rows, Space};
-use crate::stages::{Geometry, Map, PinBending, Rating, Read, Shaft, Stage};
+use crate::stages::{Geometry, Map, PinBending, Rating, Shaft, Stage};
 
 /// Variants computed together: their stages stay in the cache.
-const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 128;
 /// Variants a thread takes at a time.
-const TASK: usize = 16 * BLOCK;
-/// Most entries of a stage's table, and how many variants an entry must serve to be worth it.
-const TABLE_LIMIT: u64 = 1 << 20;
-const TABLE_WORTH: u64 = 4;
+const TASK: usize = 32 * BLOCK;
 
 /// What a limit of a study looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,46 +50,34 @@ pub struct Columns {
     pub values: Vec<Vec<f64>>,
 }
 
-/// Which of a stage's outcomes are already known.
-enum Known<T> {
-    /// Nothing it reads varies.
-    Constant(T),
-    /// One entry a combination of the grid's axes that it reads.
-    Table {
-        entries: Vec<T>,
-        axes: Vec<TableAxis>,
-    },
-    /// To be computed for every variant.
-    Nothing,
-}
-
-/// One digit of a table's index: `(k / stride % count) * weight`.
-#[derive(Clone, Copy)]
-struct TableAxis {
-    stride: u64,
-    count: u64,
-    weight: u64,
-}
-
 struct Stages {
     geometry: Known<Geometry>,
     map: Known<Map>,
     shaft: Known<Shaft>,
     pin: Known<PinBending>,
     rating: Known<Rating>,
-    /// For each axis, whether a stage that is computed for every variant reads it.
-    axis_is_read: Vec<bool>,
+    /// What of the shaft is known where the whole is not.
+    plan: ShaftPlan,
+    /// Axes that a stage computed for every variant reads: number and input.
+    open_axes: Vec<(usize, usize)>,
 }
 
 /// The definition of a study, ready to evaluate.
 pub struct Study {
     space: Space,
-    base: Vec<f64>,
+    base: Inputs,
     kinds: Vec<SegmentKind>,
     loads: Vec<f64>,
     limits: Vec<Limit>,
     stages: OnceLock<Stages>,
     evaluated: AtomicU64,
+}
+
+/// What of the stages is needed.
+#[derive(Clone, Copy)]
+struct Wanted {
+    map: bool,
+    every_criterion: bool,
 }
 
 /// A stretch of the result columns that one thread writes.
@@ -100,29 +87,18 @@ struct Task<'a> {
     values: Vec<&'a mut [f64]>,
 }
 
-/// One row of a block's inputs.
-struct Row<'a> {
-    inputs: &'a [Vec<f64>],
-    row: usize,
-}
-
-impl Read for Row<'_> {
-    #[inline]
-    fn read(&self, input: usize) -> f64 {
-        self.inputs[input][self.row]
-    }
-}
-
 /// A thread's working memory for one block.
 struct Scratch {
-    inputs: Vec<Vec<f64>>,
-    geometry: Vec<Geometry>,
-    map: Vec<Map>,
-    shaft: Vec<Shaft>,
-    pin: Vec<PinBending>,
-    rating: Vec<Rating>,
-    assembly: Vec<Assembly>,
-    limited: Vec<f64>,
+    /// Values of each axis, in the core's unit.
+    axes: Vec<[f64; BLOCK]>,
+    /// The inputs of the variant at hand.
+    inputs: Inputs,
+    geometry: [Geometry; BLOCK],
+    map: [Map; BLOCK],
+    shaft: [Shaft; BLOCK],
+    pin: [PinBending; BLOCK],
+    rating: [Rating; BLOCK],
+    assembly: [Assembly; BLOCK],
 }
 
 impl Study {
@@ -141,6 +117,7 @@ impl Study {
     ) -> Self {
         assert_eq!(base.len(), SCALARS + SEGMENT_FIELDS.len() * kinds.len());
         assert!(space.axes().iter().all(|axis| axis.input < base.len()));
+        let base = Inputs::new(&base);
         let (stages, evaluated) = (OnceLock::new(), AtomicU64::new(0));
         Self {
             space,
@@ -194,19 +171,18 @@ impl Study {
     /// Why one variant cannot be built, with its numbers; limits are not looked at.
     #[must_use]
     pub fn explain(&self, variant: u64) -> Option<DesignError> {
-        let mut inputs: Vec<Vec<f64>> = self.base.iter().map(|value| vec![*value]).collect();
+        let mut inputs = self.base.clone();
         for (number, axis) in self.space.axes().iter().enumerate() {
-            self.fill_input(number, axis.input, Rows::At(&[variant]), &mut inputs, 1);
+            let mut value = [0.0];
+            self.fill_axis(number, axis.input, Rows::At(&[variant]), &mut value);
+            inputs.set(axis.input, value[0]);
         }
-        let row = Row {
-            inputs: &inputs,
-            row: 0,
-        };
-        Geometry::of(&row)
-            .and_then(|_| Map::check(&row))
-            .and_then(|_| Shaft::of(&row, &self.kinds))
-            .and_then(|_| PinBending::of(&row))
-            .and_then(|_| Rating::of(&row, self.kinds.is_empty()))
+        let plan = ShaftPlan::open(&self.kinds);
+        Geometry::of(&inputs)
+            .and_then(|_| Map::check(&inputs))
+            .and_then(|_| Shaft::of(&inputs, &plan))
+            .and_then(|_| PinBending::of(&inputs))
+            .and_then(|_| Rating::of(&inputs, plan.is_empty()))
             .err()
     }
 
@@ -214,81 +190,77 @@ impl Study {
     /// study is cut.
     #[must_use]
     pub fn evaluate(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
-        self.evaluated.fetch_add(len as u64, Ordering::Relaxed);
-        let mut columns = Columns {
-            status: vec![0; len],
-            any_refused: false,
-            values: outputs.iter().map(|_| vec![0.0; len]).collect(),
-        };
-        let mut tasks: Vec<Task<'_>> = columns
-            .status
-            .chunks_mut(TASK)
-            .enumerate()
-            .map(|(k, status)| Task {
-                first: k * TASK,
-                status,
-                values: Vec::new(),
-            })
-            .collect();
-        for column in &mut columns.values {
-            for (task, part) in tasks.iter_mut().zip(column.chunks_mut(TASK)) {
-                task.values.push(part);
-            }
+        let mut status = vec![0; len];
+        let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
+        let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
+        let any_refused = self.evaluate_into(rows, outputs, &mut status, slices);
+        Columns {
+            status,
+            any_refused,
+            values,
         }
+    }
+
+    /// [`Study::evaluate`] into memory of the caller's, one column an output, each as long as
+    /// `status`. True when any variant is refused.
+    pub fn evaluate_into(
+        &self,
+        rows: Rows<'_>,
+        outputs: &[Output],
+        status: &mut [u8],
+        values: Vec<&mut [f64]>,
+    ) -> bool {
+        self.evaluated
+            .fetch_add(status.len() as u64, Ordering::Relaxed);
         let stages = self.stages();
-        columns.any_refused = tasks
+        let wanted = self.wanted(outputs);
+        tasks(status, values)
             .into_par_iter()
             .map_init(
-                || self.scratch(),
-                |scratch,
-                 Task {
-                     first,
-                     status,
-                     mut values,
-                 }| {
+                || self.scratch(stages),
+                |scratch, mut task| {
                     let mut any = false;
-                    for from in (0..status.len()).step_by(BLOCK) {
-                        let to = (from + BLOCK).min(status.len());
-                        let rows = part(rows, first + from, to - from);
-                        let mut values: Vec<&mut [f64]> = values
-                            .iter_mut()
-                            .map(|column| &mut column[from..to])
-                            .collect();
-                        let status = &mut status[from..to];
-                        any |= self.block(stages, scratch, rows, outputs, status, &mut values);
+                    let len = task.status.len();
+                    for from in (0..len).step_by(BLOCK) {
+                        let to = (from + BLOCK).min(len);
+                        let rows = part(rows, task.first + from, to - from);
+                        let status = &mut task.status[from..to];
+                        self.stage_block(stages, scratch, rows, wanted, status);
+                        any |= self.limit_block(scratch, rows, status);
+                        let values = task.values.iter_mut().map(|column| &mut column[from..to]);
+                        self.write_block(scratch, outputs, status, values);
                     }
                     any
                 },
             )
-            .reduce(|| false, |a, b| a | b);
-        columns
+            .reduce(|| false, |a, b| a | b)
     }
 
-    /// One block: inputs, stages, status, results. True when any variant is refused.
-    fn block(
-        &self,
-        stages: &Stages,
-        scratch: &mut Scratch,
-        rows: Rows<'_>,
-        outputs: &[Output],
-        status: &mut [u8],
-        values: &mut [&mut [f64]],
-    ) -> bool {
-        let len = status.len();
-        for (number, axis) in self.space.axes().iter().enumerate() {
-            if stages.axis_is_read[number] {
-                self.fill_input(number, axis.input, rows, &mut scratch.inputs, len);
-            }
-        }
+    /// What of the stages the outputs and limits need.
+    fn wanted(&self, outputs: &[Output]) -> Wanted {
         let limited = self.limits.iter().filter_map(|limit| match limit.column {
             Limited::Output(output) => Some(output),
             Limited::Input(_) => None,
         });
         let needed = || outputs.iter().copied().chain(limited.clone());
-        let every_criterion = needed().any(Output::needs_every_criterion);
-        let with_map = needed().any(|output| !output.is_free_of_map());
+        Wanted {
+            map: needed().any(|output| !output.is_free_of_map()),
+            every_criterion: needed().any(Output::needs_every_criterion),
+        }
+    }
 
+    /// Stages of one block and the status that follows from them.
+    fn stage_block(
+        &self,
+        stages: &Stages,
+        scratch: &mut Scratch,
+        rows: Rows<'_>,
+        wanted: Wanted,
+        status: &mut [u8],
+    ) {
+        let len = status.len();
         let Scratch {
+            axes,
             inputs,
             geometry,
             map,
@@ -296,60 +268,62 @@ impl Study {
             pin,
             rating,
             assembly,
-            limited,
+            ..
         } = scratch;
-        stages
-            .geometry
-            .fill(rows, &mut geometry[..len], inputs, &|row: &Row<'_>| {
-                Geometry::of(row)
-            });
-        stages.map.fill(rows, &mut map[..len], inputs, &|row| {
-            if with_map {
-                Map::of(row, every_criterion)
-            } else {
-                Map::check(row)
+        stages.geometry.look_up(rows, &mut geometry[..len]);
+        stages.map.look_up(rows, &mut map[..len]);
+        stages.shaft.look_up(rows, &mut shaft[..len]);
+        stages.pin.look_up(rows, &mut pin[..len]);
+        stages.rating.look_up(rows, &mut rating[..len]);
+        if !stages.open_axes.is_empty() {
+            for (number, input) in &stages.open_axes {
+                self.fill_axis(*number, *input, rows, &mut axes[*number][..len]);
             }
-        });
-        stages.shaft.fill(rows, &mut shaft[..len], inputs, &|row| {
-            Shaft::of(row, &self.kinds)
-        });
-        stages
-            .pin
-            .fill(rows, &mut pin[..len], inputs, &|row: &Row<'_>| {
-                PinBending::of(row)
-            });
-        let needs_stiffness = self.kinds.is_empty();
-        stages
-            .rating
-            .fill(rows, &mut rating[..len], inputs, &|row| {
-                Rating::of(row, needs_stiffness)
-            });
-        for k in 0..len {
-            assembly[k] = Assembly::of(&map[k], &shaft[k], &pin[k], &rating[k]);
-            status[k] = [
-                geometry[k].status(),
-                map[k].status(),
-                shaft[k].status(),
-                pin[k].status(),
-                rating[k].status(),
-            ]
-            .into_iter()
-            .find(|status| *status != Status::Ok)
-            .unwrap_or(Status::Ok) as u8;
+            for row in 0..len {
+                for (number, input) in &stages.open_axes {
+                    inputs.set(*input, axes[*number][row]);
+                }
+                if stages.geometry.is_open() {
+                    geometry[row] = filed(Geometry::of(inputs));
+                }
+                if stages.map.is_open() {
+                    map[row] = filed(if wanted.map {
+                        Map::of(inputs, wanted.every_criterion)
+                    } else {
+                        Map::check(inputs)
+                    });
+                }
+                if stages.shaft.is_open() {
+                    shaft[row] = filed(Shaft::of(inputs, &stages.plan));
+                }
+                if stages.pin.is_open() {
+                    pin[row] = filed(PinBending::of(inputs));
+                }
+                if stages.rating.is_open() {
+                    rating[row] = filed(Rating::of(inputs, stages.plan.is_empty()));
+                }
+            }
         }
-        let block = Block {
-            geometry: &geometry[..len],
-            map: &map[..len],
-            shaft: &shaft[..len],
-            pin: &pin[..len],
-            rating: &rating[..len],
-            assembly: &assembly[..len],
-        };
+        for (k, status) in status.iter_mut().enumerate() {
+            assembly[k] = Assembly::of(&map[k], &shaft[k], &pin[k], &rating[k]);
+            *status = geometry[k]
+                .status()
+                .or(map[k].status())
+                .or(shaft[k].status())
+                .or(pin[k].status())
+                .or(rating[k].status()) as u8;
+        }
+    }
+
+    /// Files variants outside a limit under that limit. True when any variant is refused.
+    fn limit_block(&self, scratch: &mut Scratch, rows: Rows<'_>, status: &mut [u8]) -> bool {
+        let len = status.len();
         for (number, limit) in self.limits.iter().enumerate() {
+            let mut limited = [0.0; BLOCK];
             let limited = &mut limited[..len];
             let unit = match limit.column {
                 Limited::Output(output) => {
-                    block.write(output, &self.loads, limited);
+                    scratch.block(len).write(output, &self.loads, limited);
                     1.0
                 }
                 Limited::Input(input) => self.fill_limited(input, rows, limited),
@@ -361,20 +335,29 @@ impl Study {
                 }
             }
         }
-        for (output, column) in outputs.iter().zip(values.iter_mut()) {
+        status.iter().any(|status| *status != Status::Ok as u8)
+    }
+
+    /// Results of one block, NaN where a variant is refused.
+    fn write_block<'a>(
+        &self,
+        scratch: &Scratch,
+        outputs: &[Output],
+        status: &[u8],
+        values: impl Iterator<Item = &'a mut [f64]>,
+    ) {
+        let block = scratch.block(status.len());
+        let any_refused = status.iter().any(|status| *status != Status::Ok as u8);
+        for (output, column) in outputs.iter().zip(values) {
             block.write(*output, &self.loads, column);
-        }
-        let any = status.iter().any(|status| *status != Status::Ok as u8);
-        if any {
-            for column in values {
-                for (value, status) in column.iter_mut().zip(status.iter()) {
+            if any_refused {
+                for (value, status) in column.iter_mut().zip(status) {
                     if *status != Status::Ok as u8 {
                         *value = f64::NAN;
                     }
                 }
             }
         }
-        any
     }
 
     /// Values of an input, whether it varies or not, and what turns the user's unit into theirs:
@@ -391,205 +374,110 @@ impl Study {
                 1.0
             }
             None => {
-                out.fill(self.base[input]);
+                out.fill(self.base.at(input));
                 factor(input)
             }
         }
     }
 
-    fn fill_input(
-        &self,
-        axis: usize,
-        input: usize,
-        rows: Rows<'_>,
-        inputs: &mut [Vec<f64>],
-        len: usize,
-    ) {
-        let column = &mut inputs[input][..len];
-        self.space.fill(axis, rows, column);
+    /// Values of an axis in the core's unit.
+    fn fill_axis(&self, axis: usize, input: usize, rows: Rows<'_>, out: &mut [f64]) {
+        self.space.fill(axis, rows, out);
         let factor = factor(input);
         if factor != 1.0 {
-            for value in column {
+            for value in out {
                 *value *= factor;
             }
         }
     }
 
-    fn scratch(&self) -> Scratch {
+    fn scratch(&self, stages: &Stages) -> Scratch {
         Scratch {
-            inputs: self.base.iter().map(|value| vec![*value; BLOCK]).collect(),
-            geometry: vec![Geometry::refused(Status::Ok); BLOCK],
-            map: vec![Map::refused(Status::Ok); BLOCK],
-            shaft: vec![Shaft::refused(Status::Ok); BLOCK],
-            pin: vec![PinBending::refused(Status::Ok); BLOCK],
-            rating: vec![Rating::refused(Status::Ok); BLOCK],
-            assembly: vec![
-                Assembly {
-                    compliance: 0.0,
-                    reflected: 0.0,
-                    slope_deg: 0.0,
-                    pin_force: 0.0
-                };
-                BLOCK
-            ],
-            limited: vec![0.0; BLOCK],
+            axes: vec![[0.0; BLOCK]; self.space.axes().len()],
+            inputs: self.base.clone(),
+            geometry: stages.geometry.block(),
+            map: stages.map.block(),
+            shaft: stages.shaft.block(),
+            pin: stages.pin.block(),
+            rating: stages.rating.block(),
+            assembly: [Assembly::NONE; BLOCK],
         }
     }
 
     /// What of each stage is known before any variant: computed once, on first use.
     fn stages(&self) -> &Stages {
         self.stages.get_or_init(|| {
+            let axes = self.space.axes();
             let of_inputs = |inputs: &[Input]| inputs.iter().map(|i| *i as usize).collect();
             let mut shaft_inputs: Vec<usize> = of_inputs(&Shaft::INPUTS);
-            shaft_inputs.extend(SCALARS..self.base.len());
+            shaft_inputs.extend(SCALARS..SCALARS + SEGMENT_FIELDS.len() * self.kinds.len());
             let geometry_inputs: Vec<usize> = of_inputs(&Geometry::INPUTS);
             let map_inputs: Vec<usize> = of_inputs(&Map::INPUTS);
             let pin_inputs: Vec<usize> = of_inputs(&PinBending::INPUTS);
             let rating_inputs: Vec<usize> = of_inputs(&Rating::INPUTS);
-            let needs_stiffness = self.kinds.is_empty();
+            let varies = |input| axes.iter().any(|axis| axis.input == input);
+            let plan = ShaftPlan::new(&self.kinds, &self.base, varies);
+            let (space, base, needs_stiffness) = (&self.space, &self.base, plan.is_empty());
             let mut stages = Stages {
-                geometry: self.known(&geometry_inputs, &|row: &Row<'_>| Geometry::of(row)),
-                map: self.known(&map_inputs, &|row| Map::of(row, true)),
-                shaft: self.known(&shaft_inputs, &|row| Shaft::of(row, &self.kinds)),
-                pin: self.known(&pin_inputs, &|row: &Row<'_>| PinBending::of(row)),
-                rating: self.known(&rating_inputs, &|row| Rating::of(row, needs_stiffness)),
-                axis_is_read: vec![false; self.space.axes().len()],
+                geometry: Known::of(space, base, &geometry_inputs, &Geometry::of),
+                map: Known::of(space, base, &map_inputs, &|inputs| Map::of(inputs, true)),
+                shaft: Known::of(space, base, &shaft_inputs, &|inputs| {
+                    Shaft::of(inputs, &plan)
+                }),
+                pin: Known::of(space, base, &pin_inputs, &PinBending::of),
+                rating: Known::of(space, base, &rating_inputs, &|inputs| {
+                    Rating::of(inputs, needs_stiffness)
+                }),
+                open_axes: Vec::new(),
+                plan,
             };
-            for (axis, read) in self.space.axes().iter().zip(&mut stages.axis_is_read) {
+            for (number, axis) in axes.iter().enumerate() {
                 let reads = |open: bool, inputs: &[usize]| open && inputs.contains(&axis.input);
-                *read = reads(stages.geometry.is_open(), &geometry_inputs)
+                if reads(stages.geometry.is_open(), &geometry_inputs)
                     || reads(stages.map.is_open(), &map_inputs)
                     || reads(stages.shaft.is_open(), &shaft_inputs)
                     || reads(stages.pin.is_open(), &pin_inputs)
-                    || reads(stages.rating.is_open(), &rating_inputs);
+                    || reads(stages.rating.is_open(), &rating_inputs)
+                {
+                    stages.open_axes.push((number, axis.input));
+                }
             }
             stages
         })
     }
+}
 
-    fn known<T: Stage>(
-        &self,
-        reads: &[usize],
-        of: &(impl Fn(&Row<'_>) -> Result<T, DesignError> + Sync),
-    ) -> Known<T> {
-        let axes = self.space.axes();
-        let varying: Vec<usize> = (0..axes.len())
-            .filter(|a| reads.contains(&axes[*a].input))
-            .collect();
-        if varying.is_empty() {
-            let inputs: Vec<Vec<f64>> = self.base.iter().map(|value| vec![*value]).collect();
-            return Known::Constant(filed(of(&Row {
-                inputs: &inputs,
-                row: 0,
-            })));
-        }
-        let Some(strides) = self.space.grid_strides() else {
-            return Known::Nothing;
-        };
-        let mut table = Vec::with_capacity(varying.len());
-        let mut size = 1_u64;
-        for axis in varying.iter().rev() {
-            let count = axes[*axis].values.count().unwrap_or(1);
-            table.push(TableAxis {
-                stride: strides[*axis],
-                count,
-                weight: size,
-            });
-            size = size.saturating_mul(count);
-        }
-        if size > TABLE_LIMIT.min(self.space.len() / TABLE_WORTH) {
-            return Known::Nothing;
-        }
-        table.reverse();
-        let entries = (0..size)
-            .into_par_iter()
-            .map_init(
-                || {
-                    self.base
-                        .iter()
-                        .map(|value| vec![*value])
-                        .collect::<Vec<_>>()
-                },
-                |inputs, entry| {
-                    for (axis, digit) in varying.iter().zip(&table) {
-                        let input = axes[*axis].input;
-                        let value = axes[*axis].values.nth(entry / digit.weight % digit.count);
-                        inputs[input][0] = value * factor(input);
-                    }
-                    filed(of(&Row { inputs, row: 0 }))
-                },
-            )
-            .collect();
-        Known::Table {
-            entries,
-            axes: table,
+impl Scratch {
+    /// The first `len` rows.
+    fn block(&self, len: usize) -> Block<'_> {
+        Block {
+            geometry: &self.geometry[..len],
+            map: &self.map[..len],
+            shaft: &self.shaft[..len],
+            pin: &self.pin[..len],
+            rating: &self.rating[..len],
+            assembly: &self.assembly[..len],
         }
     }
 }
 
-impl<T: Stage> Known<T> {
-    fn is_open(&self) -> bool {
-        matches!(self, Known::Nothing)
-    }
-
-    /// The stage's outcome for every row of a block.
-    fn fill(
-        &self,
-        rows: Rows<'_>,
-        out: &mut [T],
-        inputs: &[Vec<f64>],
-        of: &impl Fn(&Row<'_>) -> Result<T, DesignError>,
-    ) {
-        match (self, rows) {
-            (Known::Constant(value), _) => out.fill(*value),
-            (Known::Table { entries, axes }, Rows::At(indices)) => {
-                for (out, k) in out.iter_mut().zip(indices) {
-                    *out = entries[entry(axes, *k)];
-                }
-            }
-            (Known::Table { entries, axes }, Rows::From(start)) => {
-                // Along the fastest axis entries are neighbours; behind it they repeat.
-                let last = axes[axes.len() - 1];
-                let mut k = start;
-                let mut rest = out;
-                while !rest.is_empty() {
-                    let at = entry(axes, k);
-                    let run = if last.stride == 1 {
-                        last.count - k % last.count
-                    } else {
-                        last.stride - k % last.stride
-                    };
-                    let run = run.min(rest.len() as u64) as usize;
-                    let (now, later) = rest.split_at_mut(run);
-                    if last.stride == 1 {
-                        now.copy_from_slice(&entries[at..at + run]);
-                    } else {
-                        now.fill(entries[at]);
-                    }
-                    rest = later;
-                    k += run as u64;
-                }
-            }
-            (Known::Nothing, _) => {
-                for (row, out) in out.iter_mut().enumerate() {
-                    *out = filed(of(&Row { inputs, row }));
-                }
-            }
+/// The result columns cut into stretches, one a task.
+fn tasks<'a>(status: &'a mut [u8], values: Vec<&'a mut [f64]>) -> Vec<Task<'a>> {
+    let mut tasks: Vec<Task<'a>> = status
+        .chunks_mut(TASK)
+        .enumerate()
+        .map(|(k, status)| Task {
+            first: k * TASK,
+            status,
+            values: Vec::with_capacity(values.len()),
+        })
+        .collect();
+    for column in values {
+        for (task, part) in tasks.iter_mut().zip(column.chunks_mut(TASK)) {
+            task.values.push(part);
         }
     }
-}
-
-/// Where a table keeps variant `k`.
-#[inline]
-fn entry(axes: &[TableAxis], k: u64) -> usize {
-    axes.iter()
-        .map(|a| k / a.stride % a.count * a.weight)
-        .sum::<u64>() as usize
-}
-
-#[inline]
-fn filed<T: Stage>(outcome: Result<T, DesignError>) -> T {
-    outcome.unwrap_or_else(|error| T::refused(error.status()))
+    tasks
 }
 
 /// Rows `first .. first + len` of the rows asked for.

@@ -45,5 +45,5 @@ pub fn slope_deg(efficiency: f64, reflected: f64, nominal_torque: f64) -> f64 {
 #[inline]
 #[must_use]
 pub fn natural_frequency(reflected_stiffness: f64, inertia: f64) -> f64 {
-    (reflected_stiffness / inertia).sqrt() / std::f64::consts::TAU
+    (reflected_stiffness / inertia).sqrt() * std::f64::consts::TAU.recip()
 }

@@ -137,6 +137,62 @@ impl Input {
     }
 }
 
+/// All inputs of one variant, in the core's units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs {
+    scalars: [f64; SCALARS],
+    segments: Vec<[f64; SEGMENT_FIELDS.len()]>,
+}
+
+impl Inputs {
+    /// From all inputs in the order of the core.
+    ///
+    /// # Panics
+    /// When `values` does not hold every scalar and whole segments.
+    #[must_use]
+    pub fn new(values: &[f64]) -> Self {
+        let (scalars, shaft) = values.split_at(SCALARS);
+        let (segments, rest) = shaft.as_chunks();
+        assert!(rest.is_empty());
+        Self {
+            scalars: std::array::from_fn(|k| scalars[k]),
+            segments: segments.to_vec(),
+        }
+    }
+
+    /// Value of a scalar input.
+    #[inline(always)]
+    #[must_use]
+    pub const fn get(&self, input: Input) -> f64 {
+        self.scalars[input as usize]
+    }
+
+    /// Value of the input at this position among all inputs.
+    #[must_use]
+    pub fn at(&self, input: usize) -> f64 {
+        match input.checked_sub(SCALARS) {
+            None => self.scalars[input],
+            Some(k) => self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()],
+        }
+    }
+
+    /// Changes the input at this position among all inputs.
+    #[inline(always)]
+    pub fn set(&mut self, input: usize, value: f64) {
+        match input.checked_sub(SCALARS) {
+            None => self.scalars[input] = value,
+            Some(k) => self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()] = value,
+        }
+    }
+
+    /// The shaft's segments: their inputs in the order of [`SEGMENT_FIELDS`].
+    #[inline(always)]
+    #[must_use]
+    pub fn segments(&self) -> &[[f64; SEGMENT_FIELDS.len()]] {
+        &self.segments
+    }
+}
+
 /// Position of a segment's field among all inputs; segments count from 0 here.
 #[must_use]
 pub const fn segment_input(segment: usize, field: usize) -> usize {

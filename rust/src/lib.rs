@@ -41,10 +41,14 @@ pub mod hypotrochoid;
 pub mod hysteresis;
 pub mod inputs;
 mod joe_kuo;
+mod known;
 pub mod outputs;
 pub mod pin;
+mod published_map;
+mod rounding;
 pub mod sampling;
 pub mod shaft;
+pub mod shaft_plan;
 pub mod space;
 pub mod stages;
 

@@ -177,6 +177,14 @@ pub struct Assembly {
 }
 
 impl Assembly {
+    /// Before anything is known.
+    pub(crate) const NONE: Self = Self {
+        compliance: f64::NAN,
+        reflected: f64::NAN,
+        slope_deg: f64::NAN,
+        pin_force: f64::NAN,
+    };
+
     /// Assembles one variant.
     #[inline]
     #[must_use]
@@ -237,7 +245,7 @@ impl Block<'_> {
             Output::TorqueTransferEfficiencyPublishedMap => {
                 each(out, map, |m| m.efficiency_published_map);
             }
-            Output::PinParticipationStatics => each(out, map, |m| m.participation.mean),
+            Output::PinParticipationStatics => each(out, map, |m| m.participation),
             Output::StaticsApplicable => each(out, map, |m| m.statics_applicable),
             Output::HoleDiameter => each(out, geometry, |g| g.hole_diameter * 1e3),
             Output::HoleWeb => each(out, geometry, |g| g.hole_web * 1e3),
@@ -258,7 +266,7 @@ impl Block<'_> {
                             shaft[k].compliance,
                             pin[k].compliance,
                             map[k].pins,
-                            map[k].participation.mean,
+                            map[k].participation,
                         )
                     } else {
                         rating[k].given_compliance

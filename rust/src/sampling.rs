@@ -27,7 +27,8 @@ pub const fn key(seed: u64, axis: u64) -> u64 {
 #[inline]
 #[must_use]
 pub const fn unit_interval(bits: u64) -> f64 {
-    (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+    // Signed: the baseline x86-64 converts no unsigned ones.
+    (bits >> 11) as i64 as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
 /// Independent uniform number number `index` of an axis.

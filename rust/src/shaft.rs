@@ -73,15 +73,15 @@ impl Segment {
 #[inline]
 #[must_use]
 pub fn keyway_factor(length: f64, diameter: f64, depth: f64, coefficient: f64) -> f64 {
-    (length + coefficient * depth * length / diameter) / diameter.powi(4)
+    length * (diameter + coefficient * depth) / diameter.powi(5)
 }
 
 /// Eq. (7) without 32/(pi G): `l / (3 d^3 D) (1 + d/D + (d/D)^2)`, the integral of dl / D(l)^4.
 #[inline]
 #[must_use]
 pub fn frustum_factor(length: f64, diameter: f64, end_diameter: f64) -> f64 {
-    let r = diameter / end_diameter;
-    length / (3.0 * diameter.powi(3) * end_diameter) * (1.0 + r + r * r)
+    let squares = end_diameter * end_diameter + end_diameter * diameter + diameter * diameter;
+    length * squares / (3.0 * (diameter * end_diameter).powi(3))
 }
 
 /// The shoulder's term of Eq. (6) without 32/(pi G): `(1 - (d/D)^3) / (8 d^3)` for d <= D.
@@ -90,7 +90,7 @@ pub fn frustum_factor(length: f64, diameter: f64, end_diameter: f64) -> f64 {
 #[inline]
 #[must_use]
 pub fn shoulder_factor(diameter: f64, larger_diameter: f64) -> f64 {
-    (1.0 - (diameter / larger_diameter).powi(3)) / (8.0 * diameter.powi(3))
+    (larger_diameter.powi(3) - diameter.powi(3)) / (8.0 * (diameter * larger_diameter).powi(3))
 }
 
 /// Eq. (6) without 32/(pi G): `l1 / d^4 + l2 / D^4 + shoulder` for d < D.
@@ -108,21 +108,29 @@ pub fn step_factor(l1: f64, diameter: f64, l2: f64, larger: f64) -> Result<f64, 
     shaft_factor([step(l1, diameter), step(l2, larger)], 0.0)
 }
 
-/// Eq. (4) without 32/(pi G): the segments in series, with the shoulder of Eq. (6) wherever the
-/// diameter rises from one to the next. Each length counts once.
-///
-/// # Errors
-/// A [`DesignError`] of a segment, or [`DesignError::ShaftStepNotAscending`] where the diameter
-/// falls from one segment to the next on the way to the flange.
-#[inline]
-pub fn shaft_factor(
-    segments: impl IntoIterator<Item = Segment>,
-    keyway_coefficient: f64,
-) -> Result<f64, DesignError> {
-    let mut sum = 0.0;
-    let mut before = f64::NAN;
-    for segment in segments {
-        sum += segment.factor(keyway_coefficient)?;
+/// What one segment adds to Eq. (4), without 32/(pi G): its own factor, and the shoulder of
+/// Eq. (6) where the diameter rises onto it (zero elsewhere).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// The segment's factor (1/m^3).
+    pub factor: f64,
+    /// The shoulder before it (1/m^3).
+    pub shoulder: f64,
+}
+
+impl Term {
+    /// The terms of a segment that follows a diameter of `before` (m); NaN for the first.
+    ///
+    /// # Errors
+    /// A [`DesignError`] of the segment, or [`DesignError::ShaftStepNotAscending`] where the
+    /// diameter falls onto it on the way to the flange.
+    #[inline(always)]
+    pub fn of(
+        segment: &Segment,
+        before: f64,
+        keyway_coefficient: f64,
+    ) -> Result<Self, DesignError> {
+        let factor = segment.factor(keyway_coefficient)?;
         let after = segment.diameter;
         if after < before {
             return Err(DesignError::ShaftStepNotAscending {
@@ -130,9 +138,29 @@ pub fn shaft_factor(
                 to: after,
             });
         }
-        if after > before {
-            sum += shoulder_factor(before, after);
-        }
+        let shoulder = if after > before {
+            shoulder_factor(before, after)
+        } else {
+            0.0
+        };
+        Ok(Self { factor, shoulder })
+    }
+}
+
+/// Eq. (4) without 32/(pi G): the segments in series, with the shoulder of Eq. (6) wherever the
+/// diameter rises from one to the next. Each length counts once.
+///
+/// # Errors
+/// See [`Term::of`].
+pub fn shaft_factor(
+    segments: impl IntoIterator<Item = Segment>,
+    keyway_coefficient: f64,
+) -> Result<f64, DesignError> {
+    let mut sum = 0.0;
+    let mut before = f64::NAN;
+    for segment in segments {
+        let term = Term::of(&segment, before, keyway_coefficient)?;
+        sum += term.factor + term.shoulder;
         before = segment.flange_diameter();
     }
     Ok(sum)
@@ -153,20 +181,28 @@ pub fn shear_modulus(youngs_modulus: f64, poisson: f64) -> Result<f64, DesignErr
     }
 }
 
+/// `32 / (pi G)` (m^2/N), which turns the factors into compliances.
+///
+/// # Errors
+/// See [`shear_modulus`].
+#[inline(always)]
+pub fn shaft_scale(youngs_modulus: f64, poisson: f64) -> Result<f64, DesignError> {
+    Ok(32.0 / (PI * shear_modulus(youngs_modulus, poisson)?))
+}
+
 /// Compliance C_OS^t (rad/(N m)) of the whole shaft.
 ///
 /// # Errors
 /// See [`shaft_factor`] and [`shear_modulus`].
-#[inline]
 pub fn shaft_compliance(
     segments: impl IntoIterator<Item = Segment>,
     youngs_modulus: f64,
     poisson: f64,
     keyway_coefficient: f64,
 ) -> Result<f64, DesignError> {
-    let shear = shear_modulus(youngs_modulus, poisson)?;
+    let scale = shaft_scale(youngs_modulus, poisson)?;
     let coefficient = non_negative("keyway_coefficient", keyway_coefficient)?;
-    Ok(32.0 / (PI * shear) * shaft_factor(segments, coefficient)?)
+    Ok(scale * shaft_factor(segments, coefficient)?)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
+use crate::rounding::floor;
 use crate::sampling::{MAX_SOBOL_AXES, Permutation, SobolAxis, key, random, unit_interval};
 
 /// Most variants a space may hold.
@@ -67,13 +68,30 @@ impl Values {
         }
     }
 
+    /// Turns numbers in [0, 1) into the values there.
+    fn place(&self, units: &mut [f64]) {
+        match self {
+            // The same as `at`, with the choice outside the loop.
+            Values::Interval { low, high } => {
+                for u in units {
+                    *u = low + *u * (high - low);
+                }
+            }
+            _ => {
+                for u in units {
+                    *u = self.at(*u);
+                }
+            }
+        }
+    }
+
     /// The value at `u` in [0, 1).
     #[inline]
     #[must_use]
     pub fn at(&self, u: f64) -> f64 {
         match self {
             Values::Interval { low, high } => low + u * (high - low),
-            Values::Whole { low, high } => low + (u * (high - low + 1.0)).floor(),
+            Values::Whole { low, high } => low + floor(u * (high - low + 1.0)),
             Values::List(values) => values[(u * values.len() as f64) as usize],
             Values::Linspace { steps, .. } => self.nth((u * *steps as f64) as u64),
         }
@@ -275,11 +293,13 @@ impl Space {
                 }
             }
             (Points::Sobol(sequences), Rows::From(start)) => {
-                let mut bits = sequences[axis].bits(start);
+                let sequence = &sequences[axis];
+                let mut bits = sequence.bits(start);
                 for (value, index) in out.iter_mut().zip(start..) {
-                    *value = values.at(unit_interval(bits));
-                    bits = sequences[axis].next_bits(bits, index);
+                    *value = unit_interval(bits);
+                    bits = sequence.next_bits(bits, index);
                 }
+                values.place(out);
             }
             (Points::Sobol(sequences), Rows::At(indices)) => {
                 for (value, index) in out.iter_mut().zip(indices) {

@@ -1,24 +1,13 @@
 //! The model cut into stages by the inputs each needs, so that a study computes a stage once per
 //! combination of the axes it depends on.
 
-use crate::active_pins::{ActiveCount, Criterion, MAX_PINS, Participation, PinMap};
+use crate::active_pins::{ActiveCount, Criterion, MAX_PINS, PinMap};
 use crate::error::{DesignError, Status, finite, non_negative, positive};
 use crate::hypotrochoid::crossing_angle;
-use crate::inputs::{Input, segment_input};
+use crate::inputs::{Input, Inputs};
 use crate::pin::{Pin, pin_compliance};
-use crate::shaft::{Segment, SegmentKind, shaft_compliance};
-
-/// Reads one input of one variant, in the core's unit.
-pub trait Read {
-    /// Value of the input at this position among all inputs.
-    fn read(&self, input: usize) -> f64;
-
-    /// Value of a scalar input.
-    #[inline]
-    fn get(&self, input: Input) -> f64 {
-        self.read(input as usize)
-    }
-}
+use crate::rounding::{is_whole_within, smaller};
+use crate::shaft_plan::ShaftPlan;
 
 /// What a stage gives for one variant. Where the status is not ok the rest is meaningless.
 pub trait Stage: Copy + Send + Sync {
@@ -85,8 +74,8 @@ impl Geometry {
     ///
     /// # Errors
     /// The first [`DesignError`] met.
-    #[inline]
-    pub fn of(inputs: &impl Read) -> Result<Self, DesignError> {
+    #[inline(always)]
+    pub fn of(inputs: &Inputs) -> Result<Self, DesignError> {
         let Counts { ratio, pins, .. } = Counts::of(inputs)?;
         let e = positive("eccentricity", inputs.get(Input::Eccentricity))?;
         let ring = positive(
@@ -136,7 +125,7 @@ impl Geometry {
         Ok(Self {
             status: Status::Ok,
             hole_diameter: hole,
-            hole_web: between.min(outer).min(inner),
+            hole_web: smaller(smaller(between, outer), inner),
             short_width_coefficient: k1,
         })
     }
@@ -150,8 +139,8 @@ struct Counts {
 }
 
 impl Counts {
-    #[inline]
-    fn of(inputs: &impl Read) -> Result<Self, DesignError> {
+    #[inline(always)]
+    fn of(inputs: &Inputs) -> Result<Self, DesignError> {
         let ratio = finite("ratio", inputs.get(Input::Ratio))?;
         if !is_whole_within(ratio, 3.0, 300.0) {
             return Err(DesignError::RatioOutOfRange { ratio });
@@ -166,11 +155,6 @@ impl Counts {
         }
         Ok(Self { ratio, discs, pins })
     }
-}
-
-#[inline]
-fn is_whole_within(value: f64, low: f64, high: f64) -> bool {
-    value >= low && value <= high && value == value.trunc()
 }
 
 /// sin(pi / N) for every allowed number of pins.
@@ -195,8 +179,8 @@ pub struct Map {
     pub efficiency_inside: f64,
     /// eta_OP by `published-map`.
     pub efficiency_published_map: f64,
-    /// Participation by statics.
-    pub participation: Participation,
+    /// Mean participation by statics.
+    pub participation: f64,
     /// N_OP.
     pub pins: f64,
     /// N_OP p where statics feeds the twist, N_OP elsewhere.
@@ -222,11 +206,7 @@ impl Map {
         twist_factor: f64::NAN,
         efficiency_inside: f64::NAN,
         efficiency_published_map: f64::NAN,
-        participation: Participation {
-            mean: f64::NAN,
-            min: f64::NAN,
-            max: f64::NAN,
-        },
+        participation: f64::NAN,
         pins: f64::NAN,
         pins_in_twist: f64::NAN,
         ratio_squared: f64::NAN,
@@ -248,8 +228,8 @@ impl Map {
     ///
     /// # Errors
     /// The first [`DesignError`] met.
-    #[inline]
-    pub fn arrangement(inputs: &impl Read) -> Result<(PinMap, Criterion), DesignError> {
+    #[inline(always)]
+    pub fn arrangement(inputs: &Inputs) -> Result<(PinMap, Criterion), DesignError> {
         let Counts { ratio, discs, pins } = Counts::of(inputs)?;
         let e = inputs.get(Input::Eccentricity);
         let circle = inputs.get(Input::OutputPinCircleRadius);
@@ -257,7 +237,7 @@ impl Map {
             ratio,
             discs: discs as u32,
             pins: pins as u32,
-            delta: crossing_angle(e, circle)? / std::f64::consts::TAU,
+            delta: crossing_angle(e, circle)? * std::f64::consts::TAU.recip(),
             clocking: finite("hole_clocking", inputs.get(Input::HoleClocking))?,
         };
         let code = finite("criterion", inputs.get(Input::Criterion))?;
@@ -275,7 +255,7 @@ impl Map {
     /// # Errors
     /// The first [`DesignError`] met.
     #[inline]
-    pub fn check(inputs: &impl Read) -> Result<Self, DesignError> {
+    pub fn check(inputs: &Inputs) -> Result<Self, DesignError> {
         Self::arrangement(inputs).map(|_| Self::NONE)
     }
 
@@ -284,8 +264,8 @@ impl Map {
     ///
     /// # Errors
     /// See [`Map::arrangement`].
-    #[inline]
-    pub fn of(inputs: &impl Read, every_criterion: bool) -> Result<Self, DesignError> {
+    #[inline(always)]
+    pub fn of(inputs: &Inputs, every_criterion: bool) -> Result<Self, DesignError> {
         let (map, criterion) = Self::arrangement(inputs)?;
         let (discs, pins) = (f64::from(map.discs), f64::from(map.pins));
         let mut out = Self {
@@ -310,11 +290,11 @@ impl Map {
             }
         }
         if every_criterion || criterion == Criterion::Statics {
-            out.participation = map.participation();
+            out.participation = map.participation().mean;
             if criterion == Criterion::Statics {
                 out.active = map.statics();
                 out.efficiency = map.efficiency(out.active.mean);
-                out.pins_in_twist = pins * out.participation.mean;
+                out.pins_in_twist = pins * out.participation;
             }
         }
         out.twist_factor = if criterion == Criterion::Statics {
@@ -350,23 +330,11 @@ impl Shaft {
     /// Computes.
     ///
     /// # Errors
-    /// The first [`DesignError`] met on the way from the free end to the flange.
-    #[inline]
-    pub fn of(inputs: &impl Read, kinds: &[SegmentKind]) -> Result<Self, DesignError> {
-        let segments = kinds.iter().enumerate().map(|(k, kind)| Segment {
-            kind: *kind,
-            diameter: inputs.read(segment_input(k, 0)),
-            end_diameter: inputs.read(segment_input(k, 1)),
-            length: inputs.read(segment_input(k, 2)),
-            keyway_depth: inputs.read(segment_input(k, 3)),
-        });
-        let compliance = shaft_compliance(
-            segments,
-            inputs.get(Input::YoungsModulus),
-            inputs.get(Input::PoissonRatio),
-            inputs.get(Input::KeywayCoefficient),
-        )?;
-        let compliance = if kinds.is_empty() {
+    /// See [`ShaftPlan::compliance`].
+    #[inline(always)]
+    pub fn of(inputs: &Inputs, plan: &ShaftPlan) -> Result<Self, DesignError> {
+        let compliance = plan.compliance(inputs)?;
+        let compliance = if plan.is_empty() {
             f64::NAN
         } else {
             compliance
@@ -410,8 +378,8 @@ impl PinBending {
     ///
     /// # Errors
     /// The first [`DesignError`] met.
-    #[inline]
-    pub fn of(inputs: &impl Read) -> Result<Self, DesignError> {
+    #[inline(always)]
+    pub fn of(inputs: &Inputs) -> Result<Self, DesignError> {
         let pin = Pin {
             diameter: inputs.get(Input::OutputPinDiameter),
             bore: inputs.get(Input::OutputPinBore),
@@ -472,8 +440,8 @@ impl Rating {
     ///
     /// # Errors
     /// The first [`DesignError`] met.
-    #[inline]
-    pub fn of(inputs: &impl Read, needs_stiffness: bool) -> Result<Self, DesignError> {
+    #[inline(always)]
+    pub fn of(inputs: &Inputs, needs_stiffness: bool) -> Result<Self, DesignError> {
         let power = positive("input_power", inputs.get(Input::InputPower))?;
         let speed = positive("input_speed", inputs.get(Input::InputSpeed))?;
         let inertia = inputs.get(Input::InputInertia);
