@@ -107,3 +107,12 @@ def test_one_value_over_and_over_is_quick(tmp_path: Path, rows: int) -> None:
     fault = Recording.read(path).blocking_fault
     assert fault is not None
     assert fault.verdict == "INSUFFICIENT_DATA"
+
+
+def test_arrays_with_gaps_lose_the_samples_without_a_number() -> None:
+    torque = np.linspace(-20.0, 20.0, 300)
+    angle = 28.0 * np.sign(torque) + 2.7 * torque
+    angle[::3] = np.nan
+    recording = Recording.from_arrays(torque, angle)
+    assert len(recording) == 200
+    assert "100 of 300 samples" in recording.notes[0]

@@ -67,6 +67,10 @@ def diagnose(
         typer.Option("--tolerance", metavar="DEG", help="Size below which nothing matters."),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of every random draw.")] = 0,
+    without: Annotated[
+        list[str] | None,
+        typer.Option("--without", metavar="EFFECT", help="Do not consider this effect."),
+    ] = None,
     png: Annotated[bool, typer.Option("--png", help="Write the report's pictures too.")] = False,
     as_json: AsJson = False,
 ) -> None:
@@ -90,7 +94,15 @@ def diagnose(
         try:
             with interruptible(f"{len(contents)} of {len(recordings)} recordings diagnosed"):
                 contents[stem(path)] = _diagnose_one(
-                    path, folder, known, meta, tolerance, seed, png, quiet=as_json
+                    path,
+                    folder,
+                    meta,
+                    png=png,
+                    quiet=as_json,
+                    drive=known,
+                    tolerance_deg=tolerance,
+                    seed=seed,
+                    without=without or (),
                 )
         except (InputError, DesignError) as error:
             if len(recordings) == 1:
@@ -106,28 +118,21 @@ def diagnose(
 
 
 def _diagnose_one(
-    path: Path,
-    folder: Path,
-    drive: Drive | None,
-    meta: Path | None,
-    tolerance: float | None,
-    seed: int,
-    png: bool,
-    *,
-    quiet: bool,
+    path: Path, folder: Path, meta: Path | None, *, png: bool, quiet: bool, **options: Any
 ) -> dict[str, Any]:
     from cyclosweep.diagnosis import diagnose as run
     from cyclosweep.recording import Recording
-    from cyclosweep.report import print_summary, write_png
 
     recording: Recording = Recording.read(path, meta)
     with _saying(recording.name) as say:
-        found = run(recording, drive, tolerance_deg=tolerance, seed=seed, progress=say)
+        found = run(recording, progress=say, **options)
         say("writing the report")
         found.write(folder)
         if png:
-            write_png(found.report_data(), folder)
+            found.report(folder / "pictures")
     if not quiet:
+        from cyclosweep.report import print_summary
+
         print_summary(found.report_data())
         print(f"Report: {folder / 'report.html'}")
     content: dict[str, Any] = json.loads(found.to_json())

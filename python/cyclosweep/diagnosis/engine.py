@@ -1,6 +1,6 @@
 """The diagnosis from beginning to end: prepare, calibrate, search, prove, say."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from cyclosweep.diagnosis.testability import Testability, hidden_effects, size_o
 from cyclosweep.diagnosis.verdict import Decision, decide, decide_structured
 from cyclosweep.diagnosis.words import statement
 from cyclosweep.drive import Drive
+from cyclosweep.effects import Effect
 from cyclosweep.effects import effects as all_effects
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
@@ -43,6 +44,7 @@ def diagnose(
     tolerance_deg: float | None = None,
     seed: int = 0,
     full: bool = True,
+    without: Collection[str] = (),
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Locate where recording and simulation differ, name what is missing, model and verify it.
@@ -59,6 +61,8 @@ def diagnose(
         Seed of every random draw; equal seeds give equal results.
     full : bool
         False leaves out the held-out proof, the self-check and the next experiment.
+    without : collection of str
+        Effects that are not considered, as if nobody had listed them.
     progress : callable, optional
         Called with a few words before each long step.
 
@@ -69,7 +73,7 @@ def diagnose(
     Raises
     ------
     InputError
-        The recording has no angle, or no drive is known.
+        The recording has no angle, no drive is known, or ``without`` names no effect.
     """
     say: Progress = progress if progress is not None else _silent
     if recording.angle_deg is None:
@@ -84,9 +88,18 @@ def diagnose(
     refusal = fault.check(problem, drive, FEWEST_ROWS)
     if refusal is not None:
         return fault.refuse(recording, drive, *refusal, seed)
-    library = build_library(problem.history, problem.fitted, all_effects())
+    library = build_library(problem.history, problem.fitted, _considered(without))
     search = _search(problem, library, seed, say)
     return _conclude(search, drive, tolerance_deg, full, say)
+
+
+def _considered(without: Collection[str]) -> tuple[Effect, ...]:
+    known = all_effects()
+    names = {effect.name for effect in known}
+    for name in without:
+        if name not in names:
+            raise InputError(f"without: found {name!r}, expected one of {', '.join(sorted(names))}")
+    return tuple(effect for effect in known if effect.name not in without)
 
 
 def _silent(text: str) -> None:

@@ -70,7 +70,7 @@ def refuse(recording: Recording, drive: Drive, verdict: str, reason: str, seed: 
         "schema": SCHEMA,
         "tolerance_deg": None,
         "verdict": verdict,
-        "statement": f"{recording.name}: {reason}.",
+        "statement": f"{recording.name}: {reason.rstrip('.')}.",
         "noise": {
             "sigma_deg": None,
             "autocorrelation": None,

@@ -10,7 +10,7 @@ import numpy as np
 
 from cyclosweep.effects.history import Floats
 from cyclosweep.recording import Recording
-from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_html
+from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_report
 from cyclosweep.simulate import Model
 
 SCHEMA = "cyclosweep.diagnosis/1"
@@ -83,10 +83,25 @@ class Diagnosis:
         )
 
     def report(self, path: str | Path) -> Path:
-        """Write the report as one HTML file, readable offline."""
-        target = Path(path)
-        write_html(self.report_data(), target)
-        return target
+        """Write the report in the form that the name asks for.
+
+        Parameters
+        ----------
+        path : path
+            ``*.html``: one page, readable offline; ``*.png``: its main picture; a name without an
+            ending: a folder of all pictures.
+
+        Returns
+        -------
+        Path
+            What was written.
+
+        Raises
+        ------
+        InputError
+            The name has another ending.
+        """
+        return write_report(self.report_data(), path)
 
     def write(self, folder: str | Path) -> Path:
         """Write ``diagnosis.json``, ``model.json`` and ``report.html`` into a folder."""

@@ -50,7 +50,7 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
         columns = _merge(path, columns, notes)
     elif columns["time_s"] is not None:
         columns = _drop_repeated(columns, notes)
-    columns, faults = _drop_missing(columns, notes)
+    columns, faults = drop_missing(columns, notes)
     _recognise_angle(columns, meta, notes)
     run = columns.pop("run")
     assert run is not None  # _canonical makes one where the file has none
@@ -226,7 +226,7 @@ def _drop_repeated(columns: dict[str, Floats | None], notes: list[str]) -> dict[
     return {name: None if a is None else a[keep] for name, a in columns.items()}
 
 
-def _drop_missing(
+def drop_missing(
     columns: dict[str, Floats | None], notes: list[str]
 ) -> tuple[dict[str, Floats | None], tuple[Fault, ...]]:
     """Drop samples without a finite torque, angle or time; a sparse extra column is left out.

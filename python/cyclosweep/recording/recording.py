@@ -144,17 +144,20 @@ class Recording:
         (1,)
         """
         torque = np.asarray(torque_nm, dtype=np.float64)
-        recording = cls(
-            name=name,
-            torque_nm=torque,
-            angle_deg=_floats(angle_deg),
-            time_s=_floats(time_s),
-            run=np.asarray(np.ones(len(torque)) if run is None else run, dtype=np.int64),
-            crank_deg=_floats(crank_deg),
-            temperature_c=_floats(temperature_c),
-            **known,
-        )
-        return replace(recording, faults=find_faults(recording))
+        given: dict[str, Any] = {
+            "torque_nm": torque,
+            "angle_deg": _floats(angle_deg),
+            "time_s": _floats(time_s),
+            "run": np.asarray(np.ones(len(torque)) if run is None else run, dtype=np.int64),
+            "crank_deg": _floats(crank_deg),
+            "temperature_c": _floats(temperature_c),
+        }
+        whole = cls(name=name, **given, **known)  # refuses columns of unequal length
+        notes = list(whole.notes)
+        kept: dict[str, Any]
+        kept, faults = reading.drop_missing(given, notes)
+        recording = replace(whole, **kept, notes=tuple(notes))
+        return replace(recording, faults=(*faults, *find_faults(recording)))
 
     def __len__(self) -> int:
         return len(self.torque_nm)
