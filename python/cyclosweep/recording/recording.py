@@ -154,8 +154,8 @@ class Recording:
         }
         whole = cls(name=name, **given, **known)  # refuses columns of unequal length
         notes = list(whole.notes)
-        kept: dict[str, Any]
-        kept, faults = reading.drop_missing(given, notes)
+        columns, faults = reading.drop_missing(given, notes)
+        kept: dict[str, Any] = dict(columns)
         recording = replace(whole, **kept, notes=tuple(notes))
         return replace(recording, faults=(*faults, *find_faults(recording)))
 
