@@ -112,13 +112,13 @@ def slip_state(
     share: _Reals,
 ) -> _Reals: ...
 def play(
-    input: _Reals,
+    signal: _Reals,
     half_width: float,
     restart: npt.NDArray[np.bool_],
     start: _Reals,
 ) -> _Reals: ...
 def creep_state(
-    input: _Reals,
+    signal: _Reals,
     time: _Reals,
     restart: npt.NDArray[np.bool_],
     time_constant: float,

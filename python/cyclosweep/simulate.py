@@ -8,7 +8,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.drive import Drive
 from cyclosweep.effects import Effect, find
 from cyclosweep.effects.history import Floats, History
@@ -181,8 +181,8 @@ def _flanks(elastic: Floats, restart: np.ndarray) -> Floats:
     # A run that starts unloaded starts on the flank that is loaded first.
     for start in np.flatnonzero(restart & (elastic == 0)):
         ahead = np.flatnonzero(elastic[start:] != 0)
-        stop = start + (int(ahead[0]) if len(ahead) else len(elastic) - start)
-        flank[start:stop] = sign[min(stop, len(elastic) - 1)]
+        stop = int(start) + (int(ahead[0]) if len(ahead) else len(elastic) - int(start))
+        flank[start:stop] = sign[stop if stop < len(elastic) else -1]
     return np.asarray(flank)
 
 

@@ -95,6 +95,10 @@ impl SlipElements<'_> {
 ///
 /// `offset` is everything that shifts the datum, sample by sample; `restart[i]` marks a sample before
 /// which the elements are fresh, anchored at `start_angle[i]`.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one slice per column of the history, two of them to fill"
+)]
 pub fn solve_slip(
     torque: &[f64],
     offset: &[f64],

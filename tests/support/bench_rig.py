@@ -3,6 +3,8 @@
 Its laws are chosen to differ in form from those the diagnosis fits.
 """
 
+import itertools
+
 import numpy as np
 
 from cyclosweep.recording import Recording
@@ -13,7 +15,7 @@ PLAY = 28.0
 
 def _ramp(points, rate, step):
     out = [points[0]]
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in itertools.pairwise(points):
         count = max(int(abs(b - a) / (rate * step)), 2)
         out += list(np.linspace(a, b, count + 1)[1:])
     return out

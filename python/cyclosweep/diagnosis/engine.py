@@ -12,7 +12,7 @@ from cyclosweep.diagnosis.fit import Fit
 from cyclosweep.diagnosis.holdout import HeldOutResult, judge
 from cyclosweep.diagnosis.library import Library, build_library
 from cyclosweep.diagnosis.locate import Region, find_regions
-from cyclosweep.diagnosis.noise import Noise, estimate_noise
+from cyclosweep.diagnosis.noise import Noise, estimate_noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem, prepare
 from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.rich import rich_basis
@@ -122,7 +122,8 @@ def _search(problem: Problem, library: Library, seed: int, say: Progress) -> Sea
     noise = _noise(problem, library, None)
     search = Search(problem, noise, library, seed)
     if noise.structured:
-        structured.climb(search)
+        say("adding effects one at a time")
+        search.settled = structured.climb(search)
         return search
     for _ in range(RESTARTS):
         search.run(say)
@@ -161,9 +162,9 @@ def _conclude(
     decision = decide(search, bounds, tolerance)
     repeats = None
     if noise.structured:
-        top = decision.best or search.root
+        top = search.settled or search.root
         repeats = structured.repetition(problem, top.fit)
-        decision = decide_structured(search, decision, repeats.is_physics)
+        decision = decide_structured(search, repeats.is_physics)
     node = decision.best if decision.best is not None else search.root
     accepted = _named_part(search, node)
     remaining = testability(search, accepted, p_of)
@@ -237,6 +238,11 @@ def _conclude(
         }
     if decision.unexplained and decision.best is not None:
         content["unknown"] = _unknown(search, decision, accepted, regions)
+        if unsteady:
+            size = {"shape": "drift", "place": "from run to run", "size_deg": held.after_deg}
+            content["unknown"] |= size
+        elif repeats is not None:
+            content["unknown"] |= _staircase(accepted, repeats)
     if full:
         say("checking on synthetic twins")
         rivals = [n for n, _ in decision.explanations if n is not decision.best][:2]
@@ -336,8 +342,6 @@ def _strength(search: Search, node: Node, index: int) -> float:
     fitted = node.fit
     _, weight = search.noise.residual(search.problem.angle_deg[use], fitted.mean_deg[use])
     signal = search.noise.design(fitted.contribution(index)[use], weight)
-    from cyclosweep.diagnosis.noise import orthonormal
-
     first = 2 if search.problem.one_sided else 3
     keep = list(range(first))
     for k, term in enumerate(fitted.terms):
@@ -470,14 +474,30 @@ def _unknown(
             "size_deg": float(np.max(np.abs(shape))),
         }
     values = dict(node.rest.by_hypothesis)
-    values["hum"] = node.rest_hum[0]
+    wave = node.rest_hum[1]
+    if wave is not None:
+        values[wave.family] = node.rest_hum[0]
     name = max(values, key=lambda key: values[key])
-    place = node.rest_hum[1].place if name == "hum" and node.rest_hum[1] is not None else ""
+    place = wave.place if wave is not None and wave.family == name else ""
     if name in node.rest.groups:
         block = node.rest.library.blocks[node.rest.best_block(name)]
         place = block.free.place if block.free is not None else "all along"
     size = max((abs(r.mean_residual_deg) for r in regions), default=accepted.fit.rmse_deg)
     return {"shape": name, "place": place, "size_deg": size}
+
+
+def _staircase(node: Node, repeats: structured.Repetition) -> dict[str, Any]:
+    """Describe a residual that repeats from run to run, as steps tied to the mesh do."""
+    left = (node.fit.problem.angle_deg - node.fit.mean_deg)[node.fit.problem.fitted]
+    wave = node.rest_hum[1]
+    place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
+    if wave is not None and node.rest_hum[0] > 5.0:
+        place += f", strongest {wave.place}"
+    return {
+        "shape": "staircase tied to the position of the mesh",
+        "place": place,
+        "size_deg": float(np.quantile(np.abs(left), 0.95)),
+    }
 
 
 def _experiment(

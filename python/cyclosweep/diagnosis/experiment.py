@@ -1,7 +1,8 @@
 """The next experiment: the load programme from a menu that best separates what is left."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -10,8 +11,10 @@ from cyclosweep.diagnosis.noise import orthonormal
 from cyclosweep.diagnosis.search import Node, Search
 from cyclosweep.effects.history import Floats, History
 
+Load = tuple[Floats, Floats, Floats, Floats]
+"""Torque [N m], run, position [deg] and temperature [degC]."""
+
 STEP_S = 1.0
-PLAN_ROWS = 1200
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,19 +22,17 @@ class Plan:
     """A load programme in words and the history it makes, for a largest torque."""
 
     words: str
-    make: Callable[[float], tuple[Floats, Floats, Floats, Floats]]
+    make: Callable[[float], Load]
 
 
-def _line(points: list[float], seconds: float) -> Floats:
+def _line(points: Sequence[float], seconds: float) -> Floats:
     """Torque along straight ramps of equal duration."""
     count = max(int(seconds / STEP_S / max(len(points) - 1, 1)), 4)
-    parts = [
-        np.linspace(a, b, count, endpoint=False) for a, b in zip(points, points[1:], strict=False)
-    ]
+    parts = [np.linspace(a, b, count, endpoint=False) for a, b in pairwise(points)]
     return np.concatenate([*parts, [points[-1]]])
 
 
-def _runs(torques: list[Floats], cranks: list[float], warm: float = 0.0) -> tuple[Floats, ...]:
+def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0) -> Load:
     """Torque, run, position and temperature of consecutive runs."""
     run = np.concatenate([np.full(len(t), k, dtype=np.float64) for k, t in enumerate(torques)])
     crank = np.concatenate([np.full(len(t), c) for t, c in zip(torques, cranks, strict=True)])
@@ -39,46 +40,46 @@ def _runs(torques: list[Floats], cranks: list[float], warm: float = 0.0) -> tupl
     return np.concatenate(torques), run, crank, 20.0 + warm * share
 
 
-def _nested(top: float) -> tuple[Floats, ...]:
+def _nested(top: float) -> Load:
     points = [0, top, -top, 0.6 * top, -0.4 * top, top, 0.4 * top, 0.8 * top, 0]
     return _runs([_line(points, 500), _line(points, 500)], [0, 0])
 
 
-def _rates(top: float) -> tuple[Floats, ...]:
+def _rates(top: float) -> Load:
     points = [0, top, -top, 0]
     return _runs([_line(points, s) for s in (60, 200, 700)], [0, 0, 0])
 
 
-def _holds(top: float) -> tuple[Floats, ...]:
+def _holds(top: float) -> Load:
     up, down = _line([0, top], 40), _line([top, 0], 40)
     path = np.concatenate([up, np.full(300, top), down, np.full(200, 0.02 * top)])
     return _runs([path, -path], [0, 0])
 
 
-def _places(top: float) -> tuple[Floats, ...]:
+def _places(top: float) -> Load:
     points = [0, top, -top, 0]
     spots = [0, 45, 90, 135, 180, 225, 270, 315]
     return _runs([_line(points, 120) for _ in spots], spots)
 
 
-def _returns(top: float) -> tuple[Floats, ...]:
+def _returns(top: float) -> Load:
     points = [0, 0.5 * top, -0.5 * top, 0]
     spots = [0, 120, 240, 0, 120, 240, 0, 120]
     return _runs([_line(points, 120) for _ in spots], spots, warm=4.0)
 
 
-def _soak(top: float) -> tuple[Floats, ...]:
+def _soak(top: float) -> Load:
     points = [0, 0.3 * top, -0.3 * top, 0]
     return _runs([_line(points, 120) for _ in range(8)], [0] * 8, warm=10.0)
 
 
-def _ladder(top: float) -> tuple[Floats, ...]:
+def _ladder(top: float) -> Load:
     return _runs(
         [_line([0, s * top, -s * top, 0], 150) for s in (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)], [0] * 6
     )
 
 
-def _wide(top: float) -> tuple[Floats, ...]:
+def _wide(top: float) -> Load:
     return _runs([_line([0, 1.4 * top, -1.4 * top, 0], 600) for _ in range(2)], [0, 0])
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.verdict import unit_slip
@@ -31,6 +31,15 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> tuple
     ratio = compliance / problem.nominal_compliance
     if 0.1 <= ratio <= 10.0:
         return None
+    torque, angle = problem.history.applied_nm, problem.angle_deg
+    if ratio < 0 and torque @ (angle - angle.mean()) > 0:
+        return None
+    if -10.0 <= ratio < 0:
+        return (
+            "DATA_FAULT",
+            f"the angle falls as the torque rises ({compliance:.4g} deg/(N m)): the sign of angle "
+            "or torque is reversed, or the drive turned under the load",
+        )
     likely = unit_slip(ratio, float(drive.ratio)) if ratio > 0 else None
     hint = f"; a factor near {likely}" if likely else "; check units, side and drive file"
     side = problem.recording.side

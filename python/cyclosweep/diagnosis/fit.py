@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.diagnosis.freeform import FreeForm
 from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
@@ -183,8 +183,11 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
     twist = problem.history.largest_twist_deg
     if parameter.unit == "N m":
         lower, upper = 1e-3 * top, 3.0 * top
-        if parameter.name in ("onset_nm", "first_nm"):
+        if parameter.name == "onset_nm":
             lower, upper = 0.0, 0.92 * top
+        if parameter.name == "first_nm":
+            # A single kink further out is what a sensor at its limit shows.
+            lower, upper = 0.0, 0.45 * top
         if parameter.name == "turn_nm":
             upper = 0.25 * top
         if parameter.name == "range_nm":
@@ -235,7 +238,7 @@ def fit(
                 values,
                 bounds=(lower, upper),
                 x_scale=scale,
-                diff_step=1e-4,
+                diff_step=np.full(len(values), 1e-4),
                 max_nfev=rounds,
                 ftol=1e-5,
                 xtol=1e-5,
@@ -370,7 +373,11 @@ class _Model:
         datum = float(beta[0])
         if self.problem.one_sided:
             datum -= float(history.side[self.use][0]) * play
-        state = {"compliance_deg_per_nm": compliance, "free_play_deg": play, "datum_deg": datum}
+        state: dict[str, float | Floats] = {
+            "compliance_deg_per_nm": compliance,
+            "free_play_deg": play,
+            "datum_deg": datum,
+        }
         if not self.slides:
             state["angle_deg"] = mean
         return history.with_state(**state)

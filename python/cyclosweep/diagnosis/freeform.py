@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -20,11 +21,14 @@ class FreeForm:
         Where it sits, in words for a reader.
     make : callable
         Columns [deg] for a history.
+    positive : bool
+        Whether its amplitude cannot be negative.
     """
 
     family: str
     place: str
     make: Callable[[History], Floats]
+    positive: bool = False
 
 
 def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
@@ -58,7 +62,6 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
     if count < 1:
         return
     places = index[np.linspace(0, len(index) - 1, count + 2)[1:-1].astype(int)]
-    row = np.arange(len(history))
     clock = clock_of(history)
     what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
     for place in places:
@@ -66,25 +69,44 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
         yield FreeForm(
             "step of the angle",
             label,
-            lambda h, p=place: (row >= p).astype(np.float64)[:, None],
+            partial(_after, place, None),
         )
         yield FreeForm(
             "slip within a run",
             label + " to the end of that run",
-            lambda h, p=place: ((row >= p) & (h.run == h.run[p])).astype(np.float64)[:, None],
+            partial(_after, place, int(history.run[place])),
         )
     for place in places[::3]:
         yield FreeForm(
             "change of compliance",
             f"from {what.format(clock[place])} (run {history.run[place] + 1})",
-            lambda h, p=place: ((row >= p) * h.elastic_nm)[:, None],
+            partial(_softer_after, place),
         )
+
+
+def _after(place: int, run: int | None, history: History) -> Floats:
+    rows = np.arange(len(history)) >= place
+    if run is not None:
+        rows &= history.run == run
+    return np.asarray(rows, dtype=np.float64)[:, None]
+
+
+def _softer_after(place: int, history: History) -> Floats:
+    return np.asarray((np.arange(len(history)) >= place) * history.elastic_nm)[:, None]
+
+
+def _one_run(number: int, history: History) -> Floats:
+    return np.asarray(history.run == number, dtype=np.float64)[:, None]
+
+
+def _constant(columns: Floats, history: History) -> Floats:
+    return columns
 
 
 def _bumps(history: History) -> Iterator[FreeForm]:
     top = history.largest_torque_nm
-    for width in (0.03, 0.08):
-        for centre in np.arange(0.05, 1.0, 2 * width):
+    for width in (0.03, 0.06, 0.12):
+        for centre in np.arange(0.05, 1.0, 1.2 * width):
             for flank in (0, 1, -1):
                 if flank and not np.any(history.side == flank):
                     continue
@@ -92,7 +114,7 @@ def _bumps(history: History) -> Iterator[FreeForm]:
                 yield FreeForm(
                     "bump at a load",
                     f"near{where} {centre * top:.3g} N m",
-                    lambda h, c=centre, w=width, f=flank: _bump(h, c * top, w * top, f),
+                    partial(_bump, centre=centre * top, width=width * top, flank=flank),
                 )
 
 
@@ -103,20 +125,23 @@ def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
 
 def _clips(history: History) -> Iterator[FreeForm]:
     top = history.largest_torque_nm
-    for share in (0.85, 0.93, 0.97):
+    for share in (0.46, 0.53, 0.6, 0.67, 0.74, 0.81, 0.87, 0.93, 0.97):
         for flank in (0, 1, -1):
             if flank and not np.any(history.side == flank):
                 continue
             yield FreeForm(
                 "saturation at the end of the range",
                 f"beyond {share * top:.3g} N m",
-                lambda h, s=share, f=flank: _over(h, s * top, f),
+                partial(_over, start=share * top, flank=flank),
+                positive=True,
             )
 
 
 def _over(history: History, start: float, flank: int) -> Floats:
-    over = np.maximum(np.abs(history.applied_nm) - start, 0.0)
-    return (over * (history.side if flank == 0 else (history.side == flank)))[:, None]
+    # A sensor at its limit shows too little, never too much.
+    over = -np.maximum(np.abs(history.applied_nm) - start, 0.0)
+    here = 1.0 if flank == 0 else (history.side == flank)
+    return np.asarray(over * history.side * here)[:, None]
 
 
 def _curves(history: History) -> Iterator[FreeForm]:
@@ -167,7 +192,7 @@ def _runs(history: History) -> Iterator[FreeForm]:
         yield FreeForm(
             "one run apart",
             f"run {number + 1}",
-            lambda h, k=number: (h.run == k).astype(np.float64)[:, None],
+            partial(_one_run, number),
         )
 
 
@@ -189,7 +214,7 @@ def _trends(history: History) -> Iterator[FreeForm]:
         yield FreeForm(
             "drift in time",
             "dying out over the recording",
-            lambda h, s=tau: np.exp(-share / s)[:, None],
+            partial(_constant, np.exp(-share / tau)[:, None]),
         )
 
 
@@ -204,7 +229,7 @@ def _windows(history: History, fitted: Flags) -> Iterator[FreeForm]:
         yield FreeForm(
             "wandering of the zero",
             "over the whole recording",
-            lambda h, w=window, n=count: (w[:, None] == np.arange(n)).astype(np.float64),
+            partial(_constant, (window[:, None] == np.arange(count)).astype(np.float64)),
         )
 
 

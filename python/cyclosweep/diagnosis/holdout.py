@@ -1,12 +1,12 @@
 """Proof on data not used: errors on left-out blocks, and a cross-fit e-value."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.fit import Fit, Term, fit
+from cyclosweep.diagnosis.fit import Fit, fit
 from cyclosweep.diagnosis.noise import Noise
-from cyclosweep.diagnosis.problem import Problem
+from cyclosweep.diagnosis.problem import Problem, gaps
 from cyclosweep.diagnosis.split import folds, restrict
 from cyclosweep.effects.history import Flags, Floats
 
@@ -63,7 +63,7 @@ def judge(problem: Problem, noise: Noise, model: Fit) -> HeldOutResult:
         base = fit(train, train_noise, ())
         repaired = base
         if model.terms:
-            repaired = fit(train, train_noise, _starting(model), model, rounds=4)
+            repaired = fit(train, train_noise, model.terms, model, rounds=4)
         held = train.held_out
         blocks.append(
             Block(
@@ -84,10 +84,6 @@ def judge(problem: Problem, noise: Noise, model: Fit) -> HeldOutResult:
     return HeldOutResult(tuple(blocks), before, after, value, label)
 
 
-def _starting(model: Fit) -> tuple[Term, ...]:
-    return model.terms
-
-
 def _error(problem: Problem, mean: Floats, rows: Flags) -> float:
     difference = (problem.angle_deg - mean)[rows]
     return float(np.sqrt(np.average(difference**2, weights=problem.weight[rows])))
@@ -95,10 +91,6 @@ def _error(problem: Problem, mean: Floats, rows: Flags) -> float:
 
 def _log_ratio(problem: Problem, noise: Noise, mean: Floats, held: Flags) -> float:
     """Log likelihood of a block under the trained model over that of its own best baseline."""
-    from dataclasses import replace
-
-    from cyclosweep.diagnosis.problem import gaps
-
     gap = gaps(held, problem.history.run, problem.history.time_s)
     block = replace(problem, fitted=held, held_out=~held, gap=gap)
     local = replace(noise, gap=gap[held])

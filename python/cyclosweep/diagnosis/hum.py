@@ -1,5 +1,9 @@
-"""A hum of unknown frequency: the periodogram of the residual, with its own look-elsewhere price."""
+"""A wave of unknown frequency: in time (also in proportion to torque), or along the twist.
 
+The periodogram of the residual shows it; the number of frequencies looked at is its price.
+"""
+
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -7,12 +11,20 @@ import numpy as np
 from cyclosweep.diagnosis.freeform import FreeForm, clock_of
 from cyclosweep.effects.history import Flags, Floats, History
 
-FAMILY = "hum"
+HUM = "hum"
+RIPPLE = "ripple along the twist"
+LOADED = "hum in proportion to torque"
+FAMILIES = (HUM, RIPPLE, LOADED)
 CYCLES = 4.0
-"""A hum makes at least this many cycles within the usual run; slower waves are other shapes' job."""
+"""A hum makes at least this many cycles within the usual run, a ripple within the range of twist.
+Slower waves are the job of other shapes."""
+FINEST = 250
+"""Most ripples within the range of twist that are looked for."""
+CAUTION = 1.0
+"""Log prior odds against a wave."""
 
 
-def find_hum(history: History, fitted: Flags, residual: Floats) -> tuple[float, FreeForm | None]:
+def find_wave(history: History, fitted: Flags, residual: Floats) -> tuple[float, FreeForm | None]:
     """Evidence of the strongest sinusoid in a white residual, and its columns.
 
     Returns
@@ -22,6 +34,17 @@ def find_hum(history: History, fitted: Flags, residual: Floats) -> tuple[float, 
     form : FreeForm or None
         Cosine and sine of that frequency.
     """
+    found = [
+        _hum(history, fitted, residual),
+        _hum(history, fitted, residual, loaded=True),
+        _ripple(history, fitted, residual),
+    ]
+    return max(found, key=lambda pair: pair[0])
+
+
+def _hum(
+    history: History, fitted: Flags, residual: Floats, *, loaded: bool = False
+) -> tuple[float, FreeForm | None]:
     clock = clock_of(history)[fitted]
     count = len(clock)
     steps = np.diff(clock)
@@ -29,30 +52,83 @@ def find_hum(history: History, fitted: Flags, residual: Floats) -> tuple[float, 
     if count < 60 or len(positive) == 0:
         return 0.0, None
     step = float(np.median(positive))
-    cell = np.round((clock - clock[0]) / step).astype(np.int64)
+    cell = np.round((clock - clock[0]) / step)
     if cell[-1] > 60 * count:
-        cell = np.arange(count)
+        cell = np.arange(count, dtype=np.float64)
         step = float((clock[-1] - clock[0]) / max(count - 1, 1))
-    length = 1 << int(np.ceil(np.log2(2 * (cell[-1] + 1))))
+    samples = count / max(int(np.count_nonzero(history.restart & fitted)), 1)
+    unit = "Hz" if history.time_s is not None else "cycles a row"
+    return _strongest(
+        cell.astype(np.int64),
+        residual,
+        lowest=CYCLES / samples,
+        highest=0.5,
+        unit=step,
+        family=LOADED if loaded else HUM,
+        place="at {:.4g} " + unit + ", all along",
+        clock=clock_of,
+        factor=(lambda h: h.applied_nm / h.largest_torque_nm) if loaded else None,
+        scale=history.applied_nm[fitted] if loaded else None,
+    )
+
+
+def _ripple(history: History, fitted: Flags, residual: Floats) -> tuple[float, FreeForm | None]:
+    twist = history.angle_deg[fitted] - history.side[fitted] * history.free_play_deg
+    span = float(np.ptp(twist))
+    if len(twist) < 60 or span <= 0:
+        return 0.0, None
+    cells = 8 * FINEST
+    step = span / cells
+    cell = np.floor((twist - twist.min()) / step).astype(np.int64)
+    return _strongest(
+        cell,
+        residual,
+        lowest=CYCLES / cells,
+        highest=FINEST / cells,
+        unit=step,
+        family=RIPPLE,
+        place="with {:.4g} cycles a degree, over the whole range",
+        clock=lambda h: h.angle_deg - h.side * h.free_play_deg,
+    )
+
+
+def _strongest(
+    cell: np.ndarray,
+    residual: Floats,
+    *,
+    lowest: float,
+    highest: float,
+    unit: float,
+    family: str,
+    place: str,
+    clock: Callable[[History], Floats],
+    factor: Callable[[History], Floats] | None = None,
+    scale: Floats | None = None,
+) -> tuple[float, FreeForm | None]:
+    """Strongest frequency between two limits [cycles a cell]."""
+    count = len(residual)
+    if scale is not None:
+        residual = residual * scale / np.sqrt(np.mean(scale**2))
+    length = 1 << int(np.ceil(np.log2(2 * (int(cell.max()) + 1))))
     series = np.bincount(cell, residual, minlength=length)[:length]
     power = np.abs(np.fft.rfft(series)) ** 2 / count
-    frequency = np.fft.rfftfreq(length, step)
-    samples = count / max(int(np.count_nonzero(history.restart & fitted)), 1)
-    usable = frequency > CYCLES / (samples * step)
-    if not np.any(usable):
+    frequency = np.fft.rfftfreq(length)
+    usable = (frequency > lowest) & (frequency < highest)
+    if np.count_nonzero(usable) < 8:
         return 0.0, None
     power = power / np.maximum(_floor(power), 1.0)
     best = int(np.argmax(np.where(usable, power, 0.0)))
-    looked = max(count / 2.0 * np.mean(usable), 1.0)
-    value = float(power[best] - np.log(3.5 * looked) - 1.0)
-    chosen = float(frequency[best])
+    independent = max(float(np.mean(usable)) * (int(cell.max()) + 1) / 2.0, 1.0)
+    independent = min(independent, count / 2.0)
+    value = float(power[best] - np.log(3.5 * independent) - CAUTION)
+    chosen = float(frequency[best]) / unit
 
-    def waves(h: History) -> Floats:
-        angle = 2 * np.pi * chosen * clock_of(h)
-        return np.column_stack([np.cos(angle), np.sin(angle)])
+    def columns(h: History) -> Floats:
+        angle = 2 * np.pi * chosen * clock(h)
+        waves = np.column_stack([np.cos(angle), np.sin(angle)])
+        return waves if factor is None else waves * factor(h)[:, None]
 
-    unit = "Hz" if history.time_s is not None else "cycles a row"
-    return max(value, 0.0), FreeForm(FAMILY, f"at {chosen:.4g} {unit}, all along", waves)
+    return max(value, 0.0), FreeForm(family, place.format(chosen), columns)
 
 
 def _floor(power: Floats) -> Floats:
@@ -61,9 +137,11 @@ def _floor(power: Floats) -> Floats:
     count = max(len(power) // width, 1)
     edges = np.linspace(0, len(power), count + 1).astype(int)
     level = [float(np.median(power[a:b])) / np.log(2.0) for a, b in pairwise(edges)]
-    return np.interp(np.arange(len(power)), 0.5 * (edges[1:] + edges[:-1]), level)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    return np.asarray(np.interp(np.arange(len(power)), middle, level), dtype=np.float64)
 
 
-def null_hum(count: int, rng: np.random.Generator) -> Floats:
-    """Evidence of the strongest sinusoid in white noise: a Gumbel variable."""
-    return np.maximum(-np.log(-np.log(rng.uniform(1e-12, 1.0, count))) - 1.0, 0.0)
+def null_wave(count: int, rng: np.random.Generator) -> Floats:
+    """Evidence of the strongest sinusoid in white noise: the largest of three Gumbel variables."""
+    gumbel = -np.log(-np.log(rng.uniform(1e-12, 1.0, (3, count))))
+    return np.asarray(np.maximum(gumbel.max(axis=0) - CAUTION, 0.0))

@@ -77,6 +77,8 @@ def build_library(
         if not np.all(np.isfinite(kept)) or not np.any(kept):
             return
         signs = np.zeros(kept.shape[1])
+        if free is not None and free.positive:
+            signs[:] = 1.0
         if effect is not None:
             lower = [p.lower for p in effect.amplitudes(shape)][: len(signs)]
             signs[: len(lower)] = np.where(np.array(lower) >= 0, 1.0, 0.0)

@@ -1,6 +1,7 @@
 """Where recording and simulation differ: a map over torque, direction, run, place and time."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -143,7 +144,7 @@ def _cells(search: Search) -> list[_Cell]:
     index = np.flatnonzero(use)
     for parts in (10, 30):
         edges = index[np.linspace(0, len(index) - 1, parts + 1).astype(int)]
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        for a, b in pairwise(edges):
             rows = np.zeros(len(use), dtype=bool)
             rows[a : b + 1] = True
             span = (round(float(clock[a]), 3), round(float(clock[b]), 3))

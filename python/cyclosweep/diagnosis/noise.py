@@ -82,14 +82,14 @@ class Noise:
             ratio = np.divide(score, weight, out=np.zeros_like(score), where=weight > 1e-9)
             return self.whiten(np.clip(ratio, -8.0, 8.0)), weight
         white = self.whiten((angle - mean) / self.sigma_deg)
-        weight = np.full(len(mean), 1.0 / self.sigma_deg)
+        even = np.full(len(mean), 1.0 / self.sigma_deg)
         if np.isfinite(self.tail):
             # Unit variance: scale of the t is below sigma.
             scale = np.sqrt((self.tail - 2.0) / self.tail) if self.tail > 2.05 else 0.3
-            information = (self.tail + 1.0) / ((self.tail + 3.0) * scale**2)
+            known = (self.tail + 1.0) / ((self.tail + 3.0) * scale**2)
             score = (self.tail + 1.0) * white / (self.tail * scale**2 + white**2)
-            return score / np.sqrt(information), weight * np.sqrt(information)
-        return white, weight
+            return score / np.sqrt(known), even * np.sqrt(known)
+        return white, even
 
     def design(self, columns: Floats, weight: Floats) -> Floats:
         """Whitened columns in the unit of the residual."""
@@ -160,6 +160,7 @@ def estimate_noise(
     best, upper = _correlation(clean, basis, gap)
     rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
     sigma, tail = _size(rough, left, basis, freedom)
+    sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     averaged = float(np.median(weight)) > 1.5
     if resolution > 0 and not averaged:
         if sigma**2 < 0.165 * resolution**2 and count >= 60:
@@ -180,8 +181,8 @@ def estimate_noise(
     if best > MODEL_ERROR:
         # What is left is not noise but error of the model; filtered, it would be fitted by its
         # kinks. Rows count equally then.
-        rough = max(float(np.sqrt(left @ left / freedom)), 1e-12)
-        return Noise(rough, 0.0, best, np.inf, 0.0, freedom, gap, rough, structured=True)
+        plain = max(float(np.sqrt(left @ left / freedom)), 1e-12)
+        return Noise(plain, 0.0, best, np.inf, 0.0, freedom, gap, plain, structured=True)
     return Noise(sigma, upper, best, tail, 0.0, freedom, gap)
 
 
@@ -222,7 +223,9 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
         if sign <= 0:
             value[index] = -np.inf
     best = int(np.argmax(value))
-    within = np.flatnonzero(value > value[best] - 1.0)
+    # The higher it is, the dearer an underestimate.
+    drop = 1.0 + 2.0 * grid[best] ** 2
+    within = np.flatnonzero(value > value[best] - drop)
     if best == 0 and value[0] - value[1] > 1.0:
         return 0.0, 0.0
     return float(grid[best]), float(grid[within[-1]])

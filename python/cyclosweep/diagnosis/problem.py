@@ -15,8 +15,11 @@ MOST_ROWS = 6000
 class NominalLine(Protocol):
     """Free play [deg] each side of zero and slope [deg/(N m)] of the published model."""
 
-    free_play_deg: float
-    compliance_deg_per_nm: float
+    @property
+    def free_play_deg(self) -> float: ...  # noqa: D102
+
+    @property
+    def compliance_deg_per_nm(self) -> float: ...  # noqa: D102
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,12 +185,16 @@ def find_flanks(
     start = np.linalg.lstsq(design[loaded], target[loaded], rcond=None)[0]
     residual = target[loaded] - design[loaded] @ start
     scale = max(1.4826 * float(np.median(np.abs(residual))), 1e-9)
-    robust = least_squares(
-        lambda b: (target[loaded] - design[loaded] @ b) / scale, start, loss="soft_l1"
-    ).x
+
+    def misfit(line: Floats) -> Floats:
+        return np.asarray((target[loaded] - design[loaded] @ line) / scale)
+
+    robust = least_squares(misfit, start, loss="soft_l1").x
     datum, compliance = float(robust[0]), float(robust[1])
+    if compliance <= 0 and torque @ (angle - angle.mean()) > 0:
+        # Friction hides the slope where the drive hardly turns back.
+        compliance = line.compliance_deg_per_nm
     play = float(robust[2]) if both else line.free_play_deg
-    compliance = compliance if compliance > 0 else line.compliance_deg_per_nm
     residual = target[loaded] - design[loaded] @ robust
     width = 2.0 * float(np.quantile(np.abs(residual), 0.9))
     inside = angle - datum - compliance * torque

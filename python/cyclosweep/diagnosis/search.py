@@ -1,4 +1,4 @@
-"""Search for the set of effects that explains a recording, each refitted jointly with the baseline."""
+"""Search for the set of effects that explains a recording, each refitted with the baseline."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from cyclosweep.diagnosis import hum
 from cyclosweep.diagnosis.fit import Fit, Term, fit
 from cyclosweep.diagnosis.freeform import FreeForm
 from cyclosweep.diagnosis.library import Block, Library
-from cyclosweep.diagnosis.noise import Noise
+from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
 from cyclosweep.effects.history import Floats
@@ -23,6 +23,8 @@ EXTRA_TERM = 3.0
 """Log prior odds against every further effect."""
 WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
+CAUTION = {"saturation at the end of the range": 1.0}
+"""The same for shapes as common as the named effects."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 
@@ -85,6 +87,7 @@ class Search:
         self.gram = self.whitened.T @ self.whitened
         self.root = self._node(base, 0.0, 0.0)
         self.nodes: dict[frozenset[str], Node] = {}
+        self.settled: Node | None = None
         self.maxima = self.null(self.root)
         self.threshold = max(float(np.quantile(self.maxima, 1.0 - LEVEL)), FLOOR)
 
@@ -92,7 +95,7 @@ class Search:
         """Largest evidence that recordings show when this node is all there is."""
         rng = np.random.default_rng([self.seed, 1])
         maxima = node.rest.null_maxima(DRAWS, rng)
-        return np.maximum(maxima, hum.null_hum(DRAWS, rng))
+        return np.maximum(maxima, hum.null_wave(DRAWS, rng))
 
     def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
         rest = scan(
@@ -104,7 +107,7 @@ class Search:
             self.noise.freedom,
             self._excess(fitted),
         )
-        found = hum.find_hum(fitted.history, self.problem.fitted, fitted.residual)
+        found = hum.find_wave(fitted.history, self.problem.fitted, fitted.residual)
         return Node(fitted, gain, prior, rest, found)
 
     def extend(self, node: Node, hypothesis: str) -> Node | None:
@@ -116,7 +119,8 @@ class Search:
                 continue
             added = float(evidence(self._gain(node.fit, joint), rank)) - cost
             prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
-            prior -= 0.0 if term.effect is not None else WITHOUT_NAME
+            if term.effect is None:
+                prior -= CAUTION.get(term.name, WITHOUT_NAME)
             if best is None or node.gain + added > best.gain:
                 best = self._node(joint, node.gain + added, prior)
         if best is not None:
@@ -145,11 +149,11 @@ class Search:
 
     def _starts(self, node: Node, hypothesis: str) -> Iterable[tuple[Term, float, float]]:
         """Terms to start from, with projected rank and the price of the choice of shape."""
-        if hypothesis == hum.FAMILY:
+        if hypothesis in hum.FAMILIES:
             form = node.rest_hum[1]
             assert form is not None
-            rows = 0.5 * self.problem.count
-            yield Term(None, {}, form), 2.0, max(float(np.log(rows)) - 3.0, 0.0)
+            gain = self._wave_gain(node)
+            yield Term(None, {}, form), 2.0, max(gain - node.rest_hum[0], 0.0)
             return
         rest = node.rest
         members = rest.groups[hypothesis]
@@ -171,6 +175,18 @@ class Search:
             if tried >= (2 if slips else 1):
                 return
 
+    def _wave_gain(self, node: Node) -> float:
+        """Evidence of the wave found in a residual before the price of its search."""
+        form = node.rest_hum[1]
+        assert form is not None
+        use = self.problem.fitted
+        angle, mean = self.problem.angle_deg[use], node.fit.mean_deg[use]
+        white = self.noise.design(
+            form.make(node.fit.history)[use], self.noise.residual(angle, mean)[1]
+        )
+        basis = orthonormal(white)
+        return float(evidence(np.sum((basis.T @ node.fit.residual) ** 2), 2.0))
+
     def _amplitude(self, rest: Scan, index: int, block: Block) -> float:
         inner = rest.gram[block.first, block.first]
         return float(max(rest.score[block.first] / inner / block.scale[0], 1e-6))
@@ -178,8 +194,9 @@ class Search:
     def candidates(self, node: Node, most: int, least_named: int = 2) -> list[str]:
         """Hypotheses worth adding to a structure, strongest first."""
         values = dict(node.rest.by_hypothesis)
-        if node.rest_hum[1] is not None and hum.FAMILY not in node.names:
-            values[hum.FAMILY] = node.rest_hum[0]
+        wave = node.rest_hum[1]
+        if wave is not None and wave.family not in node.names:
+            values[wave.family] = node.rest_hum[0]
         good = sorted(
             (name for name, v in values.items() if v > self.threshold and name not in node.names),
             key=lambda name: -values[name],

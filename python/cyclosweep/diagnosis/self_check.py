@@ -1,4 +1,4 @@
-"""Synthetic twins of this very recording: how often the search errs on it, and how often it finds."""
+"""Synthetic twins of this very recording: how often the search errs on it, and how often not."""
 
 import numpy as np
 

@@ -37,11 +37,24 @@ def folds(problem: Problem) -> list[tuple[str, Flags]]:
             names = ", ".join(str(labels[r]) for r in chosen)
             out.append((f"runs {names}", np.isin(history.run, chosen)))
         return out
+    return stretches(problem, 2)
+
+
+def stretches(problem: Problem, each: int) -> list[tuple[str, Flags]]:
+    """Blocks to leave out in turn, each of so many consecutive stretches of the recording."""
+    use = problem.fitted
     index = np.flatnonzero(use)
+    count = each * FOLDS
     block = np.full(len(use), -1)
-    block[index] = np.arange(len(index)) * 2 * FOLDS // max(len(index), 1)
-    return [(f"stretches {k + 1} and {k + 1 + FOLDS} of {2 * FOLDS}", block % FOLDS == k)
-            for k in range(FOLDS) if np.any(block % FOLDS == k)]  # fmt: skip
+    block[index] = np.arange(len(index)) * count // max(len(index), 1)
+    return [
+        (
+            f"every {FOLDS}th of {count} stretches from number {k + 1}",
+            (block >= 0) & (block % FOLDS == k),
+        )
+        for k in range(FOLDS)
+        if np.any(block % FOLDS == k)
+    ]
 
 
 def recorded_runs(problem: Problem) -> list[int]:

@@ -14,7 +14,7 @@ from cyclosweep.diagnosis.fit import Fit, Term, fit
 from cyclosweep.diagnosis.noise import Noise
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.diagnosis.search import Node, Search
-from cyclosweep.diagnosis.split import folds, restrict
+from cyclosweep.diagnosis.split import restrict, stretches
 from cyclosweep.effects.history import Floats
 
 MOST_RUNGS = 6
@@ -22,6 +22,8 @@ FIRST = 0.15
 """Share of the error on left-out stretches that the first effect must take away."""
 NEXT = 0.02
 """Share that each further effect must take away."""
+STRETCHES = 4
+"""Stretches left out at a time, so that no part of a loop is left to extrapolation."""
 PIECES = 40.0
 """Rough number of independent pieces of such a residual, by which parameters are charged."""
 REPEATS = 0.5
@@ -41,10 +43,9 @@ class Repetition:
         return self.cells >= 12 and self.correlation > REPEATS
 
 
-def climb(search: Search) -> list[Node]:
-    """Add named effects one at a time; return the structures on the way, best last."""
+def climb(search: Search) -> Node:
+    """Add named effects one at a time; return the last structure that paid for itself."""
     node = search.root
-    path: list[Node] = []
     for rung in range(MOST_RUNGS):
         problem, noise = search.problem, search.noise
         tried = []
@@ -60,17 +61,35 @@ def climb(search: Search) -> list[Node]:
             if after < (1.0 - needed) * before:
                 gain = PIECES * float(np.log(before / after))
                 node = search.adopt(joint, node.gain + gain)
-                path.append(node)
                 break
         else:
-            return path
-    return path
+            break
+    return node if node is search.root else prune(search, node)
+
+
+def prune(search: Search, node: Node) -> Node:
+    """Leave out again what no longer lowers the error on left-out stretches."""
+    problem, noise = search.problem, search.noise
+    error = left_out_error(problem, noise, node.fit)
+    for name in node.fit.names:
+        kept = tuple(t for t in node.fit.terms if t.name != name)
+        if not kept or len(kept) == len(node.fit.terms):
+            continue
+        joint = _polish(problem, noise, kept, node.fit)
+        if joint is None:
+            continue
+        without = left_out_error(problem, noise, joint)
+        if without < 1.005 * error and joint.chi2 < 1.02 * node.fit.chi2:
+            search.nodes.pop(node.names, None)
+            node = search.adopt(joint, node.gain)
+            error = without
+    return node
 
 
 def left_out_error(problem: Problem, noise: Noise, model: Fit) -> float:
     """Root mean square on stretches that were left out in turn [deg]."""
     total, count = 0.0, 0
-    for _, rows in folds(problem):
+    for _, rows in stretches(problem, STRETCHES):
         train, train_noise = restrict(problem, noise, ~rows)
         part = fit(train, train_noise, model.terms, model, refine=False, rounds=4)
         left = (problem.angle_deg - part.mean_deg)[train.held_out]

@@ -73,14 +73,14 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explained, False)
 
 
-def decide_structured(search: Search, plain: Decision, repeats: bool) -> Decision:
+def decide_structured(search: Search, repeats: bool) -> Decision:
     """Verdict where the residual is error of the model: only what repeats counts as physics left.
 
     Effects that paid for themselves are named; whether they are all is told by the replicates.
     """
-    if not search.nodes:
+    best = search.settled
+    if best is None or not best.fit.terms:
         return Decision("INSUFFICIENT_DATA", None, [], False)
-    best = max(search.nodes.values(), key=lambda n: len(n.fit.terms))
     verdict: Verdict = "UNKNOWN_PHYSICS" if repeats else "IDENTIFIED"
     return Decision(verdict, best, [(best, 1.0)], repeats)
 
@@ -92,7 +92,6 @@ def unit_slip(ratio: float, gear_ratio: float) -> str | None:
         (1000.0, "1000: N mm read as N m, or mrad as rad"),
         (gear_ratio**2, "the ratio squared: measured at the other shaft than stated"),
         (gear_ratio, "the ratio: torque or angle taken at the other shaft"),
-        (60.0, "60: arcmin read as deg, or the reverse"),
         (360.0, "360: revolutions read as deg, or the reverse"),
         (9.80665, "9.81: kgf m read as N m"),
     )

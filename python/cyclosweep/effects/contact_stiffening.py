@@ -21,7 +21,7 @@ class ContactStiffening(Effect):
         "Contacts of rollers, pins and disc grow under load, so they are soft near zero load and "
         "stiffen smoothly (Hertz). The rest of the drive stays linear."
     )
-    source = "Johnson, Contact Mechanics, 1985, ch. 4; Kumar et al. 2016, Fig. 12"
+    source = "Johnson, Contact Mechanics, 1985, ch. 4 (Hertz)"
     tell_tale = "steep near zero load, flatter above; both directions alike"
     family = "smooth odd curve"
     shape_parameters = (

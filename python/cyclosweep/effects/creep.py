@@ -4,13 +4,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.effects.base import Effect, Parameter, Shape, spread
 from cyclosweep.effects.history import Floats, History
 
 
 class Creep(Effect):
-    """Kelvin-Voigt element in series: its twist follows the torque with a time constant."""
+    """Kelvin-Voigt elements in series: their twist follows the torque with time constants.
+
+    One element with a free time constant, or a spectrum of fixed ones, as real materials show.
+    """
 
     name = "creep"
     physics = (
@@ -36,16 +39,32 @@ class Creep(Effect):
         shortest = min(max(2.0 * usual, longest / 2000.0), longest / 4.0)
         if not longest > 0:
             return []
-        return [{"time_constant_s": float(t)} for t in np.geomspace(shortest, longest, 8)]
+        single: list[Shape] = [
+            {"time_constant_s": float(t)} for t in np.geomspace(shortest, longest, 8)
+        ]
+        series = np.geomspace(shortest, longest, 6)
+        spectra = (series[1:4:2], series[1:5], series[2:6])
+        return single + [
+            {f"tau_{k}_s": float(t) for k, t in enumerate(spectrum, 1)} for spectrum in spectra
+        ]
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Delayed twist for a delayed compliance of 1 deg/(N m) [deg]."""
         assert history.time_s is not None
-        state = _core.creep_state(
-            history.elastic_nm, history.time_s, history.restart, float(shape["time_constant_s"])
+        return np.column_stack(
+            [
+                _core.creep_state(history.elastic_nm, history.time_s, history.restart, float(tau))
+                for tau in shape.values()
+            ]
         )
-        return state[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
-        """Delayed compliance."""
-        return (Parameter("delayed_compliance", "deg/(N m)", "compliance that comes late", 0.0),)
+        """Delayed compliance, one a time constant."""
+        if "time_constant_s" in shape:
+            return (
+                Parameter("delayed_compliance", "deg/(N m)", "compliance that comes late", 0.0),
+            )
+        return tuple(
+            Parameter(f"delayed_compliance_{k}", "deg/(N m)", f"compliance after {tau:.3g} s", 0.0)
+            for k, tau in enumerate(shape.values(), 1)
+        )

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.effects.base import Effect, Parameter, Shape
 from cyclosweep.effects.history import Floats, History
 
@@ -63,7 +63,7 @@ class DatumDrift(Effect):
         "Rollers, bushes and pins do not return to where they were: the zero remembers what the "
         "runs before have done. Turning the rig beyond both dead centres resets it."
     )
-    source = "Kumar et al. 2016, section 5 (datum drift of up to 1 deg over repeated runs)"
+    source = "Kumar et al. 2016 (datum drift of up to 1 deg over repeated runs)"
     tell_tale = "offset differs by run, tied to what the last run did"
     family = "run offsets"
     shape_parameters = (
@@ -94,7 +94,7 @@ class DatumDrift(Effect):
         """Shift of the datum for a unit push [deg]."""
         if "free" in shape:
             runs = np.arange(1, history.run_count)
-            return (history.run[:, None] == runs).astype(np.float64)
+            return np.asarray(history.run[:, None] == runs, dtype=np.float64)
         push = PUSHES[int(shape["push"])]
         starts = history.run_starts
         stops = np.r_[starts[1:], len(history)]

@@ -16,7 +16,7 @@ class DialEccentricity(Effect):
         "A dial or encoder disc mounted off centre reads too much on one side and too little on "
         "the other. The error repeats with every turn of the dial."
     )
-    source = "ISO 230-1:2012, rotary axes; Anandan, Ozdoganlar, Int. J. Mach. Tools 2013"
+    source = "geometry: a circle read from a point off its centre"
     tell_tale = "periodic in the indicated angle itself"
     family = "dial"
 

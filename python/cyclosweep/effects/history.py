@@ -1,4 +1,4 @@
-"""What an effect gets to see of a load history: torque, clock, runs, place, and the shaft's path."""
+"""What an effect sees of a load history: torque, clock, runs, place, and the shaft's path."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -16,7 +16,7 @@ class LoadAsymmetry(Effect):
         "A side load (a hanging weight, a misaligned coupling) adds to the tooth forces in one "
         "direction and takes from them in the other. One direction is softer."
     )
-    source = "Kumar et al. 2016, section 5 (side load of the hanging weight)"
+    source = "Kumar et al. 2016 (side load of the hanging weight)"
     tell_tale = "even in torque: differs between directions"
     family = "even curve"
     shape_parameters = (Parameter("power", "", "power of the load", 0.4, 3.0),)

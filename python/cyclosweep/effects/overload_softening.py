@@ -16,7 +16,7 @@ class OverloadSoftening(Effect):
         "Above a load the parts give way more: pins bend out of their seats, bushes and flange "
         "deform, contacts tilt. The compliance grows with the overload."
     )
-    source = "Kumar et al. 2016, Fig. 12 (nonlinear above 2.5 times nominal torque)"
+    source = "Kumar et al. 2016 (the loading curve is nonlinear above 2.5 times nominal torque)"
     tell_tale = "slope rises beyond a torque"
     family = "smooth odd curve"
     shape_parameters = (

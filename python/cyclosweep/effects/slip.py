@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from cyclosweep import _core
+import cyclosweep._core as _core
 from cyclosweep.effects.base import Parameter, Shape
 from cyclosweep.effects.history import Floats, History
 

@@ -21,7 +21,7 @@ class ThermalDrift(Effect):
         "Disc, pins and housing expand differently, which changes the clearances and turns the "
         "zero. Both follow the temperature."
     )
-    source = "ISO 230-3:2020 (thermal effects); Kumar et al. 2016, section 6"
+    source = "thermal expansion of unlike materials"
     tell_tale = "offset follows temperature"
     family = "run offsets"
     needs = ("temperature_c",)

@@ -15,7 +15,7 @@ class TransmissionError(Effect):
         "Errors of profile, pitch and eccentricity turn the output by an amount that depends on "
         "where the mesh zone stands. It does not depend on the load."
     )
-    source = "Blanche, Yang, J. Mech. Trans. Autom. Des. 111(3), 1989, doi 10.1115/1.3259008"
+    source = "Blanche, Yang, Cycloid drives with machining tolerances, J. Mech. Des. 111(3), 1989"
     tell_tale = "offset periodic in crank position, orders 1-3, whatever the load"
     family = "run offsets"
     needs = ("crank_deg",)

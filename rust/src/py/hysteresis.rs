@@ -5,6 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
+type Reals<'py> = Bound<'py, PyArray1<f64>>;
 type Flags<'py> = PyReadonlyArray1<'py, bool>;
 
 fn same_length(expected: usize, found: &[usize]) -> PyResult<()> {
@@ -38,7 +39,7 @@ fn solve_slip<'py>(
     load_factor: f64,
     growth: f64,
     reference_torque: f64,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+) -> PyResult<(Reals<'py>, Reals<'py>)> {
     let n = torque.len()?;
     same_length(n, &[offset.len()?, restart.len()?, start_angle.len()?])?;
     same_length(slip_angle.len()?, &[share.len()?])?;
@@ -81,7 +82,7 @@ fn slip_state<'py>(
     start_angle: Column<'py>,
     slip_angle: Column<'py>,
     share: Column<'py>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+) -> PyResult<Reals<'py>> {
     let n = angle.len()?;
     same_length(n, &[restart.len()?, start_angle.len()?])?;
     same_length(slip_angle.len()?, &[share.len()?])?;
@@ -107,16 +108,16 @@ fn slip_state<'py>(
 #[pyfunction]
 fn play<'py>(
     py: Python<'py>,
-    input: Column<'py>,
+    signal: Column<'py>,
     half_width: f64,
     restart: Flags<'py>,
     start: Column<'py>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let n = input.len()?;
+) -> PyResult<Reals<'py>> {
+    let n = signal.len()?;
     same_length(n, &[restart.len()?, start.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::play(
-        input.as_slice()?,
+        signal.as_slice()?,
         half_width,
         restart.as_slice()?,
         start.as_slice()?,
@@ -129,16 +130,16 @@ fn play<'py>(
 #[pyfunction]
 fn creep_state<'py>(
     py: Python<'py>,
-    input: Column<'py>,
+    signal: Column<'py>,
     time: Column<'py>,
     restart: Flags<'py>,
     time_constant: f64,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let n = input.len()?;
+) -> PyResult<Reals<'py>> {
+    let n = signal.len()?;
     same_length(n, &[time.len()?, restart.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::creep_state(
-        input.as_slice()?,
+        signal.as_slice()?,
         time.as_slice()?,
         restart.as_slice()?,
         time_constant,
@@ -149,11 +150,7 @@ fn creep_state<'py>(
 
 /// Datum that remembers what earlier runs did, one value a run.
 #[pyfunction]
-fn remembered_datum<'py>(
-    py: Python<'py>,
-    push: Column<'py>,
-    memory: f64,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+fn remembered_datum<'py>(py: Python<'py>, push: Column<'py>, memory: f64) -> PyResult<Reals<'py>> {
     let mut out = vec![0.0; push.len()?];
     hysteresis::remembered_datum(push.as_slice()?, memory, &mut out);
     Ok(out.into_pyarray(py))

@@ -1,0 +1,83 @@
+"""Noise: size, autocorrelation and tails from a rich model; the interval likelihood."""
+
+import numpy as np
+import pytest
+
+from cyclosweep.diagnosis.noise import estimate_noise, interval_score, orthonormal
+
+
+def material(n=2000, seed=1):
+    rng = np.random.default_rng(seed)
+    x = np.linspace(-1, 1, n)
+    basis = orthonormal(np.column_stack([x**k for k in range(8)]))
+    gap = np.ones(n)
+    gap[0] = 0
+    return rng, x, basis, gap
+
+
+def coloured(rng, n, rho):
+    out = np.zeros(n)
+    out[0] = rng.normal()
+    for i in range(1, n):
+        out[i] = rho * out[i - 1] + np.sqrt(1 - rho**2) * rng.normal()
+    return out
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.3, 0.8])
+def test_autocorrelation_is_found_and_estimated_from_above(rho):
+    rng, x, basis, gap = material()
+    upper, size = [], []
+    for _ in range(10):
+        noise = estimate_noise(
+            30 * x + 0.2 * coloured(rng, len(x), rho), basis, gap, 0.0, np.ones(len(x))
+        )
+        upper.append(noise.correlation)
+        size.append(noise.sigma_deg)
+    assert np.mean(upper) == pytest.approx(rho, abs=0.06)
+    assert np.mean(np.array(upper) >= rho - 0.01) > 0.6
+    assert np.mean(size) == pytest.approx(0.2, rel=0.1)
+
+
+def test_whitening_makes_white():
+    rng, x, basis, gap = material()
+    angle = 0.2 * coloured(rng, len(x), 0.7)
+    noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(x)))
+    white, _ = noise.residual(angle, np.zeros(len(x)))
+    assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.07
+    assert np.std(white) == pytest.approx(1.0, abs=0.06)
+
+
+def test_heavy_tails_are_recognised():
+    rng, x, basis, gap = material()
+    angle = 0.1 * rng.standard_t(3, len(x))
+    noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(x)))
+    assert noise.tail < 7
+    score, _ = noise.residual(angle, np.zeros(len(x)))
+    assert np.max(np.abs(score)) < 6
+
+
+@pytest.mark.parametrize("sigma", [0.02, 0.05])
+def test_noise_behind_a_coarse_dial(sigma):
+    rng, x, basis, gap = material()
+    angle = np.round((30 * x + sigma * rng.normal(size=len(x))) / 0.5) * 0.5
+    noise = estimate_noise(angle, basis, gap, 0.5, np.ones(len(x)))
+    assert noise.step_deg == 0.5
+    assert noise.sigma_deg == pytest.approx(sigma, rel=0.35)
+
+
+def test_fine_dial_counts_as_noise():
+    rng, x, basis, gap = material()
+    angle = np.round((30 * x + 0.2 * rng.normal(size=len(x))) / 0.5) * 0.5
+    noise = estimate_noise(angle, basis, gap, 0.5, np.ones(len(x)))
+    assert noise.step_deg == 0
+    assert noise.sigma_deg == pytest.approx(np.hypot(0.2, 0.5 / np.sqrt(12)), rel=0.08)
+
+
+def test_interval_score_is_unbiased_with_its_information():
+    rng = np.random.default_rng(2)
+    mean = rng.uniform(0, 10, 40000)
+    read = np.round((mean + 0.1 * rng.normal(size=len(mean))) / 0.5) * 0.5
+    score, information = interval_score(read, mean, 0.1, 0.5)
+    assert abs(np.mean(score)) < 4 * np.std(score) / np.sqrt(len(score))
+    assert np.mean(score**2) == pytest.approx(np.mean(information), rel=0.05)
+    assert np.all(information <= 1 / 0.1**2 + 1e-9)

@@ -1,0 +1,139 @@
+"""Every effect of the vocabulary: words, shapes, columns, and what makes it untestable."""
+
+import numpy as np
+import pytest
+
+from cyclosweep import effects
+from cyclosweep.effects import VOCABULARY, Effect, History, Parameter
+
+NAMES = [
+    "friction_hysteresis",
+    "load_dependent_friction",
+    "contact_stiffening",
+    "clearance_takeup",
+    "overload_softening",
+    "datum_drift",
+    "creep",
+    "phase_dependent_compliance",
+    "transmission_error",
+    "thermal_drift",
+    "viscous_drag",
+    "load_asymmetry",
+    "dial_eccentricity",
+]
+
+
+def history(**changes):
+    runs = 5
+    path = np.concatenate([np.linspace(0.5, 20, 40), np.linspace(20, -20, 80), [-10.0, -0.5]])
+    torque = np.tile(path, runs)
+    n = len(torque)
+    run = np.repeat(np.arange(runs), len(path))
+    side = np.where(torque > 0, 1.0, -1.0)
+    known = {
+        "applied_nm": torque,
+        "elastic_nm": torque,
+        "angle_deg": 28 * side + 2.7 * torque,
+        "side": side,
+        "run": run,
+        "restart": np.r_[True, np.diff(run) != 0],
+        "compliance_deg_per_nm": 2.7,
+        "free_play_deg": 28.0,
+        "time_s": np.arange(n, dtype=float) + 100.0 * run,
+        "crank_deg": 70.0 * run,
+        "temperature_c": 20.0 + 0.01 * np.arange(n),
+    }
+    return History(**(known | changes))
+
+
+def test_vocabulary_is_complete_and_in_order():
+    assert [effect.name for effect in VOCABULARY] == NAMES
+
+
+@pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
+def test_effect_says_what_it_is(effect):
+    assert effect.physics.count(".") >= 2
+    assert effect.source
+    assert effect.tell_tale
+    assert effect.family
+
+
+@pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
+def test_columns_match_amplitudes(effect):
+    h = history()
+    assert effect.untestable(h) is None
+    shapes = effect.shapes(h)
+    assert shapes
+    for shape in shapes:
+        columns = effect.columns(h, shape)
+        assert columns.shape[0] == len(h)
+        assert np.all(np.isfinite(columns))
+        assert len(effect.amplitudes(shape)) >= columns.shape[1] or "free" in shape
+    assert any(np.any(effect.columns(h, shape)) for shape in shapes)
+
+
+@pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
+def test_missing_column_makes_untestable(effect):
+    for column in effect.needs:
+        reason = effect.untestable(history(**{column: None}))
+        assert reason is not None
+        assert column in reason
+
+
+def test_friction_takes_from_the_twist_while_loading():
+    h = history()
+    column = effects.find("friction_hysteresis").columns(
+        h, {"slip_deg": 0.5, "scatter": 0.5, "slack": 0.0}
+    )[:, 0]
+    assert column[30] == pytest.approx(-2.7)
+    assert column[80] == pytest.approx(2.7)
+
+
+def test_takeup_only_stiffens_beyond_its_first_engagement():
+    h = history()
+    column = effects.find("clearance_takeup").columns(h, {"first_nm": 10.0, "range_nm": 2.0})[:, 0]
+    assert np.all(column[np.abs(h.applied_nm) < 10] == 0)
+    assert column[39] == pytest.approx(-(10 - 1.0))
+
+
+def test_datum_remembers_the_run_before():
+    h = history()
+    column = effects.find("datum_drift").columns(h, {"push": 0.0, "memory": 0.5})[:, 0]
+    per_run = column[h.run_starts]
+    np.testing.assert_allclose(per_run, [0, 1, 1.5, 1.75, 1.875])
+
+
+def test_one_direction_hides_asymmetry():
+    h = history(side=np.ones(610))
+    assert "one direction" in effects.find("load_asymmetry").untestable(h)
+
+
+def test_users_register_their_own():
+    class Wobble(Effect):
+        name = "wobble_of_a_test"
+        physics = "A table wobbles. It does so with the torque."
+        source = "made up"
+        tell_tale = "none"
+        family = "smooth odd curve"
+
+        def shapes(self, history):
+            return [{}]
+
+        def columns(self, history, shape):
+            return np.sin(history.elastic_nm)[:, None]
+
+        def amplitudes(self, shape):
+            return (Parameter("wobble_deg", "deg", "size of the wobble"),)
+
+    try:
+        effects.register(Wobble())
+        assert effects.find("wobble_of_a_test") in effects.effects()
+        with pytest.raises(ValueError, match="registered already"):
+            effects.register(Wobble())
+    finally:
+        effects._REGISTERED.pop("wobble_of_a_test", None)
+
+
+def test_unknown_effect_is_named():
+    with pytest.raises(ValueError, match="nonsense"):
+        effects.find("nonsense")

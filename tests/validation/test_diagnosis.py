@@ -1,0 +1,165 @@
+"""The diagnosis on rigs whose answer is known."""
+
+import json
+
+import numpy as np
+import pytest
+from tests.support.bench_rig import record
+
+import cyclosweep as cs
+from cyclosweep.recording import Recording
+
+PRACTICE = {
+    0: None,
+    1: {"friction_hysteresis"},
+    2: {"overload_softening"},
+    3: {"datum_drift"},
+    4: {"transmission_error"},
+    5: set(),
+    6: set(),
+    7: {"clearance_takeup", "friction_hysteresis"},
+    8: {"contact_stiffening"},
+}
+
+
+def diagnose(recording, **known):
+    return cs.diagnose(recording, cs.Drive.reference_87(), **known)
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("case", sorted(PRACTICE))
+def test_practice_recordings(case, shared_recordings):
+    folder = shared_recordings / "practice" / f"case-{case:03d}"
+    found = cs.diagnose(Recording.read(folder / "recording.csv"))
+    truth = PRACTICE[case]
+    if truth is None:
+        assert found.verdict == "UNKNOWN_PHYSICS"
+    elif not truth:
+        assert found.verdict == "NOTHING_MISSING"
+    else:
+        sets = [set(e["effects"]) for e in found.content["explanation_set"]]
+        assert truth in sets
+        assert {e["name"] for e in found.effects} == truth
+
+
+@pytest.mark.parametrize("family", ["white", "ar0.8", "t3", "outliers"])
+@pytest.mark.parametrize("kind", ["rich", "poor"])
+def test_nothing_missing_raises_no_alarm(family, kind):
+    found = diagnose(record(11, kind=kind, family=family), full=False)
+    assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
+
+
+@pytest.mark.parametrize("sigma", [0.03, 0.2])
+def test_half_degree_dial_raises_no_alarm(sigma):
+    found = diagnose(record(12, kind="poor", sigma=sigma, step=0.5), full=False)
+    assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["friction_hysteresis", "overload_softening", "creep", "viscous_drag", "thermal_drift"],
+)
+def test_single_effects_are_named_and_repaired(name):
+    found = diagnose(record(21, (name,), d=25))
+    assert found.verdict == "IDENTIFIED"
+    assert [e["name"] for e in found.effects] == [name]
+    content = found.content
+    assert content["repaired"]["holdout_rmse_deg"] < content["baseline"]["holdout_rmse_deg"]
+    assert content["repaired"]["holdout_rmse_deg"] == pytest.approx(0.2, rel=0.08)
+    assert content["effects"][0]["e_value"] > 100
+
+
+@pytest.mark.parametrize("name", ["slip_event", "bump"])
+def test_unknown_causes_get_no_name(name):
+    found = diagnose(record(31, (name,), d=25))
+    assert found.verdict == "UNKNOWN_PHYSICS"
+    assert found.effects == []
+    assert found.content["unknown"]["place"]
+
+
+def test_result_is_plain_json_and_repeats_itself():
+    recording = record(41, ("contact_stiffening",), d=20, kind="medium")
+    first, second = diagnose(recording, seed=3), diagnose(recording, seed=3)
+    assert first.to_json() == second.to_json()
+    content = json.loads(first.to_json())
+    for key in [
+        "schema",
+        "tolerance_deg",
+        "verdict",
+        "statement",
+        "noise",
+        "baseline",
+        "mismatch",
+        "effects",
+        "explanation_set",
+        "ruled_out",
+        "not_testable",
+        "sufficiency",
+        "repaired",
+        "self_check",
+        "next_experiment",
+        "model",
+    ]:
+        assert key in content
+    assert content["self_check"]["false_alarm"] <= 0.02
+
+
+def test_calibration_is_not_missing_physics():
+    rng = np.random.default_rng(5)
+    torque = np.tile(np.r_[np.linspace(1, 25, 50), np.linspace(25, 1, 50)], 8)
+    torque[400:] *= -1
+    angle = 1.5 + 31 * np.sign(torque) + 3.4 * torque + 0.2 * rng.normal(size=len(torque))
+    found = diagnose(Recording.from_arrays(torque, angle, run=np.repeat(np.arange(8), 100)))
+    assert found.effects == []
+    baseline = found.content["baseline"]["parameters"]
+    assert baseline["free_play_deg"]["estimate"] == pytest.approx(31, abs=0.1)
+    assert baseline["compliance_deg_per_nm"]["estimate"] == pytest.approx(3.4, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("factor", "word"), [(57.2958, "57.3"), (1000.0, "1000"), (7569.0, "squared"), (-1.0, "sign")]
+)
+def test_wrong_units_are_a_data_fault(factor, word):
+    torque = np.tile([0.5, 2, 4, 6, 8, 10, 14, 18, 14, 10, 6, 2.0], 9)
+    angle = factor * (28 + 2.73 * torque)
+    found = diagnose(Recording.from_arrays(torque, angle))
+    assert found.verdict == "DATA_FAULT"
+    assert word in found.statement
+
+
+def test_a_dozen_hand_read_points():
+    torque = np.array([0.5, 2, 4, 6, 8, 10, 14, 18, 14, 10, 6, 2])
+    angle = np.round((28 + 2.73 * torque) * 2) / 2
+    found = diagnose(Recording.from_arrays(torque, angle, angle_resolution_deg=0.5))
+    assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
+    hidden = {entry["name"] for entry in found.content["not_testable"]}
+    assert {"creep", "viscous_drag", "rig_compliance", "torque_offset"} <= hidden
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize(
+    ("stem", "limit"),
+    [("base_runin1", 0.20), ("base_runin5", 0.12), ("conic_runin1", 0.18), ("cold5", 0.30)],
+)
+def test_measured_ramp_is_predicted_after_fitting_another(stem, limit, shared_recordings):
+    found = measured(stem, shared_recordings)
+    assert found.content["repaired"]["holdout_rmse_deg"] <= limit
+    names = {e["name"] for e in found.effects}
+    assert "load_dependent_friction" in names
+
+
+@pytest.mark.shared
+def test_warm_drive_gives_no_stiffness(shared_recordings):
+    found = measured("base910_unr_runin1", shared_recordings)
+    assert not found.content["stationary"]
+    assert "unfit for a stiffness" in found.statement
+
+
+def measured(stem, shared_recordings):
+    import pathlib
+
+    examples = pathlib.Path(__file__).parents[2] / "examples" / "measured-13-to-1"
+    folder = shared_recordings / "cycloidal-13-to-1"
+    (path,) = folder.glob(f"*{stem}.csv.gz")
+    recording = Recording.read(path, examples / "recording.toml")
+    return cs.diagnose(recording, cs.Drive.from_toml(examples / "drive.toml"))
