@@ -196,12 +196,17 @@ def _codecs(count: int, rounds: int, folder: Path) -> list[dict[str, Any]]:
 
 def _parquet(count: int, rounds: int, folder: Path) -> dict[str, Any]:
     """The sweep to a dataset against kernel and writer one after the other."""
-    study = cs.Study.of(bench_space(4 * count))
+    study = cs.Study.of(bench_space(2 * count))
+    names = list(study.outputs)
     table = cs.sweep(study)
     path = folder / "alone.parquet"
     timings = alternate(
         {
-            "kernel": (len(study), lambda: cs.sweep(study)),
+            "kernel": (
+                len(study),
+                lambda: study.core.evaluate_range(0, len(study), names),
+            ),
+            "sweep to a frame": (len(study), lambda: cs.sweep(study)),
             "polars, write alone": (
                 len(study),
                 lambda: table.write_parquet(
