@@ -24,7 +24,7 @@ env: $(VENV)/.ready
 $(VENV)/.ready: $(SOURCES)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet "maturin>=1.9,<2" pip
-	. $(BIN)/activate && maturin develop --release --locked --quiet --extras test,lint,report,dask
+	. $(BIN)/activate && maturin develop --release --locked --quiet --extras test,lint,report,dask,challenge
 	touch $@
 
 demo: env
