@@ -306,7 +306,7 @@ def scan_dataset(folder: str | Path) -> pl.LazyFrame:
     InputError
         When the folder holds no part of a study.
     """
-    found = sorted(Path(folder).glob("part-*.parquet"))
+    found = sorted(Path(folder).glob("part-*.parquet"), key=lambda path: (len(path.name), path))
     paths = [path for path in found if read_footer(path) is not None]
     if not paths:
         raise InputError(f"{folder}: no parts of a study there")

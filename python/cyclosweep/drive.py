@@ -51,6 +51,12 @@ class Keyway(_Part):
     ----------
     diameter_mm, length_mm, keyway_depth_mm : float
         Dimensions [mm]; the keyway must not reach the axis.
+
+    Notes
+    -----
+    ``c = 32 / (pi G) (l + k h l / D) / D^4`` is a reading of an ambiguous print: its form is 85 %
+    sure, k = 10 (``keyway_coefficient``) about 75 %. A Saint-Venant torsion solution of standard
+    keyways gives k of about 1.2 to 1.3 on the same depth.
     """
 
     kind: Literal["keyway"] = "keyway"
@@ -135,6 +141,10 @@ class Drive(_Part):
     ``output_stiffness_nm_per_arcmin`` may be given, which is then taken as it is: the torque
     transfer efficiency does not multiply a measured stiffness. ``provenance`` says of each number
     whether it is published, derived, reading, assumed or measured, with its source.
+
+    Eq. (13) multiplies the whole compliance by the torque transfer efficiency: *fewer* active pins
+    then mean *less* twist, and an optimiser will exploit it. ``criterion`` decides which count of
+    active pins feeds the twist; every other result is by Eqs. (11) and (12) whatever the criterion.
 
     Whether the parts fit each other is not asked here (a study's axes may still change them), but
     by :meth:`explain` and by the status of a sweep.
@@ -470,9 +480,14 @@ class Drive(_Part):
         Notes
         -----
         ``inside``: the hole's centre lies inside the pitch circle, ``cos(theta (1 + 1/i) - phi)
-        < -e / (2 R_OP)``. ``published-map``: *a reconstruction that matches the published map*,
-        windows clipped to the half turn in which the paper draws them. ``statics``: the hole
-        pushes its pin in the sense of the torque.
+        < -e / (2 R_OP)``. ``statics``: the hole pushes its pin in the sense of the torque.
+        ``published-map`` is *a reconstruction that matches the published map*, not the authors'
+        rule: hole angles are reduced to (-180, 180] deg, and a hole at or below zero belongs to
+        the left half. A left hole's window is ``[phi + 90 + delta, phi + 270 - delta] i / (i + 1)``
+        with ``delta = asin(e / (2 R_OP))``; its start is clipped at 0, its end at 180 deg except
+        for the hole of that half nearest ring pin 0, which at a low ratio opens a second time
+        before the turn ends. The right half follows the same rule on its own holes and is then
+        mirrored. One disc's count is multiplied by the number of discs.
 
         Examples
         --------

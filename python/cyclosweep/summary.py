@@ -135,6 +135,7 @@ class Summary:
         for name, (low, high) in self.ranges.items():
             ranges.add_row(name, f"{low:.5g}", f"{high:.5g}", quantity(name).unit)
         for table in (status, ranges):
+            table.columns[0].overflow = "fold"
             for column in table.columns[1:3]:
                 column.justify = "right"
         yield status

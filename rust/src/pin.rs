@@ -87,14 +87,6 @@ pub fn pin_compliance(flexibility: f64, pin_circle_radius: f64, torque: f64) -> 
     (flexibility * torque / (pin_circle_radius * pin_circle_radius)).atan() / torque
 }
 
-/// Largest force (N) on one pin at `output_torque` by statics, worst position for few or odd
-/// pins: `F = 4 T / (n_discs N_OP R_OP)`.
-#[inline]
-#[must_use]
-pub fn pin_force_max(output_torque: f64, discs: f64, pins: f64, pin_circle_radius: f64) -> f64 {
-    4.0 * output_torque / (discs * pins * pin_circle_radius)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

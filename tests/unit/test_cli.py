@@ -164,3 +164,31 @@ def test_a_broken_fact_fails_the_validation(tmp_path: Path) -> None:
     assert result.returncode == 1
     failed = [f["fact"] for f in json.loads(result.stdout)["facts"] if f["ok"] is False]
     assert "nominal input torque T_N" in failed
+
+
+def test_a_failed_fact_without_a_number_is_still_json(tmp_path: Path) -> None:
+    broken = tmp_path / "three-pins.toml"
+    cs.Drive.reference_87().replace(output_pin_count=3).to_toml(broken)
+    result = run("validate", "--drive", str(broken), "--json")
+    assert result.returncode == 1
+
+    def refuse(constant: str) -> float:
+        raise AssertionError(constant)
+
+    json.loads(result.stdout, parse_constant=refuse)
+
+
+def test_simulate_takes_the_least_programme_and_spares_what_it_reads(tmp_path: Path) -> None:
+    programme = tmp_path / "programme.csv"
+    programme.write_text("torque_nm\n0\n7.2575\n")
+    out = tmp_path / "out.csv"
+    assert run("simulate", "reference-87", str(programme), "--out", str(out)).returncode == 0
+    assert "angle_deg" in out.read_text()
+    before = programme.read_text()
+    refused = run("simulate", "reference-87", str(programme), "--out", str(programme))
+    assert_one_line(refused, 2, str(programme))
+    assert programme.read_text() == before
+    nowhere = tmp_path / "nowhere" / "out.csv"
+    assert_one_line(
+        run("simulate", "reference-87", str(programme), "--out", str(nowhere)), 2, str(nowhere)
+    )

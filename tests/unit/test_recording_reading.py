@@ -218,7 +218,7 @@ def test_repeated_rows_are_dropped_only_with_a_clock(tmp_path: Path) -> None:
         ("", ["empty"]),
         ("\n \n", ["empty"]),
         ("# only a comment\n", ["only comments"]),
-        ("torque_nm\n1\n2\n", ["line 1", "one column"]),
+        ("angle_deg\n1\n2\n", ["line 1", "one column"]),
         ("1,2\n3,4\n", ["line 1", "header"]),
         ("torque,angle\n1,2\n", ["no column torque_nm", "torque, angle", "[columns]"]),
         (TEXT.replace("50.0", "fifty"), ["line 4", "angle_deg", "'fifty'", "number"]),

@@ -36,11 +36,23 @@ def simulate(
     from cyclosweep.recording.reading import stem
     from cyclosweep.simulate import simulate as run
 
+    inputs = [program, program.with_name(f"{stem(program)}.toml"), Path(model)]
+    if any(path.exists() and out.exists() and path.samefile(out) for path in inputs):
+        raise InputError(f"--out: found {out}, which is read, expected another file")
+    if out.is_dir() or not out.parent.is_dir():
+        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
     chosen = _model(model)
     programme = Recording.read(program)
     if hasattr(chosen, "side") and not program.with_name(f"{stem(program)}.toml").exists():
         programme = dataclasses.replace(programme, side=chosen.side)
-    run(chosen, programme, predict).to_frame().write_csv(out)
+    unfinished = out.with_name(f"{out.name}.tmp")
+    try:
+        run(chosen, programme, predict).to_frame().write_csv(unfinished)
+        unfinished.replace(out)
+    except OSError as error:
+        fail(f"{out}: {error.strerror or error}", 1)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def _model(name: str) -> Model | Drive:

@@ -22,14 +22,15 @@ def print_tables(renderables: Iterable[RenderableType]) -> None:
     """Print tables, as wide as the terminal."""
     from rich.console import Console
 
-    console = Console()
+    # What is piped or stored is not cut to the 80 columns of no terminal.
+    console = Console(width=None if sys.stdout.isatty() else 120)
     for renderable in renderables:
         console.print(renderable)
 
 
 def print_json(value: dict[str, Any]) -> None:
     """Print one JSON object."""
-    print(json.dumps(value, indent=1))
+    print(json.dumps(value, indent=1, allow_nan=False))
 
 
 def fail(error: object, status: int) -> NoReturn:

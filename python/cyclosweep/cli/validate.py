@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Annotated
 
 import typer
@@ -31,8 +32,11 @@ def validate(
         print_tables(report_tables(chosen))
         decided = [fact for fact in report["facts"] if fact["ok"] is not None]
         met = sum(fact["ok"] for fact in decided)
+        marks = Counter(fact["mark"] for fact in decided)
         print(
-            f"{met} of {len(decided)} facts met; "
-            f"{len(report['facts']) - len(decided)} rows only compare or are beyond the model"
+            f"{met} of {len(decided)} facts met, by what they rest on: "
+            + ", ".join(f"{mark} {count}" for mark, count in marks.items())
+            + f"; {len(report['facts']) - len(decided)} rows only compare or are beyond the model. "
+            "What rests on assumed dimensions was chosen to fit: it is no evidence."
         )
     raise typer.Exit(0 if report["ok"] else 1)

@@ -53,12 +53,16 @@ def facts(drive: Drive) -> Iterator[Fact]:
     even = _core.frustum_compliance(_L, _D, _D, _SHEAR_MODULUS)
     yield unity("Eq. (7) as D -> d / cylinder", even / _cylinder(_L, _D), 1e-12)
 
-    results = {name: value or math.nan for name, value in drive.evaluate((1.0, 2.0)).items()}
-    parallel = results["shaft_compliance_rad_per_nm"] + (
-        results["pin_compliance_rad_per_nm"] / drive.output_pin_count
-    )
+    results = {
+        name: math.nan if value is None else value
+        for name, value in drive.evaluate((1.0, 2.0)).items()
+    }
     output = results["output_compliance_rad_per_nm"]
-    yield unity("Eq. (11): C_OS / (C_OS^t + C_OP / N_OP)", output / parallel, 1e-12)
+    if drive.output_stiffness_nm_per_arcmin is None:  # a given stiffness replaces Eq. (11)
+        parallel = results["shaft_compliance_rad_per_nm"] + (
+            results["pin_compliance_rad_per_nm"] / drive.output_pin_count
+        )
+        yield unity("Eq. (11): C_OS / (C_OS^t + C_OP / N_OP)", output / parallel, 1e-12)
     reflected = results["reflected_compliance_rad_per_nm"]
     yield unity("Eq. (12): C*_OS / (C_OS i^2)", reflected / (output * drive.ratio**2), 1e-12)
     once = results["twist_1tn_deg"] - drive.free_play_deg
