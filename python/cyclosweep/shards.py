@@ -191,7 +191,6 @@ def shard(
     dataset.prepare(resume=True, fresh=False)
     parts = [dataset.part(k) for k in range(index, dataset.part_count, of)]
     total = sum(part.stop - part.start for part in parts)
-    records = []
     with Progress(f"shard {index} of {of}", total, show=progress) as bar:
 
         def advance(record: Record) -> None:

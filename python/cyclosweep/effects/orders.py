@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.effects.base import Parameter, Shape
+from cyclosweep.effects.base import Effect, Parameter, Shape
 from cyclosweep.effects.history import Floats, History
 
 
@@ -34,3 +34,16 @@ def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...
         for order in shape.values()
         for wave in ("cos", "sin")
     )
+
+
+class MeshPeriodic(Effect):
+    """An effect that is periodic in the position of the mesh zone."""
+
+    needs = ("crank_deg",)
+
+    def untestable(self, history: History) -> str | None:
+        """Need at least three positions."""
+        reason = super().untestable(history)
+        if reason is None and distinct_positions(history) < 3:
+            reason = "the mesh zone stood at fewer than three positions"
+        return reason

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from cyclosweep.effects.base import Effect, Parameter, Shape
+from cyclosweep.effects.base import Parameter, Shape
 from cyclosweep.effects.history import Floats, History
-from cyclosweep.effects.orders import distinct_positions, harmonics, order_amplitudes, order_shapes
+from cyclosweep.effects.orders import MeshPeriodic, harmonics, order_amplitudes, order_shapes
 
 
-class PhaseDependentCompliance(Effect):
+class PhaseDependentCompliance(MeshPeriodic):
     """Compliance periodic in the mesh position: orders 1-4, and those of the output pins."""
 
     name = "phase_dependent_compliance"
@@ -18,14 +18,6 @@ class PhaseDependentCompliance(Effect):
     source = "Kumar et al. 2016, section 4 (map of active pins); McIver's claim in section 5"
     tell_tale = "slope differs by crank position; orders 1-4, N_OP and 2 N_OP"
     family = "position"
-    needs = ("crank_deg",)
-
-    def untestable(self, history: History) -> str | None:
-        """Need at least three positions."""
-        reason = super().untestable(history)
-        if reason is None and distinct_positions(history) < 3:
-            reason = "the mesh zone stood at fewer than three positions"
-        return reason
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, the low ones together, and the pin orders."""

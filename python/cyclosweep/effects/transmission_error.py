@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from cyclosweep.effects.base import Effect, Parameter, Shape
+from cyclosweep.effects.base import Parameter, Shape
 from cyclosweep.effects.history import Floats, History
-from cyclosweep.effects.orders import distinct_positions, harmonics, order_amplitudes, order_shapes
+from cyclosweep.effects.orders import MeshPeriodic, harmonics, order_amplitudes, order_shapes
 
 
-class TransmissionError(Effect):
+class TransmissionError(MeshPeriodic):
     """Offset periodic in the position of the mesh zone, orders 1 to 3."""
 
     name = "transmission_error"
@@ -18,14 +18,6 @@ class TransmissionError(Effect):
     source = "Blanche, Yang, Cycloid drives with machining tolerances, J. Mech. Des. 111(3), 1989"
     tell_tale = "offset periodic in crank position, orders 1-3, whatever the load"
     family = "run offsets"
-    needs = ("crank_deg",)
-
-    def untestable(self, history: History) -> str | None:
-        """Need at least three positions."""
-        reason = super().untestable(history)
-        if reason is None and distinct_positions(history) < 3:
-            reason = "the mesh zone stood at fewer than three positions"
-        return reason
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, and the first few together."""
