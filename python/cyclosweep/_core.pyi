@@ -14,6 +14,7 @@ __all__ = [
     "__version__",
     "active_pins",
     "creep_state",
+    "dragged",
     "frustum_compliance",
     "hole_locus",
     "input_table",
@@ -122,5 +123,11 @@ def creep_state(
     time: _Reals,
     restart: npt.NDArray[np.bool_],
     time_constant: float,
+) -> _Reals: ...
+def dragged(
+    signal: _Reals,
+    lapse: _Reals,
+    restart: npt.NDArray[np.bool_],
+    lag: float,
 ) -> _Reals: ...
 def remembered_datum(push: _Reals, memory: float) -> _Reals: ...

@@ -233,6 +233,23 @@ pub fn creep_state(
     }
 }
 
+/// Input that a dashpot in parallel lets through: the torque balance `u = x + tau dx/dt`, solved sample
+/// by sample with the rate taken backwards.
+///
+/// `lapse[i]` is the time that led to sample `i`; `restart[i]` marks a sample reached from rest.
+pub fn dragged(input: &[f64], lapse: &[f64], restart: &[bool], lag: f64, out: &mut [f64]) {
+    let mut state = 0.0;
+    for i in 0..input.len() {
+        if i == 0 || restart[i] {
+            state = 0.0;
+        }
+        // Without a lapse nothing can have moved.
+        let held = lag / lapse[i].max(1e-12 * lag.abs().max(1e-300));
+        state = (input[i] + held * state) / (1.0 + held);
+        out[i] = state;
+    }
+}
+
 /// Datum that remembers earlier runs: after each run it moves by that run's push, and forgets slowly.
 ///
 /// `push[r]` is what run `r` does to the datum, `memory` the part of the shift kept from run to run.
@@ -292,6 +309,16 @@ mod tests {
         restart[0] = true;
         creep_state(&time, &time, &restart, 5.0, &mut out);
         assert!((time[1999] - out[1999] - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn drag_delays_a_ramp_by_its_lag() {
+        let ramp: Vec<f64> = (1..=400).map(|k| f64::from(k) * 0.1).collect();
+        let mut out = vec![0.0; ramp.len()];
+        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 2.0, &mut out);
+        assert!((ramp[399] - out[399] - 2.0).abs() < 1e-6);
+        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 0.0, &mut out);
+        assert_eq!(ramp, out);
     }
 
     #[test]

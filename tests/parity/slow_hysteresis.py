@@ -46,3 +46,17 @@ def creep_state(load, time, restart, tau, steps=400):
                 state += h * (at - state) / tau
         out[i] = state
     return out
+
+
+def dragged(load, lapse, restart, lag):
+    """Root of ``u - x - lag (x - before)/lapse``, found by bisection instead of division."""
+    out, before = [], 0.0
+    for u, h, fresh in zip(load, lapse, restart, strict=True):
+        before = 0.0 if fresh else before
+        low, high = min(u, before) - 1.0, max(u, before) + 1.0
+        for _ in range(200):
+            x = 0.5 * (low + high)
+            low, high = (x, high) if u - x - lag * (x - before) / h > 0 else (low, x)
+        before = x
+        out.append(x)
+    return out

@@ -41,6 +41,17 @@ def test_creep():
     np.testing.assert_allclose(fast, slow.creep_state(load, time, restart, 7.0), atol=2e-3)
 
 
+def test_drag():
+    rng = np.random.default_rng(6)
+    lapse = rng.uniform(0.2, 3.0, 60)
+    load = np.cumsum(rng.normal(size=60))
+    restart = np.zeros(60, dtype=bool)
+    restart[30] = True
+    fast = core.dragged(load, lapse, restart, 0.7)
+    expected = slow.dragged(load, lapse, restart, 0.7)
+    np.testing.assert_allclose(fast, expected, rtol=1e-12, atol=1e-12)
+
+
 def test_lengths_must_agree():
     one, two = np.zeros(1), np.zeros(2)
     with pytest.raises(ValueError, match="length"):

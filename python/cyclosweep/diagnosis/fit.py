@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.effects import Effect, Shape
 from cyclosweep.effects.base import Parameter
+from cyclosweep.effects.creep import FEWEST_STEPS
 from cyclosweep.effects.history import Floats, History
 from cyclosweep.effects.slip import elements_of, start_of
 
@@ -193,6 +194,11 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
         if parameter.name == "range_nm":
             upper = 0.9 * top
         return replace(parameter, lower=lower, upper=upper)
+    step = problem.history.usual_step_s
+    if parameter.unit == "s" and step > 0:
+        if parameter.name == "lag_s":
+            return replace(parameter, lower=0.02 * step, upper=30.0 * step)
+        return replace(parameter, lower=FEWEST_STEPS * step)
     if parameter.name == "slip_deg":
         return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)
     return parameter

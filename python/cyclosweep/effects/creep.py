@@ -9,6 +9,10 @@ from cyclosweep.effects.base import Effect, Parameter, Shape, spread
 from cyclosweep.effects.history import Floats, History
 
 
+FEWEST_STEPS = 3.0
+"""Steps between samples below which a delay cannot be told from drag."""
+
+
 class Creep(Effect):
     """Kelvin-Voigt elements in series: their twist follows the torque with time constants.
 
@@ -34,9 +38,7 @@ class Creep(Effect):
         starts = history.run_starts
         stops = np.r_[starts[1:], len(history)]
         longest = max(spread(history.time_s[a:b]) for a, b in zip(starts, stops, strict=True))
-        steps = np.diff(history.time_s)
-        usual = float(np.median(steps[steps > 0])) if np.any(steps > 0) else longest
-        shortest = min(max(2.0 * usual, longest / 2000.0), longest / 4.0)
+        shortest = min(max(FEWEST_STEPS * history.usual_step_s, longest / 2000.0), longest / 4.0)
         if not longest > 0:
             return []
         single: list[Shape] = [

@@ -106,20 +106,25 @@ class History:
         return self.datum_deg + self.side * self.free_play_deg
 
     @cached_property
-    def twist_rate_deg_per_s(self) -> Floats:
-        """Rate of twist under contact, by differences of the torque [deg/s]."""
+    def usual_step_s(self) -> float:
+        """Time between neighbouring samples, as a rule [s]; zero without a clock."""
         if self.time_s is None:
-            raise ValueError("a rate of twist needs a clock")
-        rate = np.zeros(len(self))
-        stops = np.r_[self.run_starts[1:], len(self)]
-        for start, stop in zip(self.run_starts, stops, strict=True):
-            torque, time = self.applied_nm[start:stop], self.time_s[start:stop]
-            back = max((stop - start) // 250, 1)
-            if len(torque) <= back:
-                continue
-            step = time[back:] - time[:-back]
-            moved = torque[back:] - torque[:-back]
-            part = np.divide(moved, step, out=np.zeros_like(moved), where=step > 0)
-            rate[start + back : stop] = part
-            rate[start : start + back] = part[0]
-        return rate * self.compliance_deg_per_nm
+            return 0.0
+        step = np.diff(self.time_s)
+        step = step[(step > 0) & (np.diff(self.run) == 0)]
+        return float(np.median(step)) if len(step) else 0.0
+
+    @cached_property
+    def lapse_s(self) -> Floats:
+        """Time that led to each sample [s]; to the first of a run, from zero torque at its rate."""
+        if self.time_s is None:
+            raise ValueError("a lapse needs a clock")
+        lapse = np.diff(self.time_s, prepend=self.time_s[:1])
+        for first in np.flatnonzero(self.restart):
+            lapse[first] = np.inf
+            if first + 1 < len(self) and not self.restart[first + 1]:
+                torque = self.applied_nm[first]
+                step = self.applied_nm[first + 1] - torque
+                if torque * step > 0:
+                    lapse[first] = torque / step * (self.time_s[first + 1] - self.time_s[first])
+        return lapse

@@ -4,12 +4,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import cyclosweep._core as _core
 from cyclosweep.effects.base import Effect, Parameter, Shape
 from cyclosweep.effects.history import Floats, History
 
 
 class ViscousDrag(Effect):
-    """Drag torque ``D (rate)^n`` against the motion, with n between 0.6 and 1."""
+    """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
+
+    The rate is that of the twist itself, which lags behind the torque: ``T = theta/C + D dtheta/dt``
+    has the time constant ``D C``. It shows at reversals only, so it is a parameter of its own.
+    """
 
     name = "viscous_drag"
     physics = (
@@ -20,17 +25,28 @@ class ViscousDrag(Effect):
     tell_tale = "torque in proportion to twist rate"
     family = "hysteresis"
     needs = ("time_s",)
-    shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
+    shape_parameters = (
+        Parameter("power", "", "power of the rate", 0.5, 1.0),
+        Parameter("lag_s", "s", "time by which the twist lags", 1e-9, 1e9, logarithmic=True),
+    )
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Newtonian and thinning drag."""
-        return [{"power": 1.0}, {"power": 0.7}]
+        """Newtonian and thinning drag, with lags about the time between samples."""
+        step = history.usual_step_s * max(len(history) / history.run_count / 250.0, 1.0)
+        if not step > 0:
+            return []
+        return [
+            {"power": power, "lag_s": share * step}
+            for power, share in ((1.0, 0.1), (1.0, 0.4), (1.0, 1.6), (0.7, 0.1))
+        ]
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist taken away by a drag of 1 N m at 1 deg/s [deg]."""
-        rate = history.twist_rate_deg_per_s
+        lag, compliance = float(shape["lag_s"]), history.compliance_deg_per_nm
+        carried = _core.dragged(history.elastic_nm, history.lapse_s, history.restart, lag)
+        rate = compliance * (history.elastic_nm - carried) / lag
         drag = np.sign(rate) * np.abs(rate) ** shape["power"]
-        return (-history.compliance_deg_per_nm * drag)[:, None]
+        return (-compliance * drag)[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Drag torque at a rate of 1 deg/s."""

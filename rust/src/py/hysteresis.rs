@@ -126,6 +126,28 @@ fn play<'py>(
     Ok(out.into_pyarray(py))
 }
 
+/// Input that a dashpot in parallel lets through.
+#[pyfunction]
+fn dragged<'py>(
+    py: Python<'py>,
+    signal: Column<'py>,
+    lapse: Column<'py>,
+    restart: Flags<'py>,
+    lag: f64,
+) -> PyResult<Reals<'py>> {
+    let n = signal.len()?;
+    same_length(n, &[lapse.len()?, restart.len()?])?;
+    let mut out = vec![0.0; n];
+    hysteresis::dragged(
+        signal.as_slice()?,
+        lapse.as_slice()?,
+        restart.as_slice()?,
+        lag,
+        &mut out,
+    );
+    Ok(out.into_pyarray(py))
+}
+
 /// Kelvin-Voigt state of an input history.
 #[pyfunction]
 fn creep_state<'py>(
@@ -162,5 +184,6 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(slip_state, module)?)?;
     module.add_function(wrap_pyfunction!(play, module)?)?;
     module.add_function(wrap_pyfunction!(creep_state, module)?)?;
+    module.add_function(wrap_pyfunction!(dragged, module)?)?;
     module.add_function(wrap_pyfunction!(remembered_datum, module)?)
 }
