@@ -197,7 +197,8 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
     step = problem.history.usual_step_s
     if parameter.unit == "s" and step > 0:
         if parameter.name == "lag_s":
-            return replace(parameter, lower=0.02 * step, upper=30.0 * step)
+            telling = problem.history.telling_step_s
+            return replace(parameter, lower=0.02 * telling, upper=4.0 * telling)
         return replace(parameter, lower=FEWEST_STEPS * step)
     if parameter.name == "slip_deg":
         return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)

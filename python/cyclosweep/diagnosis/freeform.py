@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+import cyclosweep._core as _core
 from cyclosweep.effects.history import Flags, Floats, History
 
 
@@ -76,6 +77,8 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
             label + " to the end of that run",
             partial(_after, place, int(history.run[place])),
         )
+        if np.any(history.side > 0) and np.any(history.side < 0):
+            yield FreeForm("change of play", label, partial(_wider_after, place))
     for place in places[::3]:
         yield FreeForm(
             "change of compliance",
@@ -89,6 +92,10 @@ def _after(place: int, run: int | None, history: History) -> Floats:
     if run is not None:
         rows &= history.run == run
     return np.asarray(rows, dtype=np.float64)[:, None]
+
+
+def _wider_after(place: int, history: History) -> Floats:
+    return np.asarray((np.arange(len(history)) >= place) * history.side)[:, None]
 
 
 def _softer_after(place: int, history: History) -> Floats:
@@ -161,6 +168,41 @@ def _curves(history: History) -> Iterator[FreeForm]:
         "hysteresis",
         "loading against unloading",
         lambda h: h.sense[:, None] * hats(h.load_nm, rough),
+    )
+    if history.time_s is not None and history.usual_step_s > 0:
+        yield FreeForm("loop by rate", "where the rate is high", _rates)
+        longest = float(np.bincount(history.run, _lapse(history)).max())
+        delays = np.geomspace(3.0 * history.usual_step_s, max(longest, 1e-9), 5)[:4]
+        yield FreeForm(
+            "relaxation", "at holds and after reversals", partial(_relaxing, delays=delays)
+        )
+
+
+def _lapse(history: History) -> Floats:
+    """Time since the sample before, none at the start of a run [s]."""
+    assert history.time_s is not None
+    step = np.diff(history.time_s, prepend=history.time_s[:1])
+    step[history.run_starts] = 0.0
+    return step
+
+
+def _rates(history: History) -> Floats:
+    """Rate of the torque, plain and with a digressive power."""
+    step, lapse = np.diff(history.applied_nm, prepend=history.applied_nm[:1]), _lapse(history)
+    rate = np.divide(step, lapse, out=np.zeros_like(step), where=lapse > 0)
+    first = history.run_starts
+    rate[first] = rate[np.minimum(first + 1, len(rate) - 1)]
+    return np.column_stack([rate, np.sign(rate) * np.sqrt(np.abs(rate))])
+
+
+def _relaxing(history: History, delays: Floats) -> Floats:
+    """Torque followed late, with any sign."""
+    assert history.time_s is not None
+    return np.column_stack(
+        [
+            _core.creep_state(history.applied_nm, history.time_s, history.restart, float(delay))
+            for delay in delays
+        ]
     )
 
 

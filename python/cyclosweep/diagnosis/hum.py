@@ -15,7 +15,7 @@ HUM = "hum"
 RIPPLE = "ripple along the twist"
 LOADED = "hum in proportion to torque"
 FAMILIES = (HUM, RIPPLE, LOADED)
-CYCLES = 4.0
+CYCLES = 1.5
 """A hum makes at least this many cycles within the usual run, a ripple within the range of twist.
 Slower waves are the job of other shapes."""
 FINEST = 250
@@ -51,12 +51,14 @@ def _hum(
     positive = steps[steps > 0]
     if count < 60 or len(positive) == 0:
         return 0.0, None
-    step = float(np.median(positive))
+    # Runs may be sampled at different rates: the fast ones tell the high frequencies apart.
+    step = float(np.quantile(positive, 0.1))
     cell = np.round((clock - clock[0]) / step)
     if cell[-1] > 60 * count:
         cell = np.arange(count, dtype=np.float64)
         step = float((clock[-1] - clock[0]) / max(count - 1, 1))
-    samples = count / max(int(np.count_nonzero(history.restart & fitted)), 1)
+    runs = max(int(np.count_nonzero(history.restart & fitted)), 1)
+    samples = count / runs * float(np.median(positive)) / step
     unit = "Hz" if history.time_s is not None else "cycles a row"
     return _strongest(
         cell.astype(np.int64),
@@ -119,7 +121,6 @@ def _strongest(
     power = power / np.maximum(_floor(power), 1.0)
     best = int(np.argmax(np.where(usable, power, 0.0)))
     independent = max(float(np.mean(usable)) * (int(cell.max()) + 1) / 2.0, 1.0)
-    independent = min(independent, count / 2.0)
     value = float(power[best] - np.log(3.5 * independent) - CAUTION)
     chosen = float(frequency[best]) / unit
 

@@ -1,7 +1,7 @@
 """Search for the set of effects that explains a recording, each refitted with the baseline."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,11 @@ WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
 CAUTION = {"saturation at the end of the range": 1.0}
 """The same for shapes as common as the named effects."""
+SHAPE_ERROR = 0.05
+"""Share of an effect's own visibility below which a remainder is taken for error of its shape:
+no model of an effect is exact, and large effects show it."""
+ENRICHED = 2
+"""Times an effect is given more freedom of shape."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 
@@ -110,6 +115,32 @@ class Search:
         found = hum.find_wave(fitted.history, self.problem.fitted, fitted.residual)
         return Node(fitted, gain, prior, rest, found)
 
+    def suffices(self, node: Node) -> bool:
+        """Whether a structure leaves nothing but noise, or what its own inexactness explains."""
+        return node.left < max(self.threshold, SHAPE_ERROR**2 * node.gain)
+
+    def _enriched(self, node: Node) -> Node | None:
+        """Give a term more freedom of shape where the residual asks for more of the same effect."""
+        for k, term in enumerate(node.fit.terms):
+            if term.effect is None or term.slips:
+                continue
+            if node.rest.by_hypothesis.get(term.name, 0.0) <= self.threshold:
+                continue
+            members = node.rest.groups[term.name]
+            each = evidence(node.rest.observed[members], node.rest.ranks[members])
+            for index in members[np.argsort(-each)][:3]:
+                shape = term.effect.richer(term.shape, self.library.blocks[index].shape)
+                if shape is None:
+                    continue
+                terms = list(node.fit.terms)
+                terms[k] = replace(term, shape=shape)
+                joint = fit(self.problem, self.noise, terms, node.fit)
+                rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
+                added = float(evidence(self._gain(node.fit, joint), max(rank, 1)))
+                if joint.valid and added > 1.0:
+                    return self._node(joint, node.gain + added, node.prior)
+        return None
+
     def extend(self, node: Node, hypothesis: str) -> Node | None:
         """Add one hypothesis to a structure and refit; None where no physical fit is better."""
         best: Node | None = None
@@ -123,6 +154,11 @@ class Search:
                 prior -= CAUTION.get(term.name, WITHOUT_NAME)
             if best is None or node.gain + added > best.gain:
                 best = self._node(joint, node.gain + added, prior)
+        for _ in range(ENRICHED):
+            richer = None if best is None else self._enriched(best)
+            if richer is None:
+                break
+            best = richer
         if best is not None:
             known = self.nodes.get(best.names)
             if known is None or best.score > known.score:
@@ -274,7 +310,7 @@ class Search:
 
     def explanations(self) -> list[Node]:
         """Structures worth considering: those that contain a sufficient smaller one are not."""
-        enough = [n.names for n in self.nodes.values() if n.left < self.threshold]
+        enough = [n.names for n in self.nodes.values() if self.suffices(n)]
         kept = [n for n in self.nodes.values() if not any(e < n.names for e in enough)]
         return sorted(kept, key=lambda n: -n.score)
 

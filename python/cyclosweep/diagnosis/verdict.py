@@ -55,7 +55,7 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     structures = search.explanations()
     if not structures:
         return Decision("UNKNOWN_PHYSICS", None, [], True)
-    enough = [node for node in structures if node.left < search.threshold]
+    enough = [node for node in structures if search.suffices(node)]
     if not enough:
         best = structures[0]
         return Decision("UNKNOWN_PHYSICS", best, [(best, 1.0)], True)

@@ -71,6 +71,10 @@ class Effect:
         """Parameters that multiply the columns, with their signs as bounds."""
         raise NotImplementedError
 
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Shape with what a search found besides it; None where the effect cannot hold both."""
+        return None
+
     def untestable(self, history: History) -> str | None:
         """Reason why this recording cannot show the effect; None where it can."""
         labels = {
@@ -82,6 +86,12 @@ class Effect:
             if getattr(history, column) is None:
                 return f"the recording has no {column}: it needs {labels[column]}"
         return None
+
+
+def union(name: str, *shapes: Shape, most: int = 4) -> Shape | None:
+    """Values of several shapes as one list ``name_1 ... name_k``; None beyond ``most`` of them."""
+    values = sorted({float(value) for shape in shapes for value in shape.values()})
+    return {name.format(k): v for k, v in enumerate(values, 1)} if len(values) <= most else None
 
 
 def spread(values: Floats) -> float:

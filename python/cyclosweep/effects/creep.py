@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.effects.base import Effect, Parameter, Shape, spread
+from cyclosweep.effects.base import Effect, Parameter, Shape, spread, union
 from cyclosweep.effects.history import Floats, History
 
 
@@ -59,6 +59,10 @@ class Creep(Effect):
                 for tau in shape.values()
             ]
         )
+
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Time constants of both."""
+        return union("tau_{}_s", shape, found)
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Delayed compliance, one a time constant."""

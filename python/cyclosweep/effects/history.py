@@ -114,6 +114,11 @@ class History:
         step = step[(step > 0) & (np.diff(self.run) == 0)]
         return float(np.median(step)) if len(step) else 0.0
 
+    @property
+    def telling_step_s(self) -> float:
+        """Time over which a rate is told [s]: a step, or more where steps are very many."""
+        return self.usual_step_s * max(len(self) / max(self.run_count, 1) / 250.0, 1.0)
+
     @cached_property
     def lapse_s(self) -> Floats:
         """Time that led to each sample [s]; to the first of a run, from zero torque at its rate."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.effects.base import Effect, Parameter, Shape
+from cyclosweep.effects.base import Effect, Parameter, Shape, union
 from cyclosweep.effects.history import Floats, History
 
 
@@ -47,3 +47,7 @@ class MeshPeriodic(Effect):
         if reason is None and distinct_positions(history) < 3:
             reason = "the mesh zone stood at fewer than three positions"
         return reason
+
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Orders of both."""
+        return union("order_{}", shape, found)

@@ -13,7 +13,8 @@ class ViscousDrag(Effect):
     """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
 
     The rate is that of the twist itself, which lags behind the torque: ``T = theta/C + D dtheta/dt``
-    has the time constant ``D C``. It shows at reversals only, so it is a parameter of its own.
+    has the time constant ``D C``. It shows at reversals only, so it is a parameter of its own, of a few
+    samples at most.
     """
 
     name = "viscous_drag"
@@ -32,7 +33,7 @@ class ViscousDrag(Effect):
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Newtonian and thinning drag, with lags about the time between samples."""
-        step = history.usual_step_s * max(len(history) / history.run_count / 250.0, 1.0)
+        step = history.telling_step_s
         if not step > 0:
             return []
         return [
