@@ -155,11 +155,22 @@ class Scan:
         each = evidence(self.observed[members], self.ranks[members])
         return int(members[int(np.argmax(each))])
 
-    def draws(self, count: int, rng: np.random.Generator) -> Floats:
-        """Scores of recordings with nothing beyond the model at hand, shape (k, count)."""
+    @cached_property
+    def _root(self) -> Floats:
+        """Square root of the projected gram."""
+        # Far below what has to survive the projection, and enough to make it definite.
+        lifted = self.gram + np.diag(1e-4 * SEEN * self.energy + 1e-300)
+        try:
+            return np.asarray(np.linalg.cholesky(lifted))
+        except np.linalg.LinAlgError:
+            pass
         values, vectors = np.linalg.eigh(self.gram)
         keep = values > 1e-10 * max(values[-1], 1e-300)
-        root = vectors[:, keep] * np.sqrt(values[keep])
+        return np.asarray(vectors[:, keep] * np.sqrt(values[keep]))
+
+    def draws(self, count: int, rng: np.random.Generator) -> Floats:
+        """Scores of recordings with nothing beyond the model at hand, shape (k, count)."""
+        root = self._root
         score = root @ rng.standard_normal((root.shape[1], count))
         if self.freedom < 1000:
             score /= np.sqrt(rng.chisquare(self.freedom, count) / self.freedom)

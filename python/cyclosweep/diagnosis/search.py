@@ -93,11 +93,14 @@ class Search:
         self.root = self._node(base, 0.0, 0.0)
         self.nodes: dict[frozenset[str], Node] = {}
         self.settled: Node | None = None
+        self.maxima = np.zeros(0)
         self.maxima = self.null(self.root)
         self.threshold = max(float(np.quantile(self.maxima, 1.0 - LEVEL)), FLOOR)
 
     def null(self, node: Node) -> Floats:
         """Largest evidence that recordings show when this node is all there is."""
+        if node is self.root and len(self.maxima):
+            return self.maxima
         rng = np.random.default_rng([self.seed, 1])
         maxima = node.rest.null_maxima(DRAWS, rng)
         return np.maximum(maxima, hum.null_wave(DRAWS, rng))

@@ -8,7 +8,6 @@ import cyclosweep._core as _core
 from cyclosweep.effects.base import Effect, Parameter, Shape, spread, union
 from cyclosweep.effects.history import Floats, History
 
-
 FEWEST_STEPS = 3.0
 """Steps between samples below which a delay cannot be told from drag."""
 

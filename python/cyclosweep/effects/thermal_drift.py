@@ -61,4 +61,8 @@ class ThermalDrift(Effect):
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Shift of datum or clearance a kelvin."""
-        return tuple(Parameter(f"{name}_per_k", "deg/K", f"{name} a kelvin") for name in KINDS if name in shape)
+        return tuple(
+            Parameter(f"{name}_per_k", "deg/K", f"{name} a kelvin")
+            for name in KINDS
+            if name in shape
+        )

@@ -12,9 +12,9 @@ from cyclosweep.effects.history import Floats, History
 class ViscousDrag(Effect):
     """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
 
-    The rate is that of the twist itself, which lags behind the torque: ``T = theta/C + D dtheta/dt``
-    has the time constant ``D C``. It shows at reversals only, so it is a parameter of its own, of a few
-    samples at most.
+    The rate is that of the twist itself, which lags behind the torque:
+    ``T = theta/C + D dtheta/dt`` has the time constant ``D C``. It shows at reversals only, so it
+    is a parameter of its own, of a few samples at most.
     """
 
     name = "viscous_drag"
