@@ -109,6 +109,7 @@ def slip_state(
     angle: _Reals,
     restart: npt.NDArray[np.bool_],
     start_angle: _Reals,
+    stretch: _Reals,
     slip_angle: _Reals,
     share: _Reals,
 ) -> _Reals: ...

@@ -8,11 +8,10 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-import cyclosweep._core as _core
 from cyclosweep.drive import Drive
 from cyclosweep.effects import Effect, find
 from cyclosweep.effects.history import Floats, History
-from cyclosweep.effects.slip import elements_of, slip_state, start_of
+from cyclosweep.effects.slip import slip_state, solve_slip, stretch_of
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
 
@@ -275,25 +274,21 @@ def _slide(
     model: Model, history: History, sliding: Sequence[EffectValue], added: Floats
 ) -> History:
     shape = sliding[0].shape
-    elements = elements_of(shape)
-    limit = sum(v.amplitudes[0] for v in sliding if v.name == "friction_hysteresis")
-    load = sum(v.amplitudes[0] for v in sliding if v.name == "load_dependent_friction")
-    angle, friction = _core.solve_slip(
-        history.applied_nm,
-        np.ascontiguousarray(model.datum_deg + added),
-        history.restart,
-        np.ascontiguousarray(start_of(history, shape)),
-        elements.slip_deg,
-        elements.share,
-        free_play=model.free_play_deg,
-        compliance=model.compliance_deg_per_nm,
-        limit=float(limit),
-        load_factor=float(load),
-    )
+    offset = model.datum_deg + added
+    angle, friction = solve_slip(history, shape, offset, _limits(sliding), model.free_play_deg)
     elastic = history.applied_nm - friction
     small = 1e-9 * history.largest_torque_nm
     side = _flanks(np.where(np.abs(elastic) < small, 0.0, elastic), history.restart)
     return history.with_state(elastic_nm=elastic, angle_deg=angle, side=side)
+
+
+def _limits(sliding: Sequence[EffectValue]) -> tuple[float, float]:
+    """Friction limit without load [N m], and in proportion to the transmitted torque."""
+    of = {
+        name: float(sum(v.amplitudes[0] for v in sliding if v.name == name))
+        for name in ("friction_hysteresis", "load_dependent_friction")
+    }
+    return of["friction_hysteresis"], of["load_dependent_friction"]
 
 
 def _torque(model: Model, programme: Recording) -> Floats:
@@ -302,6 +297,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         raise InputError(f"{programme.name}: angle_deg: missing, expected to predict a torque")
     angle = np.ascontiguousarray(programme.angle_deg, dtype=np.float64)
     sliding = [value for value in model.effects if value.effect.slips]
+    limits = _limits(sliding)
     history = history_of(programme, model)
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
@@ -318,7 +314,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         elastic = settled
         friction = np.zeros(len(angle))
         for value in sliding:
-            state = slip_state(history, value.shape)
+            state = slip_state(history, value.shape, stretch_of(history, value.shape, limits))
             load = np.abs(elastic) if value.name == "load_dependent_friction" else 1.0
             friction += value.amplitudes[0] * load * state
         if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9):

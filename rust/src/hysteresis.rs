@@ -176,10 +176,13 @@ fn balance(
 }
 
 /// State of slip elements along a given angle history: sum of the shares, each between -1 and 1.
+///
+/// `stretch[i]` is how much longer than given the slip distances are at sample `i`.
 pub fn slip_state(
     angle: &[f64],
     restart: &[bool],
     start_angle: &[f64],
+    stretch: &[f64],
     elements: &SlipElements<'_>,
     out: &mut [f64],
 ) {
@@ -188,8 +191,8 @@ pub fn slip_state(
         if i == 0 || restart[i] {
             anchor.fill(start_angle[i]);
         }
-        elements.settle(angle[i], &mut anchor, 1.0);
-        out[i] = elements.state(angle[i], &anchor, 1.0).0;
+        elements.settle(angle[i], &mut anchor, stretch[i]);
+        out[i] = elements.state(angle[i], &anchor, stretch[i]).0;
     }
 }
 

@@ -8,15 +8,14 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
-import cyclosweep._core as _core
 from cyclosweep.diagnosis.freeform import FreeForm
 from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.effects import Effect, Shape
 from cyclosweep.effects.base import Parameter
 from cyclosweep.effects.creep import FEWEST_STEPS
-from cyclosweep.effects.history import Floats, History
-from cyclosweep.effects.slip import elements_of, start_of
+from cyclosweep.effects.history import Flags, Floats, History
+from cyclosweep.effects.slip import solve_slip
 
 INNER = 3
 """Rounds in which the path of the shaft and the linear parameters settle on each other."""
@@ -77,8 +76,6 @@ class Fit:
         Whitened derivative by every parameter: linear ones first, then `shape_values`.
     shape_values : ndarray
         Values of the nonlinear parameters, in the fit's own scale (log where logarithmic).
-    valid : bool
-        All amplitudes have their physical sign.
     """
 
     problem: Problem
@@ -93,7 +90,6 @@ class Fit:
     sensitivity: Floats
     shape_values: Floats
     slots: tuple["Slot", ...]
-    valid: bool
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -119,6 +115,25 @@ class Fit:
                 return slice(first, first + width)
             first += width
         raise IndexError(index)
+
+    def wrong_signs(self, index: int) -> Flags:
+        """Amplitudes of a term that lie outside what physics allows."""
+        term = self.terms[index]
+        if term.slips:
+            return np.array([term.amplitude < 0])
+        values = self.beta[self.column_range(index)]
+        if term.effect is None:
+            assert term.free is not None
+            return (values < 0) & term.free.positive
+        bounds = term.effect.amplitudes(term.shape)[: len(values)]
+        lower = np.array([p.lower for p in bounds]) - 1e-12
+        upper = np.array([p.upper for p in bounds])
+        return (values[: len(bounds)] < lower) | (values[: len(bounds)] > upper)
+
+    @property
+    def valid(self) -> bool:
+        """Whether all amplitudes have their physical sign."""
+        return not any(self.wrong_signs(k).any() for k in range(len(self.terms)))
 
     def contribution(self, index: int) -> Floats:
         """Twist that a term adds on all rows [deg]."""
@@ -196,10 +211,10 @@ def _within(parameter: Parameter, problem: Problem) -> Parameter:
         return replace(parameter, lower=lower, upper=upper)
     step = problem.history.usual_step_s
     if parameter.unit == "s" and step > 0:
-        if parameter.name == "lag_s":
-            telling = problem.history.telling_step_s
-            return replace(parameter, lower=0.02 * telling, upper=4.0 * telling)
-        return replace(parameter, lower=FEWEST_STEPS * step)
+        upper = parameter.upper
+        if parameter.name == "delay_s" and problem.history.time_s is not None:
+            upper = max(0.1 * float(np.ptp(problem.history.time_s)), 4.0 * step)
+        return replace(parameter, lower=FEWEST_STEPS * step, upper=upper)
     if parameter.name == "slip_deg":
         return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)
     return parameter
@@ -329,21 +344,8 @@ class _Model:
         shape = sliding[0].shape
         limit = sum(t.amplitude for t in sliding if t.name == "friction_hysteresis")
         load = sum(t.amplitude for t in sliding if t.name == "load_dependent_friction")
-        compliance = history.compliance_deg_per_nm
-        offset = mean - compliance * history.elastic_nm
-        elements = elements_of(shape)
-        angle, friction = _core.solve_slip(
-            history.applied_nm,
-            np.ascontiguousarray(offset),
-            history.restart,
-            np.ascontiguousarray(start_of(history, shape)),
-            elements.slip_deg,
-            elements.share,
-            free_play=0.0,
-            compliance=compliance,
-            limit=float(limit),
-            load_factor=float(load),
-        )
+        offset = mean - history.compliance_deg_per_nm * history.elastic_nm
+        angle, friction = solve_slip(history, shape, offset, (float(limit), float(load)), 0.0)
         return history.with_state(elastic_nm=history.applied_nm - friction, angle_deg=angle)
 
     def _design(self, terms: tuple[Term, ...], history: History) -> Floats:
@@ -403,9 +405,22 @@ class _Model:
                 _, history, mean, beta = self._evaluate(values, INNER)
                 moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
                 self.history, self.mean, self.beta = history, mean, beta
+                self._agree(history, beta)
                 self.target, self.weight = self._working(mean)
                 if moved < 1e-3 * self.noise.sigma_deg:
                     break
+
+    def _agree(self, history: History, beta: Floats) -> None:
+        """Let the shapes follow where they depend on the amplitudes."""
+        first, terms = 2 if self.problem.one_sided else 3, []
+        for term in self.terms:
+            width = 0 if term.slips else term.columns(history).shape[1]
+            if term.effect is not None and width:
+                shape = term.effect.settled(history, term.shape, beta[first : first + width])
+                term = replace(term, shape=shape)
+            terms.append(term)
+            first += width
+        self.terms = tuple(terms)
 
     def finish(self, values: Floats) -> Fit:
         """Collect the fit with its tangent space."""
@@ -420,7 +435,6 @@ class _Model:
         self.residual(values)
         sensitivity = np.column_stack([white, *slopes]) if slopes else white
         tangent = orthonormal(sensitivity, 1e-6)
-        known = self._signs(terms, beta)
         return Fit(
             problem=self.problem,
             noise=self.noise,
@@ -434,25 +448,7 @@ class _Model:
             sensitivity=sensitivity,
             shape_values=values,
             slots=self.slots,
-            valid=known,
         )
-
-    def _signs(self, terms: tuple[Term, ...], beta: Floats) -> bool:
-        first = 2 if self.problem.one_sided else 3
-        for term in terms:
-            if term.slips:
-                if term.amplitude < 0:
-                    return False
-                continue
-            width = term.columns(self.history).shape[1]
-            if term.effect is not None:
-                for value, parameter in zip(
-                    beta[first : first + width], term.effect.amplitudes(term.shape), strict=False
-                ):
-                    if value < parameter.lower - 1e-12 or value > parameter.upper:
-                        return False
-            first += width
-        return True
 
 
 def _levels(noise: Noise) -> list[float]:

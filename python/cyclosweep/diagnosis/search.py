@@ -1,6 +1,6 @@
 """Search for the set of effects that explains a recording, each refitted with the baseline."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.library import Block, Library
 from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
+from cyclosweep.effects import Shape
 from cyclosweep.effects.history import Floats
 
 DRAWS = 1000
@@ -30,6 +31,8 @@ SHAPE_ERROR = 0.05
 no model of an effect is exact, and large effects show it."""
 ENRICHED = 2
 """Times an effect is given more freedom of shape."""
+PRUNED = 3
+"""Times parts of an effect are left out because of their sign."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 
@@ -120,7 +123,12 @@ class Search:
 
     def suffices(self, node: Node) -> bool:
         """Whether a structure leaves nothing but noise, or what its own inexactness explains."""
-        return node.left < max(self.threshold, SHAPE_ERROR**2 * node.gain)
+        return node.left < self._slack(node)
+
+    def _slack(self, node: Node) -> float:
+        """Evidence that a sufficient structure may leave in its residual."""
+        explained = max(self.root.fit.chi2 - node.fit.chi2, 0.0)
+        return max(self.threshold, 0.5 * SHAPE_ERROR**2 * explained)
 
     def _enriched(self, node: Node) -> Node | None:
         """Give a term more freedom of shape where the residual asks for more of the same effect."""
@@ -137,19 +145,38 @@ class Search:
                     continue
                 terms = list(node.fit.terms)
                 terms[k] = replace(term, shape=shape)
-                joint = fit(self.problem, self.noise, terms, node.fit)
+                joint = self._pruned(fit(self.problem, self.noise, terms, node.fit))
+                if joint is None:
+                    continue
                 rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
                 added = float(evidence(self._gain(node.fit, joint), max(rank, 1)))
-                if joint.valid and added > 1.0:
+                if added > 1.0:
                     return self._node(joint, node.gain + added, node.prior)
         return None
+
+    def _pruned(self, joint: Fit) -> Fit | None:
+        """Leave out parts of effects that came out with the wrong sign; None where that fails."""
+        for _ in range(PRUNED):
+            if joint.valid:
+                return joint
+            terms = []
+            for k, term in enumerate(joint.terms):
+                wrong = joint.wrong_signs(k)
+                if wrong.any():
+                    shape = None if term.effect is None else term.effect.poorer(term.shape, wrong)
+                    if shape is None:
+                        return None
+                    term = replace(term, shape=shape)
+                terms.append(term)
+            joint = fit(self.problem, self.noise, terms, joint)
+        return joint if joint.valid else None
 
     def extend(self, node: Node, hypothesis: str) -> Node | None:
         """Add one hypothesis to a structure and refit; None where no physical fit is better."""
         best: Node | None = None
         for term, rank, cost in self._starts(node, hypothesis):
-            joint = fit(self.problem, self.noise, (*node.fit.terms, term), node.fit)
-            if not joint.valid:
+            joint = self._pruned(fit(self.problem, self.noise, (*node.fit.terms, term), node.fit))
+            if joint is None:
                 continue
             added = float(evidence(self._gain(node.fit, joint), rank)) - cost
             prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
@@ -208,8 +235,12 @@ class Search:
             if tried and not (slips and _differs(block, first)):
                 continue
             amplitude = self._amplitude(rest, int(index), block) if slips else 0.0
-            term = Term(block.effect, block.shape, block.free, amplitude)
-            yield term, float(rest.ranks[index]), price
+            shapes: Sequence[Shape] = [block.shape]
+            if block.effect is not None and not tried:
+                shapes = block.effect.variants(node.fit.history, block.shape)
+            for shape in shapes:
+                term = Term(block.effect, shape, block.free, amplitude)
+                yield term, float(rest.ranks[index]), price
             tried += 1
             if tried >= (2 if slips else 1):
                 return
@@ -313,8 +344,12 @@ class Search:
 
     def explanations(self) -> list[Node]:
         """Structures worth considering: those that contain a sufficient smaller one are not."""
-        enough = [n.names for n in self.nodes.values() if self.suffices(n)]
-        kept = [n for n in self.nodes.values() if not any(e < n.names for e in enough)]
+        enough = [n for n in self.nodes.values() if self.suffices(n)]
+        kept = [
+            n
+            for n in self.nodes.values()
+            if not any(e.names < n.names and n.score < e.score + self._slack(e) for e in enough)
+        ]
         return sorted(kept, key=lambda n: -n.score)
 
 

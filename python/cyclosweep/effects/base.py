@@ -1,12 +1,12 @@
 """What every effect is: physics in words, its parameters, and its response to a load history."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from cyclosweep.effects.history import Floats, History
+from cyclosweep.effects.history import Flags, Floats, History
 
 Shape = Mapping[str, float]
 """Values of the parameters that enter an effect's response nonlinearly, by name."""
@@ -71,8 +71,20 @@ class Effect:
         """Parameters that multiply the columns, with their signs as bounds."""
         raise NotImplementedError
 
+    def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Shapes alike at first sight, between which only a joint fit decides."""
+        return [shape]
+
+    def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
+        """Shape in which what follows from the amplitudes agrees with them."""
+        return shape
+
     def richer(self, shape: Shape, found: Shape) -> Shape | None:
         """Shape with what a search found besides it; None where the effect cannot hold both."""
+        return None
+
+    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Shape without the parts whose amplitudes have the wrong sign; None if none is left."""
         return None
 
     def untestable(self, history: History) -> str | None:
@@ -88,10 +100,12 @@ class Effect:
         return None
 
 
-def union(name: str, *shapes: Shape, most: int = 4) -> Shape | None:
-    """Values of several shapes as one list ``name_1 ... name_k``; None beyond ``most`` of them."""
-    values = sorted({float(value) for shape in shapes for value in shape.values()})
-    return {name.format(k): v for k, v in enumerate(values, 1)} if len(values) <= most else None
+def listed(name: str, values: Iterable[float], most: int = 4) -> Shape | None:
+    """Shape ``name_1 ... name_k`` of distinct values in order; None for none or too many."""
+    distinct = sorted(set(map(float, values)))
+    if not 0 < len(distinct) <= most:
+        return None
+    return {name.format(k): value for k, value in enumerate(distinct, 1)}
 
 
 def spread(values: Floats) -> float:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.effects.base import Effect, Parameter, Shape
-from cyclosweep.effects.history import Floats, History
+from cyclosweep.effects.base import Effect, Parameter, Shape, listed
+from cyclosweep.effects.history import Flags, Floats, History
 
 
 class ClearanceTakeup(Effect):
@@ -56,6 +56,17 @@ class ClearanceTakeup(Effect):
         done = np.maximum(load - first - width, 0.0)
         return np.asarray(-side * (begun**2 - done**2) / (2 * width))[:, None]
 
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Kinks of both; a range of engagement becomes a kink at either end."""
+        return listed("kink_{}_nm", [*_kinks(shape), *_kinks(found)])
+
+    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Kinks at which the slope drops."""
+        if "first_nm" in shape:
+            return None
+        kept = [kink for kink, w in zip(shape.values(), wrong, strict=True) if not w]
+        return listed("kink_{}_nm", kept)
+
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Compliance lost by the engagement."""
         count = 1 if "first_nm" in shape else len(shape)
@@ -63,3 +74,10 @@ class ClearanceTakeup(Effect):
             Parameter(f"compliance_drop_{k}", "deg/(N m)", "compliance lost by engagement", 0.0)
             for k in range(1, count + 1)
         )
+
+
+def _kinks(shape: Shape) -> list[float]:
+    """Loads at which the slope drops."""
+    if "first_nm" not in shape:
+        return list(shape.values())
+    return [shape["first_nm"], shape["first_nm"] + shape["range_nm"]]

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.effects.base import Effect, Parameter, Shape, spread, union
-from cyclosweep.effects.history import Floats, History
+from cyclosweep.effects.base import Effect, Parameter, Shape, listed, spread
+from cyclosweep.effects.history import Flags, Floats, History
 
 FEWEST_STEPS = 3.0
 """Steps between samples below which a delay cannot be told from drag."""
@@ -61,7 +61,11 @@ class Creep(Effect):
 
     def richer(self, shape: Shape, found: Shape) -> Shape | None:
         """Time constants of both."""
-        return union("tau_{}_s", shape, found)
+        return listed("tau_{}_s", [*shape.values(), *found.values()], most=5)
+
+    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Time constants of positive weight."""
+        return listed("tau_{}_s", [v for v, w in zip(shape.values(), wrong, strict=True) if not w])
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Delayed compliance, one a time constant."""

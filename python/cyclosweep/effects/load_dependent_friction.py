@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from cyclosweep.effects.base import Effect, Parameter, Shape
 from cyclosweep.effects.history import Floats, History
-from cyclosweep.effects.slip import SLIP_PARAMETERS, slip_shapes, slip_state
+from cyclosweep.effects.slip import SLIP_PARAMETERS, slip_shapes, slip_state, stretch_of
 
 
 class LoadDependentFriction(Effect):
@@ -25,9 +25,14 @@ class LoadDependentFriction(Effect):
         """Presliding distances and scatters; see `slip_shapes`."""
         return slip_shapes(history)
 
+    def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Presliding distances that do not depend on the load, and ones that grow with it."""
+        middle = 0.5 * history.largest_torque_nm
+        return [shape, {**shape, "growth": 1.0, "reference_nm": middle}]
+
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist taken away by friction of 100 % of the transmitted torque [deg]."""
-        state = slip_state(history, shape)
+        state = slip_state(history, shape, stretch_of(history, shape, (0.0, 1.0)))
         return (-history.compliance_deg_per_nm * history.load_nm * state)[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.effects.base import Effect, Parameter, Shape, union
+from cyclosweep.effects.base import Effect, Parameter, Shape, listed
 from cyclosweep.effects.history import Floats, History
 
 
@@ -50,4 +50,4 @@ class MeshPeriodic(Effect):
 
     def richer(self, shape: Shape, found: Shape) -> Shape | None:
         """Orders of both."""
-        return union("order_{}", shape, found)
+        return listed("order_{}", [*shape.values(), *found.values()])

@@ -44,7 +44,7 @@ class ThermalDrift(Effect):
         kinds: list[Shape] = [{"datum": 1.0}, {"clearance": 1.0}, {"datum": 1.0, "clearance": 1.0}]
         if history.time_s is None or not spread(history.time_s) > 0:
             return kinds
-        delays = [share * spread(history.time_s) for share in (0.01, 0.04, 0.16)]
+        delays = [share * spread(history.time_s) for share in (0.01, 0.04)]
         return kinds + [{**kind, "delay_s": delay} for kind in kinds for delay in delays]
 
     def columns(self, history: History, shape: Shape) -> Floats:

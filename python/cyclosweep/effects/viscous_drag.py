@@ -8,13 +8,15 @@ import cyclosweep._core as _core
 from cyclosweep.effects.base import Effect, Parameter, Shape
 from cyclosweep.effects.history import Floats, History
 
+SHORTEST_LAG = 0.1
+"""Lag below which nothing changes any more, in steps between samples."""
+
 
 class ViscousDrag(Effect):
     """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
 
     The rate is that of the twist itself, which lags behind the torque:
-    ``T = theta/C + D dtheta/dt`` has the time constant ``D C``. It shows at reversals only, so it
-    is a parameter of its own, of a few samples at most.
+    ``T = theta/C + D dtheta/dt`` has the time constant ``lag_s = D C``, which shows at reversals.
     """
 
     name = "viscous_drag"
@@ -26,20 +28,20 @@ class ViscousDrag(Effect):
     tell_tale = "torque in proportion to twist rate"
     family = "hysteresis"
     needs = ("time_s",)
-    shape_parameters = (
-        Parameter("power", "", "power of the rate", 0.5, 1.0),
-        Parameter("lag_s", "s", "time by which the twist lags", 1e-9, 1e9, logarithmic=True),
-    )
+    shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Newtonian and thinning drag, with lags about the time between samples."""
-        step = history.telling_step_s
-        if not step > 0:
-            return []
-        return [
-            {"power": power, "lag_s": share * step}
-            for power, share in ((1.0, 0.1), (1.0, 0.4), (1.0, 1.6), (0.7, 0.1))
-        ]
+        """Newtonian and thinning drag, too small yet to lag."""
+        lag = SHORTEST_LAG * history.telling_step_s
+        return [{"power": power, "lag_s": lag} for power in (1.0, 0.7)] if lag > 0 else []
+
+    def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
+        """Shape with the lag of this drag at the usual rate."""
+        rate = history.compliance_deg_per_nm * np.diff(history.applied_nm) / history.usual_step_s
+        usual = max(float(np.sqrt(np.mean(rate**2))), 1e-12)
+        drag = max(float(amplitudes[0]), 0.0) * usual ** (shape["power"] - 1.0)
+        shortest = SHORTEST_LAG * history.telling_step_s
+        return {**shape, "lag_s": max(drag * history.compliance_deg_per_nm, shortest)}
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist taken away by a drag of 1 N m at 1 deg/s [deg]."""

@@ -80,11 +80,12 @@ fn slip_state<'py>(
     angle: Column<'py>,
     restart: Flags<'py>,
     start_angle: Column<'py>,
+    stretch: Column<'py>,
     slip_angle: Column<'py>,
     share: Column<'py>,
 ) -> PyResult<Reals<'py>> {
     let n = angle.len()?;
-    same_length(n, &[restart.len()?, start_angle.len()?])?;
+    same_length(n, &[restart.len()?, start_angle.len()?, stretch.len()?])?;
     same_length(slip_angle.len()?, &[share.len()?])?;
     let elements = SlipElements {
         slip_angle: slip_angle.as_slice()?,
@@ -95,12 +96,9 @@ fn slip_state<'py>(
         reference_torque: 1.0,
     };
     let mut out = vec![0.0; n];
-    let (angle, restart, start) = (
-        angle.as_slice()?,
-        restart.as_slice()?,
-        start_angle.as_slice()?,
-    );
-    py.detach(|| hysteresis::slip_state(angle, restart, start, &elements, &mut out));
+    let (angle, restart) = (angle.as_slice()?, restart.as_slice()?);
+    let (start, stretch) = (start_angle.as_slice()?, stretch.as_slice()?);
+    py.detach(|| hysteresis::slip_state(angle, restart, start, stretch, &elements, &mut out));
     Ok(out.into_pyarray(py))
 }
 
