@@ -1,6 +1,6 @@
 """The diagnosis from beginning to end: prepare, calibrate, search, prove, say."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -444,13 +444,14 @@ def _model(fitted: Fit, drive: Drive) -> Model:
     history = fitted.history
     values = []
     for index, term in enumerate(fitted.terms):
-        amplitudes: tuple[float, ...]
-        if term.slips:
-            amplitudes = (float(term.amplitude),)
-        else:
-            amplitudes = tuple(float(v) for v in fitted.beta[fitted.column_range(index)])
-        shape = {name: float(value) for name, value in term.shape.items()}
-        values.append(EffectValue(term.name, shape, amplitudes))
+        shape = term.shape
+        amplitudes: Sequence[float] = (term.amplitude,)
+        if not term.slips:
+            assert term.effect is not None
+            found = fitted.beta[fitted.column_range(index)]
+            shape, amplitudes = term.effect.portable(history, shape, found)
+        plain = {name: float(value) for name, value in shape.items()}
+        values.append(EffectValue(term.name, plain, tuple(map(float, amplitudes))))
     return Model(
         compliance_deg_per_nm=float(fitted.beta[1]),
         free_play_deg=history.free_play_deg,

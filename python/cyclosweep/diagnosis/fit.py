@@ -355,6 +355,17 @@ class _Model:
         parts += [term.columns(history) for term in terms if not term.slips]
         return np.column_stack(parts)
 
+    def _hold(self, terms: tuple[Term, ...], history: History) -> Floats:
+        """Precision with which each linear parameter is known beforehand."""
+        parts = [np.zeros(2 if self.problem.one_sided else 3)]
+        for term in terms:
+            if term.slips:
+                continue
+            size = None if term.effect is None else term.effect.expected(history, term.shape)
+            width = term.columns(history).shape[1] if size is None else len(size)
+            parts.append(np.zeros(width) if size is None else 1.0 / size**2)
+        return np.concatenate(parts)
+
     def _evaluate(self, values: Floats, inner: int) -> tuple[Floats, History, Floats, Floats]:
         """Settle path and linear parameters at these shapes; return the working residual."""
         terms = self._terms_at(values)
@@ -368,7 +379,7 @@ class _Model:
             # The working data are fixed during one refinement: target = residual at self.mean.
             white = self.noise.design(inside, self.weight)
             shifted = self.target + self.noise.design(here, self.weight)
-            beta = _solve(white, shifted)
+            beta = _solve(white, shifted, self._hold(terms, history))
             mean = design @ beta
             history = self._calibrated(history, beta, mean)
         self._last = (terms, design, white, beta)
@@ -459,12 +470,15 @@ def _levels(noise: Noise) -> list[float]:
     return levels[::-1]
 
 
-def _solve(design: Floats, target: Floats) -> Floats:
-    """Least squares by normal equations on scaled columns, a whisker of ridge for lost ranks."""
+def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
+    """Least squares by normal equations on scaled columns, a whisker of ridge for lost ranks.
+
+    `hold` is the precision with which each parameter is known beforehand to be near zero.
+    """
     norm = np.sqrt(np.einsum("ij,ij->j", design, design))
     norm = np.where(norm > 0, norm, 1.0)
     scaled = design / norm
-    gram = scaled.T @ scaled
+    gram = scaled.T @ scaled + np.diag(hold / norm**2)
     right = scaled.T @ target
     for ridge in (0.0, 1e-9, 1e-6):
         try:

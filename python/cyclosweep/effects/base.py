@@ -75,6 +75,19 @@ class Effect:
         """Shapes alike at first sight, between which only a joint fit decides."""
         return [shape]
 
+    def expected(self, history: History, shape: Shape) -> Floats | None:
+        """Size that amplitudes are expected to have, which holds those that nothing else holds.
+
+        None where nothing is expected.
+        """
+        return None
+
+    def portable(
+        self, history: History, shape: Shape, amplitudes: Floats
+    ) -> tuple[Shape, Sequence[float]]:
+        """Shape and amplitudes by which another programme can be predicted."""
+        return shape, amplitudes.tolist()
+
     def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape in which what follows from the amplitudes agrees with them."""
         return shape

@@ -1,6 +1,7 @@
 """Hereditary memory: the zero moves from run to run."""
 
 from collections.abc import Callable, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -51,11 +52,16 @@ PUSH_NAMES = (
 )
 
 
+MEMORIES = (0.0, 0.4, 0.7, 0.9, 1.0)
+"""Parts of a shift kept from run to run that are looked at."""
+
+
 class DatumDrift(Effect):
     """Datum that each run moves by something it did, and that forgets in time.
 
     `push` says what moves it (see `PUSH_NAMES`); `memory` is the part kept from run to run.
-    Without `push` the offsets of the runs are free, and no other programme can be predicted.
+    Without `push` the offsets of the runs are free; to predict another programme they are put down
+    to what explains them best.
     """
 
     name = "datum_drift"
@@ -83,7 +89,7 @@ class DatumDrift(Effect):
         grid: list[Shape] = [
             {"push": float(push), "memory": memory}
             for push in range(len(PUSHES))
-            for memory in (0.0, 0.4, 0.7, 0.9, 1.0)
+            for memory in MEMORIES
             if not (push == 0 and memory in (0.4, 0.9))
         ]
         if 4 <= history.run_count <= 60:
@@ -95,14 +101,37 @@ class DatumDrift(Effect):
         if "free" in shape:
             runs = np.arange(1, history.run_count)
             return np.asarray(history.run[:, None] == runs, dtype=np.float64)
-        push = PUSHES[int(shape["push"])]
-        starts = history.run_starts
-        stops = np.r_[starts[1:], len(history)]
-        pushed = np.array(
-            [push(history, int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
+        length = np.diff(np.r_[history.run_starts, len(history)])
+        return np.column_stack(
+            [np.repeat(_shifts(history, push, memory), length) for push, memory in _pushes(shape)]
         )
-        shift = _core.remembered_datum(pushed, float(shape["memory"]))
-        return np.repeat(shift, stops - starts)[:, None]
+
+    def portable(
+        self, history: History, shape: Shape, amplitudes: Floats
+    ) -> tuple[Shape, Sequence[float]]:
+        """One or two pushes that explain free offsets best, by the error on runs left out."""
+        if "free" not in shape:
+            return shape, amplitudes.tolist()
+        found = np.r_[0.0, amplitudes]
+        single = [(push, memory) for push in range(len(PUSHES)) for memory in MEMORIES]
+        best: tuple[float, tuple[tuple[int, float], ...], Floats] | None = None
+        for pushes in [*((one,) for one in single), *combinations(single, 2)]:
+            columns = np.column_stack([_shifts(history, *push) for push in pushes])
+            basis, corner = np.linalg.qr(columns)
+            if np.min(np.abs(np.diag(corner))) < 1e-6 * max(np.max(np.abs(corner)), 1e-300):
+                continue
+            left: Floats = np.linalg.solve(corner, basis.T @ found)
+            lever = np.minimum(np.sum(basis**2, axis=1), 0.99)
+            error = float(np.mean(((found - columns @ left) / (1.0 - lever)) ** 2))
+            if best is None or error < best[0]:
+                best = error, pushes, left
+        if best is None:
+            return shape, amplitudes.tolist()
+        named: dict[str, float] = {}
+        for k, (push, memory) in enumerate(best[1]):
+            tail = f"_{k + 1}" if k else ""
+            named |= {f"push{tail}": float(push), f"memory{tail}": memory}
+        return named, best[2].tolist()
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Shift by one push, or the shift of each run after the first."""
@@ -111,5 +140,27 @@ class DatumDrift(Effect):
                 Parameter(f"shift_{k}_deg", "deg", f"shift of run {k + 1}", -np.inf)
                 for k in range(1, 61)
             )
-        what = PUSH_NAMES[int(shape["push"])]
-        return (Parameter("shift_deg", "deg", f"shift a unit (10 N m, or one run) of {what}"),)
+        return tuple(
+            Parameter(
+                f"shift{'' if k == 1 else f'_{k}'}_deg",
+                "deg",
+                f"shift a unit (10 N m, or one run) of {PUSH_NAMES[push]}",
+            )
+            for k, (push, _) in enumerate(_pushes(shape), 1)
+        )
+
+
+def _pushes(shape: Shape) -> list[tuple[int, float]]:
+    """What moves the datum, and the part of it that is kept."""
+    first = [(int(shape["push"]), float(shape["memory"]))]
+    if "push_2" not in shape:
+        return first
+    return [*first, (int(shape["push_2"]), float(shape["memory_2"]))]
+
+
+def _shifts(history: History, push: int, memory: float) -> Floats:
+    """Shift of the datum in each run for a unit push [deg]."""
+    starts = history.run_starts
+    stops = np.r_[starts[1:], len(history)]
+    pushed = [PUSHES[push](history, int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
+    return _core.remembered_datum(np.array(pushed), memory)

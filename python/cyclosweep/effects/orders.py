@@ -41,6 +41,21 @@ class MeshPeriodic(Effect):
 
     needs = ("crank_deg",)
 
+    def largest(self, history: History) -> float:
+        """Size that the first order may well have, in the unit of the amplitudes."""
+        raise NotImplementedError
+
+    def expected(self, history: History, shape: Shape) -> Floats:
+        """Amplitudes that fall with the square of the order, as those of smooth shapes do.
+
+        A few positions leave combinations of orders open, which would swing between them.
+        """
+        orders = np.array([order for order in shape.values() for _ in range(2)])
+        # The orders of the pins are no harmonics of a turn but first orders of their own.
+        pins = history.output_pin_count
+        own = np.where(orders % pins == 0, orders / pins, orders)
+        return np.asarray(self.largest(history) / own**2)
+
     def untestable(self, history: History) -> str | None:
         """Need at least three positions."""
         reason = super().untestable(history)

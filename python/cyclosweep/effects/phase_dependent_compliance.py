@@ -25,6 +25,10 @@ class PhaseDependentCompliance(MeshPeriodic):
         sets = [(1,), (2,), (3,), (4,), (pins,), (2 * pins,), (1, 2), (2, 4), (1, 2, 3)]
         return order_shapes([*sets, (1, 2, 3, 4), (pins, 2 * pins), (2, 4, pins)])
 
+    def largest(self, history: History) -> float:
+        """A third of the compliance."""
+        return 0.3 * history.compliance_deg_per_nm
+
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist for unit amplitudes of the compliance [deg]."""
         return history.elastic_nm[:, None] * harmonics(history, shape)

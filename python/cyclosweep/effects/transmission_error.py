@@ -23,6 +23,10 @@ class TransmissionError(MeshPeriodic):
         """Single orders, and the first few together."""
         return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3)])
 
+    def largest(self, history: History) -> float:
+        """A hundredth of the largest twist with its play."""
+        return 0.01 * (history.largest_twist_deg + history.free_play_deg)
+
     def columns(self, history: History, shape: Shape) -> Floats:
         """Offset for unit amplitudes [deg]."""
         return harmonics(history, shape)
