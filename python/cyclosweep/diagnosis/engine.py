@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from cyclosweep.diagnosis import fault, structured
+from cyclosweep.diagnosis.alarm import DRAWS, probability
 from cyclosweep.diagnosis.experiment import next_experiment
 from cyclosweep.diagnosis.fit import Fit
 from cyclosweep.diagnosis.holdout import HeldOutResult, judge
@@ -16,7 +17,7 @@ from cyclosweep.diagnosis.noise import Noise, estimate_noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem, prepare
 from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.rich import rich_basis
-from cyclosweep.diagnosis.search import DRAWS, Node, Search
+from cyclosweep.diagnosis.search import Node, Search
 from cyclosweep.diagnosis.self_check import self_check
 from cyclosweep.diagnosis.testability import Testability, hidden_effects, size_of, testability
 from cyclosweep.diagnosis.verdict import Decision, decide, decide_structured
@@ -167,10 +168,7 @@ def _conclude(
     if late is not None:
         return fault.refuse(problem.recording, drive, *late, search.seed)
     say("bounding what was not found")
-    p_of = {
-        name: _p_value(search.maxima, value)
-        for name, value in search.root.rest.by_hypothesis.items()
-    }
+    p_of = {name: search.alarm.p_value(value) for name, value in search.root.excesses.items()}
     bounds = testability(search, search.root, p_of)
     decision = decide(search, bounds, tolerance)
     repeats = None
@@ -189,7 +187,7 @@ def _conclude(
     if unsteady:
         decision = Decision("UNKNOWN_PHYSICS", decision.best, decision.explanations, True)
     effects = [_effect(search, accepted, k, held) for k in range(len(accepted.fit.terms))]
-    sufficiency = _p_value(search.null(node), node.left)
+    sufficiency = probability(search.null(node), node.left)
     model = _model(accepted.fit, drive)
     content: dict[str, Any] = {
         "schema": SCHEMA,
@@ -209,7 +207,7 @@ def _conclude(
             "holdout_rmse_deg": held.before_deg,
         },
         "mismatch": {
-            "p_value": _p_value(search.maxima, search.root.left),
+            "p_value": search.alarm.p_value(search.root.left),
             "evidence": search.root.left,
             "threshold": search.threshold,
             "regions": [region.as_dict() for region in regions],
@@ -295,10 +293,6 @@ def _unsteady(problem: Problem, fitted: Fit, held: HeldOutResult) -> bool:
     return held.after_deg > 1.8 * fitted.rmse_deg and held.after_deg > 0.03 * span
 
 
-def _p_value(null: np.ndarray, value: float) -> float:
-    return float((1 + np.count_nonzero(null >= value)) / (1 + len(null)))
-
-
 def _rated(drive: Drive, recording: Recording) -> float:
     at_input = recording.side == "input"
     return float(drive.nominal_torque_nm if at_input else drive.output_torque_nm)
@@ -330,7 +324,7 @@ def _effect(search: Search, node: Node, index: int, held: HeldOutResult) -> dict
         parent = search.root
     p = 1.0 / (DRAWS + 1)
     if parent is not None:
-        p = _p_value(search.maxima, parent.rest.by_hypothesis.get(term.name, 0.0))
+        p = search.alarm.p_value(parent.excesses.get(term.name, 0.0))
     return {
         "name": term.name,
         "physics": effect.physics,
@@ -487,10 +481,8 @@ def _unknown(
             "place": term.free.place,
             "size_deg": float(np.max(np.abs(shape))),
         }
-    values = dict(node.rest.by_hypothesis)
+    values = node.excesses
     wave = node.rest_hum[1]
-    if wave is not None:
-        values[wave.family] = node.rest_hum[0]
     name = max(values, key=lambda key: values[key])
     place = wave.place if wave is not None and wave.family == name else ""
     if name in node.rest.groups:

@@ -176,16 +176,21 @@ class Scan:
             score /= np.sqrt(rng.chisquare(self.freedom, count) / self.freedom)
         return np.asarray(score)
 
-    def null_maxima(self, count: int, rng: np.random.Generator) -> Floats:
-        """Largest evidence over all hypotheses in recordings with nothing more to find."""
-        maxima = []
+    def null_evidences(self, count: int, rng: np.random.Generator) -> Floats:
+        """Evidence of every hypothesis in recordings with nothing more to find.
+
+        Returns
+        -------
+        ndarray, shape (hypotheses, count)
+        """
+        parts = []
         left = count
         while left > 0:
             part = min(left, 500)
             gains = likelihood_gain(self.gains(self.draws(part, rng)), 0.0, self.freedom)
-            maxima.append(self.evidences(gains).max(axis=0))
+            parts.append(self.evidences(gains))
             left -= part
-        return np.concatenate(maxima)
+        return np.concatenate(parts, axis=1)
 
     def restricted(self, keep: Sequence[bool]) -> "Scan":
         """Same scan on some of the blocks only."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cyclosweep.diagnosis import hum
+from cyclosweep.diagnosis.alarm import Alarm
 from cyclosweep.diagnosis.fit import Fit, Term, fit
 from cyclosweep.diagnosis.freeform import FreeForm
 from cyclosweep.diagnosis.library import Block, Library
@@ -15,11 +16,6 @@ from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
 from cyclosweep.effects import Shape
 from cyclosweep.effects.history import Floats
 
-DRAWS = 1000
-LEVEL = 0.005
-"""Internal level of the global test; half of the nominal one, for what a bootstrap cannot know."""
-FLOOR = 5.2
-"""Smallest threshold of evidence: a thousand draws wander by about this much less."""
 EXTRA_TERM = 3.0
 """Log prior odds against every further effect."""
 WITHOUT_NAME = 4.0
@@ -52,6 +48,8 @@ class Node:
         What the library finds in its residual.
     rest_hum : tuple
         Evidence and columns of a sinusoid in its residual.
+    alarm : Alarm
+        Calibration of the global test.
     """
 
     fit: Fit
@@ -59,6 +57,7 @@ class Node:
     prior: float
     rest: Scan
     rest_hum: tuple[float, FreeForm | None]
+    alarm: Alarm
 
     @property
     def names(self) -> frozenset[str]:
@@ -76,10 +75,18 @@ class Node:
         return all(term.effect is not None for term in self.fit.terms)
 
     @property
+    def excesses(self) -> dict[str, float]:
+        """How far each hypothesis, in its residual, is beyond what it reaches by chance."""
+        found = {name: self.alarm.excess(name, v) for name, v in self.rest.by_hypothesis.items()}
+        wave = self.rest_hum[1]
+        if wave is not None:
+            found[wave.family] = self.alarm.excess(wave.family, self.rest_hum[0])
+        return found
+
+    @property
     def left(self) -> float:
-        """Largest evidence that remains in the residual."""
-        values = self.rest.by_hypothesis.values()
-        return max(max(values, default=0.0), self.rest_hum[0])
+        """Largest excess of anything that remains in the residual."""
+        return max(max(self.excesses.values(), default=0.0), 0.0)
 
 
 class Search:
@@ -93,23 +100,21 @@ class Search:
         _, weight = noise.residual(problem.angle_deg[use], base.mean_deg[use])
         self.whitened = noise.design(library.columns, weight)
         self.gram = self.whitened.T @ self.whitened
+        rng = np.random.default_rng([seed, 1])
+        self.alarm = Alarm.calibrate(self._scan(base), rng)
+        self.threshold = self.alarm.threshold
         self.root = self._node(base, 0.0, 0.0)
         self.nodes: dict[frozenset[str], Node] = {}
         self.settled: Node | None = None
-        self.maxima = np.zeros(0)
-        self.maxima = self.null(self.root)
-        self.threshold = max(float(np.quantile(self.maxima, 1.0 - LEVEL)), FLOOR)
 
     def null(self, node: Node) -> Floats:
-        """Largest evidence that recordings show when this node is all there is."""
-        if node is self.root and len(self.maxima):
-            return self.maxima
-        rng = np.random.default_rng([self.seed, 1])
-        maxima = node.rest.null_maxima(DRAWS, rng)
-        return np.maximum(maxima, hum.null_wave(DRAWS, rng))
+        """Largest excess that recordings show when this node is all there is."""
+        if node is self.root:
+            return self.alarm.maxima
+        return self.alarm.null(node.rest, np.random.default_rng([self.seed, 1]))
 
-    def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
-        rest = scan(
+    def _scan(self, fitted: Fit) -> Scan:
+        return scan(
             self.library,
             self.whitened,
             self.gram,
@@ -118,8 +123,10 @@ class Search:
             self.noise.freedom,
             self._excess(fitted),
         )
+
+    def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
         found = hum.find_wave(fitted.history, self.problem.fitted, fitted.residual)
-        return Node(fitted, gain, prior, rest, found)
+        return Node(fitted, gain, prior, self._scan(fitted), found, self.alarm)
 
     def suffices(self, node: Node) -> bool:
         """Whether a structure leaves nothing but noise, or what its own inexactness explains."""
@@ -135,7 +142,7 @@ class Search:
         for k, term in enumerate(node.fit.terms):
             if term.effect is None or term.slips:
                 continue
-            if node.rest.by_hypothesis.get(term.name, 0.0) <= self.threshold:
+            if node.excesses.get(term.name, 0.0) <= self.threshold:
                 continue
             members = node.rest.groups[term.name]
             each = evidence(node.rest.observed[members], node.rest.ranks[members])
@@ -263,10 +270,7 @@ class Search:
 
     def candidates(self, node: Node, most: int, least_named: int = 2) -> list[str]:
         """Hypotheses worth adding to a structure, strongest first."""
-        values = dict(node.rest.by_hypothesis)
-        wave = node.rest_hum[1]
-        if wave is not None and wave.family not in node.names:
-            values[wave.family] = node.rest_hum[0]
+        values = node.excesses
         good = sorted(
             (name for name, v in values.items() if v > self.threshold and name not in node.names),
             key=lambda name: -values[name],

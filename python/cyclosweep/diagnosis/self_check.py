@@ -21,7 +21,7 @@ def self_check(search: Search, best: Node | None, rivals: list[Node]) -> dict[st
         ``false_alarm``, ``power`` and ``confusion`` (true name -> named -> share).
     """
     rng = np.random.default_rng([search.seed, 3])
-    nothing = search.root.rest.null_maxima(2 * TWINS, rng)
+    nothing = search.alarm.null(search.root.rest, rng, 2 * TWINS)
     out: dict[str, object] = {
         "false_alarm": float(np.mean(nothing > search.threshold)),
         "power": None,
@@ -59,8 +59,9 @@ def _twins(
     score = rest.draws(TWINS, rng) + (search.whitened.T @ left)[:, None]
     excess = float(left @ left)
     gains = likelihood_gain(rest.gains(score), excess, search.noise.freedom)
-    values = rest.evidences(gains)
     names = np.array(list(rest.groups))
+    start = np.array([search.alarm.start.get(str(name), 0.0) for name in names])
+    values = rest.evidences(gains) - start[:, None]
     found = values.max(axis=0) > search.threshold
     top = names[np.argmax(values, axis=0)]
     row = {str(name): float(np.mean(found & (top == name))) for name in np.unique(top[found])}
