@@ -149,7 +149,10 @@ def _rows(recording: Recording, most_rows: int) -> np.ndarray:
 
 
 def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
-    """Steps between fitted rows in units of the usual step; zero across runs and long breaks."""
+    """Steps between fitted rows in units of their run's usual step.
+
+    Zero across runs and long breaks. Runs may be sampled at different rates.
+    """
     index = np.flatnonzero(fitted)
     gap = np.zeros(len(fitted))
     if len(index) < 2:
@@ -157,8 +160,10 @@ def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
     step = np.diff(index).astype(np.float64)
     if time is not None:
         elapsed = np.diff(time[index])
-        usual = np.median(elapsed[elapsed > 0]) if np.any(elapsed > 0) else 1.0
-        step = np.where(elapsed > 0, np.maximum(elapsed / usual, 0.25), 1.0)
+        for number in np.unique(run[index]):
+            here = (run[index][1:] == number) & (elapsed > 0)
+            if np.any(here):
+                step[here] = np.maximum(elapsed[here] / np.median(elapsed[here]), 0.25)
     step[np.diff(run[index]) != 0] = 0.0
     step[step > 50.0] = 0.0
     gap[index[1:]] = step
