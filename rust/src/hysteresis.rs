@@ -53,7 +53,8 @@ impl Spring<'_> {
             return (0.0, 0.0);
         };
         if self.law_twist.len() < 2 {
-            return (beyond / self.compliance, 1.0 / self.compliance);
+            let slope = 1.0 / self.compliance;
+            return (beyond * slope, slope);
         }
         let (from, to) = self.segment(self.law_twist, beyond);
         let slope = (self.law_torque[to] - self.law_torque[from])

@@ -82,7 +82,10 @@ def diagnose(
     """
     say: Progress = progress if progress is not None else _silent
     if recording.angle_deg is None:
-        raise InputError(f"{recording.name}: column angle_deg: missing, expected in a recording")
+        raise InputError(
+            f"{recording.path or recording.name}: column angle_deg: missing, "
+            "expected in a recording"
+        )
     drive = drive if drive is not None else _drive_of(recording)
     forced = recording.blocking_fault
     if forced is not None:
@@ -421,6 +424,8 @@ def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
 def parameters_of(fitted: Fit, problem: Problem) -> dict[str, dict[str, Any]]:
     """Baseline parameters of a fit against nominal."""
     spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    if fitted.noise.structured and not isinstance(fitted, ForecastFit):
+        spread = spread * np.sqrt(max(problem.count / PIECES, 1.0))
     nominal = problem.nominal_compliance
     compliance = float(fitted.beta[1])
     out: dict[str, dict[str, Any]] = {

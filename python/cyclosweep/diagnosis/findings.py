@@ -13,6 +13,8 @@ AT_LIMIT = 0.06
 """Share of samples at the largest torque from which the actuator is taken to be at its limit."""
 CENSORED = 0.6
 """Share of the nominal dead zone below which friction has held the shaft inside its play."""
+STUCK = 0.35
+"""Share of the largest torque from which Coulomb friction decides what the loop looks like."""
 LEAST_REPEAT = 0.3
 """Correlation between runs from which a residual is worth naming as a staircase."""
 
@@ -29,9 +31,12 @@ def findings(
         rows.append(_friction(fitted))
     if "load_dependent_friction" in known:
         rows.append(_load_friction(fitted))
-    if known & {"contact_stiffening", "clearance_takeup"}:
-        rows.append(_stiffening(problem, fitted))
-    rows.append(_stiffness(problem, unsteady=unsteady))
+    if censored(problem, fitted) is None:
+        if known & {"contact_stiffening", "clearance_takeup"}:
+            rows.append(_stiffening(problem, fitted))
+        rows.append(_stiffness(problem, unsteady=unsteady))
+    else:
+        rows.append(("stiffness", "Not reported, for the same reason as the play."))
     if repeats is not None and repeats > LEAST_REPEAT and not unsteady:
         rows.append(_staircase(problem, fitted, repeats))
     return [{"topic": topic, "text": text} for topic, text in rows]
@@ -83,21 +88,22 @@ def limits_of(problem: Problem, drive: Drive) -> list[dict[str, str]]:
     return out
 
 
-def censored(problem: Problem) -> str | None:
-    """Reason why the play cannot be read: friction never let the shaft cross it."""
+def censored(problem: Problem, fitted: ForecastFit) -> str | None:
+    """Reason why play and stiffness cannot be read: friction hardly let the shaft go."""
     rows = problem.whole_fitted | problem.whole_held_out
-    if not np.any(rows):
-        return None
     moved = float(np.ptp(problem.angle_deg[rows]))
     nominal = 2.0 * problem.nominal_free_play
-    if nominal <= 0 or moved >= CENSORED * nominal:
-        return None
     top = float(np.abs(problem.history.applied_nm[rows]).max())
+    limit = sum(t.amplitude for t in fitted.terms if t.name == "friction_hysteresis")
+    if limit > STUCK * top:
+        sign = f"Coulomb friction of {limit:.3g} N m takes {100 * limit / top:.0f} % of"
+    elif moved < CENSORED * nominal:
+        sign = f"the shaft moved over {moved:.3g} deg only, its nominal play is {nominal:.3g} deg, under"
+    else:
+        return None
     return (
-        f"the shaft moved over {moved:.3g} deg only, less than its nominal play of {nominal:.3g} "
-        f"deg: within {top:.3g} N m friction never breaks away fully and holds the shaft inside "
-        "the play. Friction that never breaks away looks like a smaller play, so no play is "
-        "reported"
+        f"{sign} the largest torque of {top:.3g} N m. Friction that does not break away fully looks "
+        "like a smaller play and a stiffer drive; larger ramps are needed"
     )
 
 
@@ -126,9 +132,9 @@ def _name(fitted: ForecastFit, knob: int) -> str:
 
 
 def _play(problem: Problem, fitted: ForecastFit) -> tuple[str, str]:
-    reason = censored(problem)
+    reason = censored(problem, fitted)
     if reason is not None:
-        return "play", f"Not reported: {reason}."
+        return "play", f"Not reported, friction-censored: {reason}."
     model = fitted.forecast.model
     dead = 2.0 * model.free_play_deg
     if problem.one_sided:
