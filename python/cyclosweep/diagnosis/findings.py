@@ -98,12 +98,12 @@ def censored(problem: Problem, fitted: ForecastFit) -> str | None:
     if limit > STUCK * top:
         sign = f"Coulomb friction of {limit:.3g} N m takes {100 * limit / top:.0f} % of"
     elif moved < CENSORED * nominal:
-        sign = f"the shaft moved over {moved:.3g} deg only, its nominal play is {nominal:.3g} deg, under"
+        sign = f"the shaft moved {moved:.3g} deg only, its play is nominally {nominal:.3g}, under"
     else:
         return None
     return (
-        f"{sign} the largest torque of {top:.3g} N m. Friction that does not break away fully looks "
-        "like a smaller play and a stiffer drive; larger ramps are needed"
+        f"{sign} the largest torque of {top:.3g} N m. Friction that does not break away fully "
+        "looks like a smaller play and a stiffer drive; larger ramps are needed"
     )
 
 

@@ -80,7 +80,7 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
     effects = [known[name] for name in USUAL if name in known]
     if not effects:
         return None
-    zero = not problem.one_sided and bool(np.any(problem.whole_fitted & ~problem.fitted))
+    zero = not problem.one_sided and _crosses_late(problem)
     found: Forecast | None = None
     for limit, slip in STARTS:
         sliding = {
@@ -97,6 +97,13 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
         joint = fit_forecast(problem, model, terms, zero=zero, most=10)
         found = joint if found is None else _better(found, joint)
     return found
+
+
+def _crosses_late(problem: Problem) -> bool:
+    """Whether crossings of the dead zone were recorded where they tell the torque's zero."""
+    history, rows = problem.history, problem.whole_fitted
+    pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
+    return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
 
 
 def _first_amplitude(effect: Effect, shape: Shape, limit_nm: float, compliance: float) -> float:

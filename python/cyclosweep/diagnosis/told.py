@@ -119,7 +119,6 @@ def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:
         sensitivity=sensitivity,
         shape_values=forecast.values[kept],
         slots=slots,
-        valid=True,
         forecast=forecast,
         before=before,
     )
