@@ -104,6 +104,8 @@ def solve_slip(
     load_factor: float = 0.0,
     growth: float = 0.0,
     reference_torque: float = 1.0,
+    law_torque: _Reals | None = None,
+    law_twist: _Reals | None = None,
 ) -> tuple[_Reals, _Reals]: ...
 def slip_state(
     angle: _Reals,

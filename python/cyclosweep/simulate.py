@@ -18,6 +18,8 @@ from cyclosweep.recording import Recording
 SCHEMA = "cyclosweep.model/1"
 ROUNDS = 12
 """Most rounds in which twist, flank and effects settle on each other."""
+LAW_POINTS = 128
+"""Points of an elastic law on each side of zero."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,9 @@ class Model:
         Free play on each side of the datum [deg].
     datum_deg : float
         Middle of the dead zone on the dial [deg].
+    torque_zero_nm : float
+        What the torque column reads without load [N m]. It shows only where both crossings of the
+        dead zone were recorded.
     side : {"input", "output"}
         Shaft to which angles and torques belong.
     effects : tuple of EffectValue
@@ -63,6 +68,7 @@ class Model:
     effects: tuple[EffectValue, ...] = ()
     output_pin_count: int = 8
     drive: str = ""
+    torque_zero_nm: float = 0.0
     notes: tuple[str, ...] = field(default=())
 
     @classmethod
@@ -88,6 +94,7 @@ class Model:
                 "compliance_deg_per_nm": self.compliance_deg_per_nm,
                 "free_play_deg": self.free_play_deg,
                 "datum_deg": self.datum_deg,
+                "torque_zero_nm": self.torque_zero_nm,
             },
             "effects": [
                 {
@@ -127,6 +134,7 @@ class Model:
                 compliance_deg_per_nm=float(base["compliance_deg_per_nm"]),
                 free_play_deg=float(base["free_play_deg"]),
                 datum_deg=float(base.get("datum_deg", 0.0)),
+                torque_zero_nm=float(base.get("torque_zero_nm", 0.0)),
                 side="output" if content.get("side") == "output" else "input",
                 effects=tuple(
                     EffectValue(
@@ -146,7 +154,7 @@ class Model:
 
 def history_of(recording: Recording, model: Model) -> History:
     """Load history of a recording or programme, with the state of a linear drive."""
-    torque = np.ascontiguousarray(recording.torque_nm, dtype=np.float64)
+    torque = np.ascontiguousarray(recording.torque_nm - model.torque_zero_nm, dtype=np.float64)
     run = np.cumsum(np.r_[False, np.diff(recording.run) != 0]).astype(np.int64)
     restart = np.r_[True, np.diff(run) != 0] if len(run) else np.zeros(0, dtype=bool)
     if recording.history == "continuous":
@@ -241,8 +249,8 @@ def _check(model: Model, programme: Recording) -> None:
                 )
 
 
-def _linear(effects: Sequence[EffectValue], history: History) -> Floats:
-    """Twist that the effects other than friction add [deg]."""
+def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
+    """Twist that effects other than friction add [deg]."""
     total = np.zeros(len(history))
     for value in effects:
         if not value.effect.slips:
@@ -252,31 +260,96 @@ def _linear(effects: Sequence[EffectValue], history: History) -> Floats:
     return total
 
 
+@dataclass(frozen=True, slots=True)
+class ElasticLaw:
+    """Twist beyond the dead zone [deg] over the elastic torque [N m], point by point."""
+
+    torque_nm: Floats
+    twist_deg: Floats
+
+
+def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
+    """Elastic law of the compliance and all effects that belong to it; None for a line.
+
+    The points lie closer towards zero; beyond three times the largest torque the law goes on
+    straight. A stretch where the effects together would let the twist fall with growing torque is
+    taken as rigid.
+    """
+    effects = [value for value in model.effects if value.effect.elastic]
+    if not effects:
+        return None
+    reach = 3.0 * max(largest_torque_nm, 1e-9)
+    half = reach * np.geomspace(1e-5, 1.0, LAW_POINTS)
+    torque = np.r_[-half[::-1], half]
+    side = np.sign(torque)
+    history = History(
+        applied_nm=torque,
+        elastic_nm=torque,
+        angle_deg=side * model.free_play_deg + model.compliance_deg_per_nm * torque,
+        side=side,
+        run=np.zeros(len(torque), dtype=np.int64),
+        restart=np.arange(len(torque)) == 0,
+        compliance_deg_per_nm=model.compliance_deg_per_nm,
+        free_play_deg=model.free_play_deg,
+        output_pin_count=model.output_pin_count,
+    )
+    twist = model.compliance_deg_per_nm * torque + linear_twist(effects, history)
+    least = 1e-3 * model.compliance_deg_per_nm
+    upper = np.maximum.accumulate(np.r_[0.0, twist[LAW_POINTS:]] - least * np.r_[0.0, half])
+    lower = np.maximum.accumulate(np.r_[0.0, -twist[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])
+    upper, lower = upper + least * np.r_[0.0, half], lower + least * np.r_[0.0, half]
+    return ElasticLaw(np.r_[-half[::-1], 0.0, half], np.r_[-lower[:0:-1], upper])
+
+
 def predict_history(model: Model, programme: Recording) -> History:
     """Settle path, flank and effects along a torque history."""
-    history = history_of(programme, model)
+    return settle(model, history_of(programme, model))
+
+
+def settle(
+    model: Model, history: History, rounds: int = ROUNDS, told_side: Floats | None = None
+) -> History:
+    """Settle path, flank and effects along a load history that is already zeroed.
+
+    ``told_side`` gives the flank in contact sample by sample, where a recording shows it; without
+    it the model finds the flank, which is a forecast.
+    """
     sliding = [value for value in model.effects if value.effect.slips]
-    for _ in range(ROUNDS):
-        added = _linear(model.effects, history)
+    law = elastic_law(model, history.largest_torque_nm) if sliding else None
+    others = [v for v in model.effects if not sliding or not v.effect.elastic]
+    for _ in range(rounds):
+        added = linear_twist(others, history)
         before = history.angle_deg
         if sliding:
-            history = _slide(model, history, sliding, added)
+            history = _slide(model, history, sliding, added, law, told_side)
         else:
             base = model.datum_deg + history.side * model.free_play_deg
             angle = base + model.compliance_deg_per_nm * history.applied_nm + added
             history = history.with_state(angle_deg=angle)
-        if float(np.max(np.abs(history.angle_deg - before))) < 1e-6 or not model.effects:
+        if not any(not v.effect.slips for v in others):
+            break
+        if float(np.max(np.abs(history.angle_deg - before))) < 1e-6:
             break
     return history
 
 
 def _slide(
-    model: Model, history: History, sliding: Sequence[EffectValue], added: Floats
+    model: Model,
+    history: History,
+    sliding: Sequence[EffectValue],
+    added: Floats,
+    law: ElasticLaw | None,
+    told_side: Floats | None,
 ) -> History:
     shape = sliding[0].shape
-    offset = model.datum_deg + added
-    angle, friction = solve_slip(history, shape, offset, _limits(sliding), model.free_play_deg)
+    told = 0.0 if told_side is None else told_side * model.free_play_deg
+    play = model.free_play_deg if told_side is None else 0.0
+    points = None if law is None else (law.torque_nm, law.twist_deg)
+    offset = model.datum_deg + added + told
+    angle, friction = solve_slip(history, shape, offset, _limits(sliding), play, points)
     elastic = history.applied_nm - friction
+    if told_side is not None:
+        return history.with_state(elastic_nm=elastic, angle_deg=angle)
     small = 1e-9 * history.largest_torque_nm
     side = _flanks(np.where(np.abs(elastic) < small, 0.0, elastic), history.restart)
     return history.with_state(elastic_nm=elastic, angle_deg=angle, side=side)
@@ -299,6 +372,9 @@ def _torque(model: Model, programme: Recording) -> Floats:
     sliding = [value for value in model.effects if value.effect.slips]
     limits = _limits(sliding)
     history = history_of(programme, model)
+    farthest = float(np.abs(angle - model.datum_deg).max(initial=0.0))
+    law = elastic_law(model, farthest / model.compliance_deg_per_nm)
+    others = [value for value in model.effects if not value.effect.elastic]
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     for _ in range(ROUNDS):
@@ -307,9 +383,11 @@ def _torque(model: Model, programme: Recording) -> Floats:
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
-        twist = angle - model.datum_deg - _linear(model.effects, history)
+        twist = angle - model.datum_deg - linear_twist(others, history)
         beyond = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = beyond / model.compliance_deg_per_nm
+        if law is not None:
+            settled = np.interp(beyond, law.twist_deg, law.torque_nm)
         moved = float(np.max(np.abs(settled - elastic)))
         elastic = settled
         friction = np.zeros(len(angle))
@@ -319,4 +397,4 @@ def _torque(model: Model, programme: Recording) -> Floats:
             friction += value.amplitudes[0] * load * state
         if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9):
             break
-    return elastic + friction
+    return elastic + friction + model.torque_zero_nm

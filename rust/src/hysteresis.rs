@@ -7,7 +7,7 @@
 //! T_i = T_e(theta_i - offset_i) + sum_j w_j (Y + mu |T_e|) clip((theta_i - z_j)/delta_j, -1, 1)
 //! ```
 //!
-//! with `T_e` a linear spring behind a dead zone, and `z_j` the anchor of slip element `j`
+//! with `T_e` a spring behind a dead zone, linear or given point by point, and `z_j` the anchor of slip element `j`
 //! (Maxwell-slip or generalised Prandtl-Ishlinskii model, see Al-Bender, Lampaert and Swevers,
 //! IEEE Trans. Autom. Control 50(11), 2005, doi 10.1109/TAC.2005.858676). The equation is monotone in
 //! the angle, so it has one solution a sample, found by a safeguarded Newton step.
@@ -29,26 +29,62 @@ pub struct SlipElements<'a> {
     pub reference_torque: f64,
 }
 
-/// Elastic law of the drive: a linear spring behind a symmetric dead zone.
+/// Elastic law of the drive behind a symmetric dead zone: a line, or points joined by lines.
 #[derive(Debug, Clone, Copy)]
-pub struct Spring {
+pub struct Spring<'a> {
     /// Half width of the dead zone, in the unit of the angle.
     pub free_play: f64,
-    /// Twist for one unit of torque.
+    /// Twist for one unit of torque where no points are given.
     pub compliance: f64,
+    /// Points of the law: torques, rising through zero; none for a line.
+    pub law_torque: &'a [f64],
+    /// Twist beyond the dead zone at these torques, rising strictly.
+    pub law_twist: &'a [f64],
 }
 
-impl Spring {
+impl Spring<'_> {
     /// Elastic torque and its slope at a twist measured from the datum.
     fn torque(&self, twist: f64) -> (f64, f64) {
-        let slope = 1.0 / self.compliance;
-        if twist > self.free_play {
-            ((twist - self.free_play) * slope, slope)
+        let beyond = if twist > self.free_play {
+            twist - self.free_play
         } else if twist < -self.free_play {
-            ((twist + self.free_play) * slope, slope)
+            twist + self.free_play
         } else {
-            (0.0, 0.0)
+            return (0.0, 0.0);
+        };
+        if self.law_twist.len() < 2 {
+            let slope = 1.0 / self.compliance;
+            return (beyond * slope, slope);
         }
+        let (from, to) = self.segment(self.law_twist, beyond);
+        let slope = (self.law_torque[to] - self.law_torque[from])
+            / (self.law_twist[to] - self.law_twist[from]);
+        (
+            self.law_torque[from] + slope * (beyond - self.law_twist[from]),
+            slope,
+        )
+    }
+
+    /// Largest twist beyond the dead zone that a torque of this magnitude can make.
+    fn reach(&self, torque: f64) -> f64 {
+        if self.law_twist.len() < 2 {
+            return self.compliance * torque;
+        }
+        let at = |value: f64| {
+            let (from, to) = self.segment(self.law_torque, value);
+            let slope = (self.law_twist[to] - self.law_twist[from])
+                / (self.law_torque[to] - self.law_torque[from]);
+            self.law_twist[from] + slope * (value - self.law_torque[from])
+        };
+        at(torque).abs().max(at(-torque).abs())
+    }
+
+    /// The two points of the law around a value; the outermost pair goes on beyond the ends.
+    fn segment(&self, points: &[f64], value: f64) -> (usize, usize) {
+        let to = points
+            .partition_point(|&p| p < value)
+            .clamp(1, points.len() - 1);
+        (to - 1, to)
     }
 }
 
@@ -66,10 +102,12 @@ impl SlipElements<'_> {
         (limit / reference).max(1e-9).powf(self.growth)
     }
 
-    /// Sum of the elements' states (each within its share) and its slope in the angle.
-    fn state(&self, angle: f64, anchor: &[f64], stretch: f64) -> (f64, f64) {
+    /// Sum of the elements' states (each within its share), its slope in the angle, and the part of
+    /// the sum that elements hold which do not slide.
+    fn state(&self, angle: f64, anchor: &[f64], stretch: f64) -> (f64, f64, f64) {
         let mut sum = 0.0;
         let mut slope = 0.0;
+        let mut held = 0.0;
         for ((&slip, &share), &z) in self.slip_angle.iter().zip(self.share).zip(anchor) {
             let reach = slip * stretch;
             let ratio = (angle - z) / reach;
@@ -77,9 +115,10 @@ impl SlipElements<'_> {
             sum += share * clipped;
             if clipped == ratio {
                 slope += share / reach;
+                held += share * clipped;
             }
         }
-        (sum, slope)
+        (sum, slope, held)
     }
 
     /// Drags every anchor along so that no element is stretched beyond its reach.
@@ -104,7 +143,7 @@ pub fn solve_slip(
     offset: &[f64],
     restart: &[bool],
     start_angle: &[f64],
-    spring: Spring,
+    spring: Spring<'_>,
     elements: &SlipElements<'_>,
     angle: &mut [f64],
     friction: &mut [f64],
@@ -129,7 +168,7 @@ pub fn solve_slip(
 fn balance(
     torque: f64,
     offset: f64,
-    spring: Spring,
+    spring: Spring<'_>,
     elements: &SlipElements<'_>,
     anchor: &[f64],
     guess: f64,
@@ -138,8 +177,10 @@ fn balance(
         let (elastic, stiffness) = spring.torque(angle - offset);
         let limit = elements.load_limit(elastic);
         let stretch = elements.stretch(limit);
-        let (state, slope) = elements.state(angle, anchor, stretch);
-        let growth = elements.load_factor * stiffness * elastic.signum() * state;
+        let (state, slope, held) = elements.state(angle, anchor, stretch);
+        // A growing limit also stretches the elements that hold.
+        let growth =
+            elements.load_factor * stiffness * elastic.signum() * (state - elements.growth * held);
         let force = limit * state;
         (
             elastic + force - torque,
@@ -150,7 +191,7 @@ fn balance(
     };
     // The friction can never exceed its limit, which brackets the elastic torque.
     let bound = (torque.abs() + elements.limit) / (1.0 - elements.load_factor).max(0.05);
-    let reach = spring.free_play + spring.compliance * bound * (1.0 + 1e-9) + 1e-9;
+    let reach = spring.free_play + spring.reach(bound) * (1.0 + 1e-9) + 1e-9;
     let (mut low, mut high) = (offset - reach, offset + reach);
     let mut angle = guess.clamp(low, high);
     let tolerance = 1e-9 * (1e-3 + torque.abs());
@@ -289,6 +330,8 @@ mod tests {
         let spring = Spring {
             free_play: 0.0,
             compliance: 2.0,
+            law_torque: &[],
+            law_twist: &[],
         };
         solve_slip(
             &torque,
@@ -336,14 +379,21 @@ mod tests {
         fn balance_holds_and_friction_stays_within_its_limit(
             torque in prop::collection::vec(-30.0..30.0f64, 2..60),
             limit in 0.0..2.0f64, load in 0.0..0.3f64, growth in prop::sample::select(vec![0.0, 1.0]),
+            curved: bool,
         ) {
+            let torques = [-60.0, -20.0, -2.0, 0.0, 2.0, 20.0, 60.0];
             let n = torque.len();
             let slip = [0.05, 0.4, 2.0];
             let elements = SlipElements {
                 slip_angle: &slip, share: &[0.5, 0.3, 0.2], limit, load_factor: load, growth,
                 reference_torque: 10.0,
             };
-            let spring = Spring { free_play: 3.0, compliance: 2.5 };
+            let bent = [-90.0, -60.0, -2.0, 0.0, 2.0, 60.0, 90.0];
+            let spring = if curved {
+                Spring { free_play: 3.0, compliance: 2.5, law_torque: &torques, law_twist: &bent }
+            } else {
+                Spring { free_play: 3.0, compliance: 2.5, law_torque: &[], law_twist: &[] }
+            };
             let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
             solve_slip(&torque, &vec![0.0; n], &vec![false; n], &vec![0.0; n], spring, &elements,
                        &mut angle, &mut friction);

@@ -24,13 +24,15 @@ def test_measured_ramps(shared_recordings: Path, ramp: str) -> None:
     assert recording.drive == str(EXAMPLE / "drive.toml")
     assert recording.blocking_fault is None
     # 12 s a ramp within |command| <= 24 N m at 64 ticks a second
-    assert all(750 < np.count_nonzero(recording.run == run) < 790 for run in recording.runs)
+    scored = ~recording.unscored
+    assert all(750 < np.count_nonzero(scored & (recording.run == r)) < 790 for r in recording.runs)
+    assert recording.torque_from == "motor-current"
     assert recording.time_s is not None
     assert recording.angle_deg is not None
     within = np.diff(recording.run) == 0
     assert (np.diff(recording.time_s)[within] > 0).all()
     assert np.ptp(recording.angle_deg) < 20
-    assert 15 < np.abs(recording.torque_nm).max() < 26
+    assert 15 < np.abs(recording.torque_nm[scored]).max() < 26
     long = [b for b in recording.structure.branches if b.stop - b.start > 100]
     assert len(long) == 12
 

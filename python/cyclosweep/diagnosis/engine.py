@@ -1,15 +1,18 @@
 """The diagnosis from beginning to end: prepare, calibrate, search, prove, say."""
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cyclosweep.diagnosis import fault, structured
+from cyclosweep.diagnosis import fault, structured, words
 from cyclosweep.diagnosis.alarm import DRAWS, probability
 from cyclosweep.diagnosis.experiment import next_experiment
+from cyclosweep.diagnosis.findings import findings, limits_of
 from cyclosweep.diagnosis.fit import Fit
+from cyclosweep.diagnosis.forecast import PIECES
 from cyclosweep.diagnosis.holdout import HeldOutResult, judge
 from cyclosweep.diagnosis.library import Library, build_library
 from cyclosweep.diagnosis.locate import Region, find_regions
@@ -20,6 +23,7 @@ from cyclosweep.diagnosis.rich import rich_basis
 from cyclosweep.diagnosis.search import Node, Search
 from cyclosweep.diagnosis.self_check import self_check
 from cyclosweep.diagnosis.testability import Testability, hidden_effects, size_of, testability
+from cyclosweep.diagnosis.told import ForecastFit
 from cyclosweep.diagnosis.verdict import Decision, decide, decide_structured
 from cyclosweep.diagnosis.words import statement
 from cyclosweep.drive import Drive
@@ -78,7 +82,10 @@ def diagnose(
     """
     say: Progress = progress if progress is not None else _silent
     if recording.angle_deg is None:
-        raise InputError(f"{recording.name}: column angle_deg: missing, expected in a recording")
+        raise InputError(
+            f"{recording.path or recording.name}: column angle_deg: missing, "
+            "expected in a recording"
+        )
     drive = drive if drive is not None else _drive_of(recording)
     forced = recording.blocking_fault
     if forced is not None:
@@ -203,7 +210,7 @@ def _conclude(
         },
         "baseline": {
             "parameters": parameters_of(base, problem),
-            "rmse_deg": base.rmse_deg,
+            "rmse_deg": _error_of(accepted.fit, before=True) or base.rmse_deg,
             "holdout_rmse_deg": held.before_deg,
         },
         "mismatch": {
@@ -228,13 +235,10 @@ def _conclude(
         "sufficiency": {"p_value": sufficiency},
         "repaired": {
             "parameters": parameters_of(accepted.fit, problem),
-            "rmse_deg": accepted.fit.rmse_deg,
+            "rmse_deg": _error_of(accepted.fit) or accepted.fit.rmse_deg,
             "holdout_rmse_deg": held.after_deg,
             "holdout": held.label,
-            "blocks": [
-                {"block": b.label, "before_deg": b.before_deg, "after_deg": b.after_deg}
-                for b in held.blocks
-            ],
+            "blocks": [block.as_dict() for block in held.blocks],
         },
         "self_check": {},
         "next_experiment": {},
@@ -262,8 +266,20 @@ def _conclude(
         content["next_experiment"] = _experiment(search, decision, bounds, tolerance)
     content["stationary"] = not unsteady
     content["statement"] = _statement(search, decision, content, regions, bounds, tolerance)
+    content["statement"] += words.forecast(content["repaired"]["blocks"])
+    repeated = None if repeats is None else repeats.correlation
+    content["findings"] = findings(problem, accepted.fit, repeated, unsteady=unsteady)
+    if noise.structured:
+        content["not_testable"] += limits_of(problem, drive)
+        if accepted.fit is not base and _has_zero(accepted.fit):
+            content["not_testable"] = [
+                row for row in content["not_testable"] if row["name"] != "torque_offset"
+            ]
     before = _at_samples(problem, base)
     after = _at_samples(problem, accepted.fit)
+    if isinstance(accepted.fit, ForecastFit):
+        before = _at_samples(problem, base, accepted.fit.before.angle_deg)
+        after = _at_samples(problem, accepted.fit, accepted.fit.forecast.angle_deg)
     return Diagnosis(
         recording=problem.recording,
         content=content,
@@ -277,7 +293,7 @@ def _conclude(
                 samples=b.samples,
                 rmse_before_deg=b.before_deg,
                 rmse_after_deg=b.after_deg,
-                floor_deg=noise.spread_deg,
+                **({"floor_deg": noise.spread_deg} | b.beside_forecast()),
             )
             for b in held.blocks
         ),
@@ -290,7 +306,8 @@ def _conclude(
 def _unsteady(problem: Problem, fitted: Fit, held: HeldOutResult) -> bool:
     """Whether a model of some runs fails on others by far more than it fails on its own."""
     span = float(np.ptp(problem.angle_deg))
-    return held.after_deg > 1.8 * fitted.rmse_deg and held.after_deg > 0.03 * span
+    own = _error_of(fitted) or fitted.rmse_deg
+    return held.after_deg > 1.8 * own and held.after_deg > 0.05 * span
 
 
 def _rated(drive: Drive, recording: Recording) -> float:
@@ -359,7 +376,11 @@ def _strength(search: Search, node: Node, index: int) -> float:
             keep.append(len(fitted.beta) + k)
     rest = orthonormal(fitted.sensitivity[:, keep], 1e-8)
     left = signal - rest @ (rest.T @ signal)
-    return float(np.linalg.norm(left))
+    strength = float(np.linalg.norm(left))
+    if isinstance(fitted, ForecastFit):
+        # The residual repeats itself along the loop and tells far less than its rows.
+        strength *= np.sqrt(min(PIECES / max(len(left), 1), 1.0))
+    return strength
 
 
 def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
@@ -403,6 +424,8 @@ def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
 def parameters_of(fitted: Fit, problem: Problem) -> dict[str, dict[str, Any]]:
     """Baseline parameters of a fit against nominal."""
     spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    if fitted.noise.structured and not isinstance(fitted, ForecastFit):
+        spread = spread * np.sqrt(max(problem.count / PIECES, 1.0))
     nominal = problem.nominal_compliance
     compliance = float(fitted.beta[1])
     out: dict[str, dict[str, Any]] = {
@@ -431,10 +454,20 @@ def parameters_of(fitted: Fit, problem: Problem) -> dict[str, dict[str, Any]]:
             "unit": "deg",
         },
     }
+    if isinstance(fitted, ForecastFit) and fitted.forecast.has_zero:
+        zero = next(k for k, knob in enumerate(fitted.forecast.knobs) if knob.kind == "zero")
+        out["torque_zero_nm"] = {
+            "nominal": 0.0,
+            "estimate": fitted.forecast.model.torque_zero_nm,
+            "std_error": float(np.sqrt(max(fitted.forecast.covariance[zero, zero], 0.0))),
+            "unit": "N m",
+        }
     return out
 
 
 def _model(fitted: Fit, drive: Drive) -> Model:
+    if isinstance(fitted, ForecastFit):
+        return replace(fitted.forecast.model, drive=drive.name)
     history = fitted.history
     values = []
     for index, term in enumerate(fitted.terms):
@@ -561,10 +594,21 @@ def _statement(
     )
 
 
-def _at_samples(problem: Problem, fitted: Fit) -> np.ndarray:
-    """Twist by a fit, a value for every sample of the recording."""
+def _has_zero(fitted: Fit) -> bool:
+    return isinstance(fitted, ForecastFit) and fitted.forecast.has_zero
+
+
+def _error_of(fitted: Fit, *, before: bool = False) -> float | None:
+    """Error of a forecast on the fitted runs; None where the fit is told the flank [deg]."""
+    if not isinstance(fitted, ForecastFit):
+        return None
+    return (fitted.before if before else fitted.forecast).error_deg
+
+
+def _at_samples(problem: Problem, fitted: Fit, angle_deg: np.ndarray | None = None) -> np.ndarray:
+    """Twist by a fit (or given by rows), a value for every sample of the recording."""
     row = problem.rows
-    mean = fitted.mean_deg[row]
+    mean = (fitted.mean_deg if angle_deg is None else angle_deg)[row]
     # Within an averaged row the line's own slope carries the torque's deviation from its mean.
     torque = problem.recording.torque_nm - problem.history.applied_nm[row]
     return np.asarray(mean + fitted.history.compliance_deg_per_nm * torque)

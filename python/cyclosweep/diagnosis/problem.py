@@ -36,6 +36,8 @@ class Problem:
         Number of samples averaged in each row.
     fitted, held_out : ndarray of bool, shape (n,)
         Rows in contact that are fitted, and those kept for the verdict.
+    whole_fitted, whole_held_out : ndarray of bool, shape (n,)
+        The same with the crossings of the dead zone, for models that predict them.
     gap : ndarray, shape (n,)
         Steps since the fitted row before; zero where there is none nearby.
     rows : ndarray of int
@@ -54,6 +56,8 @@ class Problem:
     weight: Floats
     fitted: Flags
     held_out: Flags
+    whole_fitted: Flags
+    whole_held_out: Flags
     gap: Floats
     rows: np.ndarray
     one_sided: bool
@@ -90,10 +94,12 @@ def prepare(
     restart = np.r_[True, np.diff(run) != 0]
     if recording.history == "continuous":
         restart = np.arange(count) == 0
-    side, contact, datum, compliance, play, width = find_flanks(torque, angle, line)
-    outside = np.isin(run_label, list(recording.conditioning_runs))
-    held = np.isin(run_label, list(recording.holdout_runs)) & contact
-    fitted = contact & ~outside & ~held
+    counts = recording.counts[first]
+    scored = None if recording.unscored is None else ~recording.unscored[first]
+    side, contact, datum, compliance, play, width = find_flanks(torque, angle, line, scored)
+    kept = np.isin(run_label, list(recording.holdout_runs))
+    held = kept & contact & counts
+    fitted = contact & counts & ~kept
     time = mean(recording.time_s)
     history = History(
         applied_nm=torque,
@@ -119,6 +125,8 @@ def prepare(
         weight=weight,
         fitted=fitted,
         held_out=held,
+        whole_fitted=counts & ~kept,
+        whole_held_out=counts & kept,
         gap=gaps(fitted, run, time),
         rows=rows,
         one_sided=one_sided,
@@ -144,6 +152,8 @@ def _rows(recording: Recording, most_rows: int) -> np.ndarray:
         if hold.stop < n:
             cut[hold.stop] = True
     cut[1:] |= np.diff(np.sign(torque)) != 0
+    if recording.unscored is not None:
+        cut[1:] |= np.diff(recording.unscored)
     start = np.maximum.accumulate(np.where(cut, np.arange(n), 0))
     return np.cumsum(cut | ((np.arange(n) - start) % size == 0)) - 1
 
@@ -171,9 +181,11 @@ def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
 
 
 def find_flanks(
-    torque: Floats, angle: Floats, line: NominalLine
+    torque: Floats, angle: Floats, line: NominalLine, scored: Flags | None = None
 ) -> tuple[Floats, Flags, float, float, float, float]:
     """Tell the flank in contact from the dead zone, by a robust line through the loaded rows.
+
+    Where only some rows are ``scored``, the line goes through those.
 
     Returns
     -------
@@ -183,6 +195,9 @@ def find_flanks(
 
     largest = float(np.abs(torque).max(initial=0.0))
     loaded = np.abs(torque) > 0.25 * largest
+    if scored is not None:
+        largest = float(np.abs(torque[scored]).max(initial=0.0))
+        loaded = (np.abs(torque) > 0.25 * largest) & scored
     sign = np.where(torque >= 0, 1.0, -1.0)
     both = bool(np.any(sign[loaded] > 0) and np.any(sign[loaded] < 0))
     design = np.column_stack([np.ones_like(torque), torque, sign])[:, : 3 if both else 2]
@@ -207,6 +222,9 @@ def find_flanks(
         return sign, np.ones(len(torque), dtype=bool), datum, compliance, max(play, 0.0), width
     side = np.where(inside >= 0, 1.0, -1.0)
     side[loaded] = sign[loaded]
+    if scored is not None:
+        far = np.abs(torque) > 0.25 * largest
+        side[far] = sign[far]
     margin = min(max(2.0 * width, 0.1 * play), 0.8 * play)
     contact = loaded | (inside * side > play - margin)
     return side, contact, datum, compliance, play, width

@@ -57,6 +57,20 @@ def stretches(problem: Problem, each: int) -> list[tuple[str, Flags]]:
     ]
 
 
+def whole_stretches(problem: Problem, each: int = 4) -> list[tuple[str, Flags]]:
+    """Stretches of the fitted runs to leave out in turn, crossings of the dead zone included."""
+    index = np.flatnonzero(problem.whole_fitted)
+    block = np.full(len(problem.whole_fitted), -1)
+    block[index] = np.arange(len(index)) * (each * FOLDS) // max(len(index), 1)
+    return [
+        (
+            f"every {FOLDS}th of {each * FOLDS} stretches from number {k + 1}",
+            (block % FOLDS == k) & (block >= 0),
+        )
+        for k in range(FOLDS)
+    ]
+
+
 def recorded_runs(problem: Problem) -> list[int]:
     """Numbers of the runs as recorded, by their index."""
     run = problem.recording.run

@@ -1,31 +1,43 @@
 """Recordings whose residual is error of the model rather than noise: a ladder of named effects.
 
 Where the sensor is far better than any model, the residual is structured down to the last step,
-and a test against noise rejects everything. Effects are then added one at a time, as long as each
-lowers the error on stretches that were left out, and what remains is judged by whether it repeats
-from run to run.
+and a test against noise rejects everything. The simulation itself is then fitted to whole loops,
+crossings of the dead zone included, and effects are added one at a time, as long as each pays for
+its parameters; what remains is judged by whether it repeats from run to run.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.fit import Fit, Term, fit
-from cyclosweep.diagnosis.noise import Noise
+from cyclosweep.diagnosis.fit import Fit, Term
+from cyclosweep.diagnosis.forecast import BLUR, PIECES, Forecast, fit_forecast, refit, rms, start
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.diagnosis.search import Node, Search
-from cyclosweep.diagnosis.split import restrict, stretches
-from cyclosweep.effects.history import Floats
+from cyclosweep.diagnosis.split import whole_stretches
+from cyclosweep.diagnosis.told import told_fit
+from cyclosweep.effects import Effect, Shape
+from cyclosweep.effects.history import Flags, Floats
+from cyclosweep.simulate import EffectValue
 
-MOST_RUNGS = 6
+USUAL: dict[str, Callable[[float], Shape]] = {
+    "friction_hysteresis": lambda top: {},
+    "load_dependent_friction": lambda top: {},
+    "contact_stiffening": lambda top: {"turn_nm": 0.1 * top},
+    "load_asymmetry": lambda top: {"power": 1.0},
+}
+"""What loops of this kind usually show, and the shapes to start from at a largest torque."""
+STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
+"""Friction limits and presliding distances to start from, as shares of torque and twist."""
+MOST_MORE = 1
+"""Effects added beyond those."""
 FIRST = 0.15
 """Share of the error on left-out stretches that the first effect must take away."""
-NEXT = 0.02
-"""Share that each further effect must take away."""
-STRETCHES = 4
-"""Stretches left out at a time, so that no part of a loop is left to extrapolation."""
-PIECES = 40.0
-"""Rough number of independent pieces of such a residual, by which parameters are charged."""
+TRIED = 2
+"""Effects that are fitted on a rung, those whose shape is most alike to what is left."""
+PRICE = 2.0
+"""What a parameter must gain: twice the log likelihood of independent pieces."""
 REPEATS = 0.5
 """Correlation between runs above which a residual is a property of the drive."""
 
@@ -44,116 +56,171 @@ class Repetition:
 
 
 def climb(search: Search) -> Node:
-    """Add named effects one at a time; return the last structure that paid for itself."""
-    node = search.root
-    for rung in range(MOST_RUNGS):
-        problem, noise = search.problem, search.noise
-        tried = []
-        for terms, rank in _candidates(search, node):
-            joint = _polish(problem, noise, terms, node.fit)
-            if joint is not None:
-                tried.append((np.log(joint.chi2) + 2.0 * rank / PIECES, joint))
-        tried.sort(key=lambda pair: pair[0])
-        before = left_out_error(problem, noise, node.fit)
-        needed = FIRST if rung == 0 else NEXT
-        for _, joint in tried[:3]:
-            after = left_out_error(problem, noise, joint)
-            if after < (1.0 - needed) * before:
-                gain = PIECES * float(np.log(before / after))
-                node = search.adopt(joint, node.gain + gain)
-                break
-        else:
+    """Fit what such loops usually show, leave out what does not pay, add what does."""
+    problem = search.problem
+    base = fit_forecast(problem, start(problem), (), zero=False, most=10)
+    usual = _usual(search, base)
+    if usual is None or not _pays(usual, base):
+        return search.root
+    best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
+    best = _extend(search, _prune(problem, best))
+    gain = PIECES * float(np.log(base.error_deg / best.error_deg))
+    return search.adopt(told_fit(best, base, search.noise), gain)
+
+
+def _usual(search: Search, base: Forecast) -> Forecast | None:
+    """Both kinds of friction, stiffening and asymmetry at once, from several starts.
+
+    One at a time, friction takes the place of the stiffening and does not give it back; and the
+    crossings of the dead zone leave many small minima.
+    """
+    problem = search.problem
+    top, twist = problem.history.largest_torque_nm, problem.history.largest_twist_deg
+    known = {b.hypothesis: b.effect for b in search.library.blocks if b.effect is not None}
+    effects = [known[name] for name in USUAL if name in known]
+    if not effects:
+        return None
+    zero = not problem.one_sided and _crosses_late(problem)
+    found: Forecast | None = None
+    for limit, slip in STARTS:
+        sliding = {
+            "slip_deg": slip * twist, "scatter": 1.0, "slack": 0.0,
+            "growth": 0.7, "reference_nm": 0.3 * top,
+        }  # fmt: skip
+        terms, values = [], []
+        for effect in effects:
+            shape = sliding if effect.slips else USUAL[effect.name](top)
+            amplitude = _first_amplitude(effect, shape, limit * top, twist / top)
+            terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
+            values.append(EffectValue(effect.name, shape, (amplitude,)))
+        model = replace(base.model, effects=tuple(values))
+        joint = fit_forecast(problem, model, terms, zero=zero, most=10)
+        found = joint if found is None else _better(found, joint)
+    return found
+
+
+def _crosses_late(problem: Problem) -> bool:
+    """Whether crossings of the dead zone were recorded where they tell the torque's zero."""
+    history, rows = problem.history, problem.whole_fitted
+    pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
+    return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
+
+
+def _first_amplitude(effect: Effect, shape: Shape, limit_nm: float, compliance: float) -> float:
+    parameter = effect.amplitudes(shape)[0]
+    if effect.slips:
+        return 0.2 if parameter.unit == "" else limit_nm
+    return 0.3 * compliance if parameter.lower >= 0 else 1e-3
+
+
+def _prune(problem: Problem, best: Forecast) -> Forecast:
+    """Leave out what does not pay for its parameters."""
+    for name in sorted(best.names):
+        kept = [k for k, term in enumerate(best.terms) if term.name != name]
+        if not kept:
+            continue
+        terms = tuple(best.terms[k] for k in kept)
+        model = replace(best.model, effects=tuple(best.model.effects[k] for k in kept))
+        without = fit_forecast(problem, model, terms, zero=best.has_zero, most=5)
+        if _cost(without) < _cost(best):
+            best = without
+    return best
+
+
+def _extend(search: Search, best: Forecast) -> Forecast:
+    """Add effects that look like what is left, as long as they pay."""
+    problem = search.problem
+    known = {b.hypothesis: b.effect for b in search.library.blocks if b.effect is not None}
+    for _ in range(MOST_MORE):
+        tried = [
+            _with(problem, best, known[name], shape) for name, shape in _alike(search, best)[:TRIED]
+        ]
+        if not tried:
             break
-    return node if node is search.root else prune(search, node)
+        joint = min(tried, key=_cost)
+        if _cost(joint) >= _cost(best):
+            break
+        best = _better(
+            joint,
+            fit_forecast(problem, joint.model, joint.terms, zero=joint.has_zero, most=8, blur=BLUR),
+        )
+    return best
 
 
-def prune(search: Search, node: Node) -> Node:
-    """Leave out again what no longer lowers the error on left-out stretches."""
-    problem, noise = search.problem, search.noise
-    error = left_out_error(problem, noise, node.fit)
-    for name in node.fit.names:
-        kept = tuple(t for t in node.fit.terms if t.name != name)
-        if not kept or len(kept) == len(node.fit.terms):
-            continue
-        joint = _polish(problem, noise, kept, node.fit)
-        if joint is None:
-            continue
-        without = left_out_error(problem, noise, joint)
-        if without < 1.005 * error and joint.chi2 < 1.02 * node.fit.chi2:
-            search.nodes.pop(node.names, None)
-            node = search.adopt(joint, node.gain)
-            error = without
-    return node
+def _cost(model: Forecast) -> float:
+    """Minus twice the log likelihood of a residual's pieces, and the price of the parameters."""
+    return 2.0 * PIECES * float(np.log(model.error_deg)) + PRICE * len(model.knobs)
 
 
-def left_out_error(problem: Problem, noise: Noise, model: Fit) -> float:
+def _better(first: Forecast, second: Forecast) -> Forecast:
+    return second if second.error_deg < first.error_deg else first
+
+
+def _pays(model: Forecast, base: Forecast) -> bool:
+    """Whether a model predicts stretches that were left out much better than the baseline."""
+    return left_out_error(model) < (1.0 - FIRST) * left_out_error(base)
+
+
+def left_out_error(model: Forecast) -> float:
     """Root mean square on stretches that were left out in turn [deg]."""
+    problem = model.problem
     total, count = 0.0, 0
-    for _, rows in stretches(problem, STRETCHES):
-        train, train_noise = restrict(problem, noise, ~rows)
-        part = fit(train, train_noise, model.terms, model, refine=False, rounds=4)
-        left = (problem.angle_deg - part.mean_deg)[train.held_out]
-        total += float(left @ left)
-        count += len(left)
+    for _, rows in whole_stretches(problem):
+        part = refit(model, rows=problem.whole_fitted & ~rows, most=3)
+        left = problem.whole_fitted & rows
+        total += rms(problem, part.angle_deg, left) ** 2 * np.count_nonzero(left)
+        count += int(np.count_nonzero(left))
     return float(np.sqrt(total / max(count, 1)))
 
 
-def _polish(problem: Problem, noise: Noise, terms: tuple[Term, ...], start: Fit) -> Fit | None:
-    """Fit with patience, and only what is physical: positive compliance, signs as they must be."""
-    joint = fit(problem, noise, terms, start, rounds=15)
-    if not joint.valid or joint.beta[1] <= 0:
-        return None
-    return joint
+def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:
+    """Fit a model with one more effect, starting from next to none of it."""
+    columns = effect.columns(best.history, shape)
+    largest = np.abs(columns).max(axis=0, initial=1e-12)
+    little = 0.01 * problem.history.largest_twist_deg / np.maximum(largest, 1e-12)
+    model = replace(
+        best.model,
+        effects=(*best.model.effects, EffectValue(effect.name, shape, tuple(map(float, little)))),
+    )
+    terms = (*best.terms, Term(effect, shape))
+    return fit_forecast(problem, model, terms, zero=best.has_zero, most=8)
 
 
-def _candidates(search: Search, node: Node) -> list[tuple[tuple[Term, ...], float]]:
-    """Structures one named effect larger, with the number of parameters added."""
-    rest = node.rest
-    out: list[tuple[tuple[Term, ...], float]] = []
-    history = node.fit.history
-    sliding = any(term.slips for term in node.fit.terms)
-    named = {b.hypothesis: b.effect for b in rest.library.blocks if b.effect is not None}
-    values = rest.by_hypothesis
-    order = sorted((n for n in named if n in values), key=lambda n: -values[n])
-    plain = [n for n in order if not getattr(named[n], "slips", False)][:4]
-    for name in plain:
-        if name in node.names:
+def _alike(search: Search, best: Forecast) -> list[tuple[str, dict[str, float]]]:
+    """Shapes of elastic effects that explain most of what is left, with physical signs.
+
+    Others are left to recordings with more than one rate, position or temperature: along a single
+    ramp each of them can take any shape.
+    """
+    problem = search.problem
+    rows = problem.fitted
+    history = best.history
+    left = (problem.angle_deg - best.angle_deg)[rows]
+    base = [np.ones(int(rows.sum())), history.elastic_nm[rows]]
+    if not problem.one_sided:
+        base.append(history.side[rows])
+    basis = np.linalg.qr(np.column_stack(base))[0]
+    left = left - basis @ (basis.T @ left)
+    gains: dict[str, tuple[float, dict[str, float]]] = {}
+    for block in search.library.blocks:
+        effect = block.effect
+        if effect is None or not effect.elastic or effect.name in best.names:
             continue
-        block = rest.library.blocks[rest.best_block(name)]
-        extra = len(named[name].shape_parameters) if named[name] is not None else 0
-        rank = block.stop - block.first + 0.5 * extra
-        out.append(((*node.fit.terms, Term(block.effect, block.shape)), rank))
-    for name, effect in named.items():
-        if effect is None or not effect.slips or name in node.names:
+        columns = effect.columns(history, block.shape)[rows]
+        if columns.shape[1] > 1 or not np.all(np.isfinite(columns)):
             continue
-        share_of_load = "share" in effect.amplitudes({})[0].name
-        amplitude = 0.2 if share_of_load else 0.06 * _top(search)
-        if sliding:
-            shape = next(t.shape for t in node.fit.terms if t.slips)
-            out.append(((*node.fit.terms, Term(effect, shape, None, 0.3 * amplitude)), 1.0))
+        column = columns[:, 0] - basis @ (basis.T @ columns[:, 0])
+        size = float(column @ column)
+        if size <= 1e-9 * float(columns[:, 0] @ columns[:, 0]):
             continue
-        for share in (0.02, 0.1):
-            shape = {"slip_deg": share * history.largest_twist_deg, "scatter": 1.0, "slack": 0.0}
-            out.append(((*node.fit.terms, Term(effect, shape, None, amplitude)), 3.0))
-    if not sliding:
-        # Both kinds of friction share their elements, and one alone mimics the other badly.
-        shape = {"slip_deg": 0.04 * history.largest_twist_deg, "scatter": 1.0, "slack": 0.0}
-        pair = tuple(
-            Term(
-                effect,
-                shape,
-                None,
-                0.15 if "share" in effect.amplitudes({})[0].name else 0.04 * _top(search),
-            )
-            for effect in named.values()
-            if effect is not None and effect.slips
-        )
-        out.append(((*node.fit.terms, *pair), 4.0))
-    return out
-
-
-def _top(search: Search) -> float:
-    return search.problem.history.largest_torque_nm
+        along = float(column @ left)
+        if block.signs[0] > 0 and along < 0:
+            continue
+        gain = along**2 / size
+        if gain > gains.get(effect.name, (0.0, {}))[0]:
+            gains[effect.name] = (gain, {k: float(v) for k, v in block.shape.items()})
+    order = sorted(gains, key=lambda name: -gains[name][0])
+    return [(name, gains[name][1]) for name in order]
 
 
 def repetition(problem: Problem, fitted: Fit) -> Repetition:
@@ -180,7 +247,7 @@ def repetition(problem: Problem, fitted: Fit) -> Repetition:
 
 
 def _means(
-    residual: Floats, cell: Floats, rows: np.ndarray, first: np.ndarray, second: np.ndarray
+    residual: Floats, cell: Floats, rows: Flags, first: Flags, second: Flags
 ) -> tuple[Floats, Floats]:
     a, b = [], []
     for value in np.unique(cell[rows]):

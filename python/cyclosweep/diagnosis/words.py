@@ -118,3 +118,19 @@ def statement(
         f"Unknown physics:{known} something without a name in the vocabulary remains"
         f"{': ' + remains if remains else ''}. It shows most at {where}. {calibration}"
     )
+
+
+def forecast(blocks: Sequence[dict[str, Any]]) -> str:
+    """Sentence on forecasts of runs that were kept; empty where the model was told the flank."""
+    kept = [b for b in blocks if b.get("told_after_deg") is not None]
+    if not kept:
+        return ""
+    block = kept[0]
+    text = (
+        f" As a forecast of what was not fitted, crossings of the dead zone included, the model "
+        f"errs by {degrees(block['after_deg'])}, before the repair by "
+        f"{degrees(block['before_deg'])}; told the flank by {degrees(block['told_after_deg'])}."
+    )
+    if block.get("floor_deg") is not None:
+        text += f" Another run as the prediction leaves {degrees(block['floor_deg'])}."
+    return text

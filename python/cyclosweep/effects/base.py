@@ -43,6 +43,8 @@ class Effect:
         Parameters that enter nonlinearly and are refined by the fit.
     slips : bool
         The effect is a friction torque on slip elements, solved in the angle.
+    elastic : bool
+        The twist is a function of the elastic torque alone: part of the drive's elastic law.
     """
 
     name: ClassVar[str]
@@ -53,6 +55,7 @@ class Effect:
     needs: ClassVar[tuple[str, ...]] = ()
     shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
     slips: ClassVar[bool] = False
+    elastic: ClassVar[bool] = False
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Grid of shapes over which the effect is looked for in this recording."""

@@ -25,6 +25,7 @@ class ClearanceTakeup(Effect):
     source = "Kumar et al. 2016, section 4 (pins that come to carry one after another)"
     tell_tale = "slope drops in steps at certain twists"
     family = "smooth odd curve"
+    elastic = True
     shape_parameters = (
         Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
         Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),

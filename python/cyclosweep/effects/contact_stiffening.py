@@ -24,6 +24,7 @@ class ContactStiffening(Effect):
     source = "Johnson, Contact Mechanics, 1985, ch. 4 (Hertz)"
     tell_tale = "steep near zero load, flatter above; both directions alike"
     family = "smooth odd curve"
+    elastic = True
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
     )

@@ -19,6 +19,7 @@ class LoadAsymmetry(Effect):
     source = "Kumar et al. 2016 (side load of the hanging weight)"
     tell_tale = "even in torque: differs between directions"
     family = "even curve"
+    elastic = True
     shape_parameters = (Parameter("power", "", "power of the load", 0.4, 3.0),)
 
     def untestable(self, history: History) -> str | None:

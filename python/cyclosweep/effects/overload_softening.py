@@ -19,6 +19,7 @@ class OverloadSoftening(Effect):
     source = "Kumar et al. 2016 (the loading curve is nonlinear above 2.5 times nominal torque)"
     tell_tale = "slope rises beyond a torque"
     family = "smooth odd curve"
+    elastic = True
     shape_parameters = (
         Parameter("onset_nm", "N m", "load above which the compliance grows", 0.0, 1e6),
         Parameter("power", "", "power of the extra twist", 1.0, 3.0),

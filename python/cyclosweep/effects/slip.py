@@ -12,6 +12,7 @@ from cyclosweep.effects.history import Floats, History
 ELEMENTS = 14
 """Number of slip elements; the response no longer depends on it beyond about ten."""
 
+
 SLIP_PARAMETERS = (
     Parameter("slip_deg", "deg", "median presliding distance", 1e-6, 1e3, logarithmic=True),
     Parameter("scatter", "", "spread of the presliding distances (sd of log)", 0.05, 3.0, True),
@@ -89,7 +90,12 @@ def slip_state(history: History, shape: Shape, stretch: Floats | None = None) ->
 
 
 def solve_slip(
-    history: History, shape: Shape, offset: Floats, limits: tuple[float, float], free_play: float
+    history: History,
+    shape: Shape,
+    offset: Floats,
+    limits: tuple[float, float],
+    free_play: float,
+    law: tuple[Floats, Floats] | None = None,
 ) -> tuple[Floats, Floats]:
     """Angle [deg] and friction torque [N m] along the applied torque.
 
@@ -101,6 +107,8 @@ def solve_slip(
         Friction limit without load [N m], and in proportion to the transmitted torque.
     free_play : float
         Half width of the dead zone; zero where `offset` already holds the flank in contact [deg].
+    law : pair of ndarray, optional
+        Elastic torques [N m] and twists [deg] of an elastic law that is no line.
     """
     elements = elements_of(shape)
     return _core.solve_slip(
@@ -116,6 +124,8 @@ def solve_slip(
         load_factor=limits[1],
         growth=float(shape.get("growth", 0.0)),
         reference_torque=float(shape.get("reference_nm", 1.0)),
+        law_torque=None if law is None else law[0],
+        law_twist=None if law is None else law[1],
     )
 
 

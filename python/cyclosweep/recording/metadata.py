@@ -62,6 +62,19 @@ class Merge(_Strict):
     same_time: bool = False
 
 
+class Score(_Strict):
+    """Which rows count.
+
+    Attributes
+    ----------
+    abs_max : dict
+        Largest magnitude of a row that counts, by column. Rows beyond are simulated for their
+        effect on the state, neither fitted nor scored.
+    """
+
+    abs_max: dict[str, float] = Field(default_factory=dict)
+
+
 def _named_column(value: object) -> object:
     """Accept the short form ``torque_nm = "TORQUE"``."""
     return {"column": value} if isinstance(value, str) else value
@@ -76,6 +89,8 @@ class Metadata(_Strict):
         Shaft at which torque and angle were measured.
     drive : str or None
         Built-in name, or a drive file beside the metadata file.
+    torque_from : {"sensor", "motor-current"}
+        Where the torque comes from: a sensor, or computed from the current of a motor.
     angle_resolution_deg : float or None
         Step of the angle reading [deg]; 0 or None: continuous.
     history : {"per-run", "continuous"}
@@ -88,12 +103,15 @@ class Metadata(_Strict):
         File column, scale and modulo of each canonical column that differs.
     select : dict
         Values to keep, by column; `abs_max` limits magnitudes.
+    score : Score
+        Rows that are fitted and scored; the others are only simulated.
     merge : Merge
         Rows to average.
     """
 
     side: Literal["input", "output"] | None = None
     drive: str | None = None
+    torque_from: Literal["sensor", "motor-current"] = "sensor"
     angle_resolution_deg: float = Field(default=0.0, ge=0)
     history: Literal["per-run", "continuous"] = "per-run"
     reset_between_runs: bool = False
@@ -103,6 +121,7 @@ class Metadata(_Strict):
         default_factory=dict
     )
     select: dict[str, list[SelectValue] | dict[str, float]] = Field(default_factory=dict)
+    score: Score = Field(default_factory=Score)
     merge: Merge = Field(default_factory=Merge)
 
     @model_validator(mode="after")

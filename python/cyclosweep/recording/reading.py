@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,7 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     sources = _sources(meta)
     frame, notes = _load(path, meta_path, meta, sources)
     columns = _canonical(path, frame, sources, notes)
+    columns["unscored"] = _beyond(meta.score.abs_max, columns, frame)
     columns = _select(path, meta_path, meta, columns, frame, notes)
     if meta.merge.same_time:
         columns = _merge(path, columns, notes)
@@ -54,6 +56,13 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     _recognise_angle(columns, meta, notes)
     run = columns.pop("run")
     assert run is not None  # _canonical makes one where the file has none
+    beyond = columns.pop("unscored")
+    unscored = None if beyond is None else beyond > 0.5
+    if unscored is not None and unscored.any():
+        notes.append(
+            f"{np.count_nonzero(unscored)} of {len(unscored)} samples lie beyond the limits of "
+            "[score]: simulated for what they do to the drive, neither fitted nor scored."
+        )
     resolution = meta.angle_resolution_deg
     if resolution == 0 and columns["angle_deg"] is not None:
         resolution = angle_lattice(columns["angle_deg"])
@@ -66,8 +75,10 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
         "path": path,
         **columns,
         "run": run.astype(np.int64),
+        "unscored": unscored,
         "side": meta.side or "input",
         "drive": _drive(meta, meta_path),
+        "torque_from": meta.torque_from,
         "angle_resolution_deg": resolution,
         "history": meta.history,
         "reset_between_runs": meta.reset_between_runs,
@@ -129,13 +140,14 @@ def _load(
         if is_text and column in wanted:
             raise InputError(f"{meta_path}, key select.{key}: found text, expected numbers")
         (words if is_text else wanted).add(column)
-    for key in meta.abs_max:
-        column = sources[key].column if key in sources else key
-        if column not in header:
-            raise InputError(
-                f"{meta_path}, key select.abs_max.{key}: not a column of {path}: {found}"
-            )
-        wanted.add(column)
+    for table_name, limits in (("select", meta.abs_max), ("score", meta.score.abs_max)):
+        for key in limits:
+            column = sources[key].column if key in sources else key
+            if column not in header:
+                raise InputError(
+                    f"{meta_path}, key {table_name}.abs_max.{key}: not a column of {path}: {found}"
+                )
+            wanted.add(column)
     if both := wanted & words:
         raise InputError(f"{meta_path}, key select: {min(both)} is selected as text and as number")
     if parquet:
@@ -168,6 +180,20 @@ def _canonical(
                 f"{run[wrong[0]]:g}, expected an integer"
             )
     return columns
+
+
+def _beyond(
+    limits: Mapping[str, float], columns: dict[str, Floats | None], frame: pl.DataFrame
+) -> Floats | None:
+    """One where a row does not count, zero where it does; None without limits."""
+    if not limits:
+        return None
+    beyond = np.zeros(frame.height)
+    for key, limit in limits.items():
+        own = columns.get(key)
+        values = frame[key].to_numpy() if own is None else own
+        beyond[np.abs(values) > limit] = 1.0
+    return beyond
 
 
 def _select(

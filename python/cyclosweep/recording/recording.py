@@ -19,6 +19,9 @@ from cyclosweep.recording.messages import printable
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_COLUMNS = ("torque_nm", "angle_deg", "time_s", "crank_deg", "temperature_c")
+_KINDS: dict[str, type] = {"run": np.int64, "unscored": np.bool_}
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Recording:
@@ -47,6 +50,8 @@ class Recording:
         Shaft at which torque and angle were measured.
     drive : str or None
         Built-in name of the drive, or path to a drive file.
+    torque_from : {"sensor", "motor-current"}
+        Whether torque was measured, or computed from the current of a motor.
     angle_resolution_deg : float
         Step of the angle reading [deg]; 0 where it is continuous.
     history : {"per-run", "continuous"}
@@ -57,6 +62,8 @@ class Recording:
         Runs simulated for their effect on the state, neither fitted nor scored.
     holdout_runs : tuple of int
         Runs kept for the verdict; empty: chosen by blocks.
+    unscored : ndarray of bool or None
+        Samples simulated for their effect on the state, neither fitted nor scored; None: all count.
     notes : tuple of str
         What was recognised and changed while reading.
     faults : tuple of Fault
@@ -75,21 +82,23 @@ class Recording:
     temperature_c: Floats | None = None
     side: Literal["input", "output"] = "input"
     drive: str | None = None
+    torque_from: Literal["sensor", "motor-current"] = "sensor"
     angle_resolution_deg: float = 0.0
     history: Literal["per-run", "continuous"] = "per-run"
     reset_between_runs: bool = False
     conditioning_runs: tuple[int, ...] = ()
     holdout_runs: tuple[int, ...] = ()
+    unscored: NDArray[np.bool_] | None = None
     notes: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
     sha256: str | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        for name in ("torque_nm", "angle_deg", "time_s", "crank_deg", "temperature_c", "run"):
+        for name in (*_COLUMNS, "run", "unscored"):
             given = getattr(self, name)
             if given is None:
                 continue
-            array = np.asarray(given, dtype=np.int64 if name == "run" else np.float64)
+            array: NDArray[Any] = np.asarray(given, dtype=_KINDS.get(name, np.float64))
             if array.ndim != 1 or len(array) != len(self.torque_nm):
                 raise ValueError(
                     f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
@@ -151,6 +160,7 @@ class Recording:
             "run": np.asarray(np.ones(len(torque)) if run is None else run, dtype=np.int64),
             "crank_deg": _floats(crank_deg),
             "temperature_c": _floats(temperature_c),
+            "unscored": _floats(known.pop("unscored", None)),
         }
         whole = cls(name=name, **given, **known)  # refuses columns of unequal length
         notes = list(whole.notes)
@@ -161,6 +171,12 @@ class Recording:
 
     def __len__(self) -> int:
         return len(self.torque_nm)
+
+    @property
+    def counts(self) -> NDArray[np.bool_]:
+        """Mask of the samples that are fitted or scored."""
+        whole = ~self.in_runs(self.conditioning_runs)
+        return whole if self.unscored is None else whole & ~self.unscored
 
     @property
     def is_program(self) -> bool:
@@ -194,7 +210,7 @@ class Recording:
         """Return a part of the recording, in the order recorded."""
         parts: dict[str, Any] = {
             name: None if (array := getattr(self, name)) is None else array[rows]
-            for name in ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
+            for name in (*_COLUMNS, "run", "unscored")
         }
         return replace(self, **parts)
 

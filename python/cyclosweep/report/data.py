@@ -56,6 +56,10 @@ class HeldOut:
         Error of the published model and of the repaired one [deg].
     floor_deg : float or None
         What noise or replicates leave [deg].
+    told_before_deg, told_after_deg : float or None
+        Where the errors are of a forecast: those of the same models told the flank in contact.
+    near_before_deg, near_after_deg : float or None
+        Where they are: root mean square distance to the predicted curve.
     """
 
     block: str
@@ -63,6 +67,10 @@ class HeldOut:
     rmse_before_deg: float
     rmse_after_deg: float
     floor_deg: float | None = None
+    told_before_deg: float | None = None
+    told_after_deg: float | None = None
+    near_before_deg: float | None = None
+    near_after_deg: float | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -120,8 +128,8 @@ class ReportData:
 
     @property
     def scored(self) -> NDArray[np.bool_]:
-        """Samples that count: all but the conditioning runs."""
-        return ~self.recording.in_runs(self.recording.conditioning_runs)
+        """Samples that count: all but conditioning runs and those beyond the limits of [score]."""
+        return self.recording.counts
 
     @property
     def noise(self) -> tuple[float, float]:

@@ -51,6 +51,7 @@ def page(data: ReportData) -> str:
             _top(data),
             _verdict(data),
             picture("loop"),
+            _list("What the loop shows", tables.findings(data)),
             _list("Where simulation and recording differ", tables.regions(data)),
             _effects(data),
             _paragraph("What remains without a name", tables.unknown(data)),

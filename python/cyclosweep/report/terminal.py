@@ -64,6 +64,7 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         yield _effects(effects)
     rest = tables.unknown(data)
     for heading, lines in (
+        ("What the loop shows", tables.findings(data)),
         ("What remains without a name", [rest] if rest else []),
         ("Where simulation and recording differ", tables.regions(data)[:3]),
         ("Explanations that fit", tables.explanations(data)[:4]),

@@ -20,7 +20,8 @@ fn same_length(expected: usize, found: &[usize]) -> PyResult<()> {
 /// Angle and friction torque of a spring behind a dead zone with slip elements in parallel.
 #[pyfunction]
 #[pyo3(signature = (torque, offset, restart, start_angle, slip_angle, share, *, free_play, compliance,
-                    limit, load_factor=0.0, growth=0.0, reference_torque=1.0))]
+                    limit, load_factor=0.0, growth=0.0, reference_torque=1.0, law_torque=None,
+                    law_twist=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments on the Python side"
@@ -39,6 +40,8 @@ fn solve_slip<'py>(
     load_factor: f64,
     growth: f64,
     reference_torque: f64,
+    law_torque: Option<Column<'py>>,
+    law_twist: Option<Column<'py>>,
 ) -> PyResult<(Reals<'py>, Reals<'py>)> {
     let n = torque.len()?;
     same_length(n, &[offset.len()?, restart.len()?, start_angle.len()?])?;
@@ -53,9 +56,16 @@ fn solve_slip<'py>(
         growth,
         reference_torque,
     };
+    let (law_torque, law_twist) = match (&law_torque, &law_twist) {
+        (Some(torque), Some(twist)) => (torque.as_slice()?, twist.as_slice()?),
+        _ => (&[] as &[f64], &[] as &[f64]),
+    };
+    same_length(law_torque.len(), &[law_twist.len()])?;
     let spring = Spring {
         free_play,
         compliance,
+        law_torque,
+        law_twist,
     };
     let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
     py.detach(|| {

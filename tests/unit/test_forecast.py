@@ -1,0 +1,187 @@
+"""Forecasts of loops whose residual is error of the model: crossings, elastic law, findings."""
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.holdout import distance_to_curve, replicate_floor
+from cyclosweep.diagnosis.problem import prepare
+from cyclosweep.recording import Recording
+from cyclosweep.simulate import EffectValue, Model, elastic_law
+
+SLIDE = {"slip_deg": 0.05, "scatter": 0.8, "slack": 0.0, "growth": 0.6, "reference_nm": 8.0}
+
+
+def truth(zero_nm=0.6, coulomb_nm=2.0):
+    return Model(
+        compliance_deg_per_nm=0.09,
+        free_play_deg=0.8,
+        datum_deg=1.5,
+        torque_zero_nm=zero_nm,
+        side="output",
+        effects=(
+            EffectValue("friction_hysteresis", SLIDE, (coulomb_nm,)),
+            EffectValue("load_dependent_friction", SLIDE, (0.2,)),
+            EffectValue("contact_stiffening", {"turn_nm": 0.8}, (0.5,)),
+        ),
+    )
+
+
+def ramps(top=24.0, runs=3, per_run=500):
+    one = top * np.concatenate(
+        [np.linspace(0, 1, per_run // 4), np.linspace(1, -1, per_run // 2),
+         np.linspace(-1, 0, per_run // 4)]
+    )  # fmt: skip
+    torque = np.tile(one, runs)
+    run = np.repeat(np.arange(100, 100 + runs), len(one))
+    return Recording.from_arrays(
+        torque, time_s=np.arange(len(torque)) * 0.04, run=run, side="output", history="continuous",
+        conditioning_runs=(100,), holdout_runs=(99 + runs,),
+    )  # fmt: skip
+
+
+def measured(model, steps_deg=0.1, **programme):
+    """Loops of a model with steps tied to the position, as a mesh makes them."""
+    load = ramps(**programme)
+    angle = cs.simulate(model, load).angle_deg
+    rng = np.random.default_rng(1)
+    angle = angle + steps_deg * np.sin(2 * np.pi * angle / 0.7) + 0.002 * rng.normal(size=len(load))
+    return load.with_angle(angle)
+
+
+def drive():
+    known = cs.Drive.reference_87()
+    return known.model_copy(
+        update={"output_stiffness_nm_per_arcmin": 0.2, "free_play_deg": 0.8 * known.ratio}
+    )
+
+
+@pytest.fixture(scope="module")
+def found():
+    return cs.diagnose(measured(truth()), drive())
+
+
+def test_elastic_law_is_solved_exactly():
+    model = truth(zero_nm=0.0)
+    torque = np.linspace(0.0, 24.0, 400)
+    angle = cs.simulate(model, Recording.from_arrays(torque, side="output")).angle_deg
+    friction = 2.0 + 0.2 * 18.0
+    law = elastic_law(model, 24.0)
+    # Slid all the way, the elastic torque is what friction leaves: T = T_e + Y + mu T_e.
+    elastic = (24.0 - 2.0) / 1.2
+    expected = 1.5 + 0.8 + 0.09 * elastic + 0.5 * 0.8 * np.log1p(elastic / 0.8)
+    assert friction > 0
+    assert angle[-1] == pytest.approx(expected, abs=2e-3)
+    assert np.all(np.diff(law.twist_deg) > 0)
+
+
+def test_forecast_and_its_inverse_agree():
+    model = truth()
+    load = ramps()
+    there = cs.simulate(model, load)
+    back = cs.simulate(model, there, predict="torque")
+    in_contact = np.abs(there.torque_nm) > 8
+    np.testing.assert_allclose(back.torque_nm[in_contact], there.torque_nm[in_contact], atol=0.05)
+
+
+def test_torque_zero_moves_both_crossings_alike():
+    def crossings(zero_nm):
+        load = ramps(runs=2)
+        angle = cs.simulate(truth(zero_nm), load).angle_deg
+        through = np.flatnonzero((np.diff(np.sign(angle - 1.5)) != 0) & (load.run[1:] == 101))
+        return load.torque_nm[through]
+
+    np.testing.assert_allclose(crossings(1.0) - crossings(0.0), 1.0, atol=0.25)
+
+
+def test_model_file_keeps_torque_zero(tmp_path):
+    path = tmp_path / "model.json"
+    path.write_text(truth().to_json())
+    assert cs.Model.from_json(path).torque_zero_nm == 0.6
+
+
+def test_free_forecast_comes_close_to_what_is_left(found):
+    blocks = found.content["repaired"]["blocks"]
+    (block,) = blocks
+    assert block["after_deg"] < 0.25 * block["before_deg"]
+    assert block["after_deg"] < 0.13  # steps of 0.1 deg leave 0.07
+    assert block["told_after_deg"] < 0.13
+    assert block["near_after_deg"] <= block["after_deg"]
+    assert block["floor_deg"] < 0.01  # noise-free replicates
+    names = {e["name"] for e in found.effects}
+    assert {"friction_hysteresis", "load_dependent_friction"} <= names
+    assert "forecast" in found.statement
+
+
+def test_written_model_is_the_fitted_one(found, tmp_path):
+    recording = found.recording
+    path = tmp_path / "model.json"
+    path.write_text(found.model.to_json())
+    angle = cs.simulate(cs.Model.from_json(path), recording).angle_deg
+    held = recording.run == 102
+    error = float(np.sqrt(np.mean((recording.angle_deg - angle)[held] ** 2)))
+    assert error == pytest.approx(found.content["repaired"]["holdout_rmse_deg"], rel=0.02)
+
+
+def test_calibration_of_a_loop_is_found(found):
+    model = found.model
+    friction = next(e for e in model.effects if e.name == "friction_hysteresis").amplitudes[0]
+    assert friction == pytest.approx(2.0, abs=0.5)
+    assert model.torque_zero_nm == pytest.approx(0.6, abs=0.4)
+
+
+def test_loop_is_described(found):
+    topics = {row["topic"] for row in found.content["findings"]}
+    assert {
+        "play", "friction hysteresis", "friction that grows with load", "stiffness", "staircase",
+    } <= topics  # fmt: skip
+    assert found.verdict == "UNKNOWN_PHYSICS"
+    hidden = {row["name"] for row in found.content["not_testable"]}
+    assert {"other_mesh_positions", "temperature"} <= hidden
+    assert "independent_torque" not in hidden
+
+
+def test_friction_that_never_breaks_away_gives_no_play():
+    found = cs.diagnose(measured(truth(0.0), steps_deg=0.05, top=4.0), drive())
+    rows = {row["topic"]: row["text"] for row in found.content["findings"]}
+    assert "friction-censored" in rows["play"]
+    assert rows["stiffness"].startswith("Not reported")
+
+
+def test_distance_forgives_a_late_crossing():
+    recording = measured(truth(), steps_deg=0.0)
+    problem = prepare(recording, drive().nominal_line("output"), 8)
+    late = np.roll(recording.angle_deg, 4)
+    rows = problem.whole_held_out
+    rms = float(np.sqrt(np.mean((late - recording.angle_deg)[rows] ** 2)))
+    assert distance_to_curve(problem, late, rows) < 0.5 * rms
+
+
+def test_floor_needs_a_replicate():
+    recording = measured(truth())
+    problem = prepare(recording, drive().nominal_line("output"), 8)
+    assert replicate_floor(problem, problem.whole_held_out) < 0.01
+    turned = recording.torque_nm.copy()
+    turned[recording.run == 102] *= -1
+    other = Recording.from_arrays(
+        turned, recording.angle_deg, run=recording.run, side="output", history="continuous",
+        conditioning_runs=(100,), holdout_runs=(102,),
+    )  # fmt: skip
+    apart = prepare(other, drive().nominal_line("output"), 8)
+    assert replicate_floor(apart, apart.whole_held_out) is None
+
+
+def test_rows_beyond_the_limits_are_simulated_but_do_not_count(tmp_path):
+    path = tmp_path / "loop.csv"
+    rows = "".join(f"{t},{28 + 2.7 * t:.3f},{2 * t}\n" for t in range(1, 31))
+    path.write_text("torque_nm,angle_deg,SET\n" + rows)
+    path.with_suffix(".toml").write_text("[score]\nabs_max = { SET = 40 }\n")
+    recording = Recording.read(path)
+    assert len(recording) == 30
+    assert recording.counts.sum() == 20
+    assert any("neither fitted nor scored" in note for note in recording.notes)
+    problem = prepare(recording, cs.Drive.reference_87().nominal_line("input"), 8)
+    assert problem.count == 20
+    path.with_suffix(".toml").write_text("[score]\nabs_max = { NOBODY = 40 }\n")
+    with pytest.raises(cs.InputError, match=r"score\.abs_max\.NOBODY"):
+        Recording.read(path)
