@@ -76,7 +76,12 @@ def meet(recording: Path, results: Path, key: str, names: tuple[str, ...]) -> No
 
 
 def meet_opponents(
-    plan: Sequence[Entry], recordings: Path, results: Path, who: str, costly_limit: int
+    plan: Sequence[Entry],
+    recordings: Path,
+    results: Path,
+    who: str,
+    costly_limit: int,
+    first: int = 0,
 ) -> list[tuple[Callable[..., None], tuple[Any, ...]]]:
     """List the meetings of a challenge: single effects in the open, and nothing missing.
 
@@ -90,6 +95,8 @@ def meet_opponents(
         Which opponents; those whose library is absent stay away.
     costly_limit : int
         Recordings of each stratum that the costly ones see.
+    first : int
+        Place in the plan from which recordings are shown; those before are only counted.
 
     Raises
     ------
@@ -111,5 +118,7 @@ def meet_opponents(
         count[stratum.name] += 1
         costly = COSTLY if who == "all" and count[stratum.name] <= costly_limit else ()
         there = tuple(name for name in (*CHEAP, *costly) if name not in left_out)
+        if entry.number < first:
+            continue
         jobs.append((meet, (recordings / entry.key, results, entry.key, there)))
     return jobs
