@@ -217,6 +217,7 @@ def sizes(outcomes: Chosen) -> list[Figure]:
         ),
     ]
     right = [o for o in outcomes if o.named_right]
+    straight = [o for o in right if not SLOPES & set(o.causes)]
     for name in sorted({key for o in right for key in o.pulls}):
         pulls = [o.pulls[name] for o in right if name in o.pulls]
         bias = bootstrapped(pulls)
@@ -227,7 +228,26 @@ def sizes(outcomes: Chosen) -> list[Figure]:
                 at_most=0.5,
             )
         )
+        for words, there in (("median", right), ("median, effects that are no slope", straight)):
+            middle = bootstrapped([o.pulls[name] for o in there if name in o.pulls], "median")
+            figures.append(
+                _figure(
+                    f"the same, {words}: {name}",
+                    Estimate(abs(middle.value), *_folded(middle), middle.count),
+                )
+            )
     return figures
+
+
+SLOPES = frozenset(
+    {
+        "contact_stiffening",
+        "clearance_takeup",
+        "overload_softening",
+        "phase_dependent_compliance",
+    }
+)
+"""Effects that are a compliance themselves: how much of it is the baseline's is a convention."""
 
 
 def _folded(estimate: Estimate) -> tuple[float, float]:
@@ -251,6 +271,8 @@ def prediction(outcomes: Chosen) -> list[Figure]:
             "held-out error over the fitted true model's, median", bootstrapped(fitted, "median")
         ),
         _figure("held-out error over the true model's at its true parameters", bootstrapped(known)),
+        _figure("the same, median", bootstrapped(known, "median")),
+        _figure("the same, 95 of 100 within", bootstrapped(known, "late")),
     ]
 
 
