@@ -280,7 +280,7 @@ def run_measured(
     rows += [bench.row(v, _silent(bench, v)) for v in nulls]
     rows += _removed(bench, plain)
     rows += _found_again(bench, both, laid, seed)
-    rows += [bench.row(v, _doubts(bench.said(v))) for v in mixed]
+    rows += [bench.row(v, doubts(bench.said(v))) for v in mixed]
     content = [asdict(row) for row in rows]
     (folder / "measured.json").write_text(json.dumps(_plain_numbers(content), indent=1))
     return rows
@@ -359,7 +359,7 @@ def _silent(bench: Bench, variant: Variant) -> bool:
     return verdict not in ALARMS and verdict != "FAILURE"
 
 
-def _doubts(said: dict[str, Any]) -> bool:
+def doubts(said: dict[str, Any]) -> bool:
     """Whether a diagnosis of confounded causes says so and names nothing it cannot know."""
     named = {str(e.get("name")) for e in said.get("effects") or []}
     sure = said.get("verdict") == "IDENTIFIED" and said.get("stationary", True)
