@@ -265,8 +265,9 @@ def write_loops(
     lines = ['side = "output"', f'drive = "{drive}"', 'history = "continuous"']
     if conditioning:
         lines.append(f"conditioning_runs = {list(conditioning)}")
-    # What is held out is predicted like any other ramp.
-    (folder / "program.toml").write_text("\n".join(lines) + "\n")
+    # A programme needs no drive, and what is held out is predicted like any other ramp.
+    said = [line for line in lines if not line.startswith("drive")]
+    (folder / "program.toml").write_text("\n".join(said) + "\n")
     if holdout:
         lines.append(f"holdout_runs = {list(holdout)}")
     (folder / "recording.toml").write_text("\n".join(lines) + "\n")

@@ -87,6 +87,8 @@ def test_written_loops_say_how_to_read_them(file: Path, tmp_path: Path) -> None:
     assert "holdout_runs = [102]" in text
     # A programme is predicted whole, what was held out with it.
     assert "holdout" not in (tmp_path / "a" / "program.toml").read_text()
+    # A prediction sees no drive file.
+    assert "drive" not in (tmp_path / "a" / "program.toml").read_text()
 
 
 def test_nulls_of_a_file_come_in_both_orders_and_by_flank(file: Path) -> None:

@@ -87,6 +87,6 @@ SUBSET = Size(
     tuning=140,
     costly_nulls=24,
     costly_open=3,
-    steps=4,
+    steps=8,
 )
 """A quarter of an hour on two cores."""
