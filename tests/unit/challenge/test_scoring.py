@@ -1,6 +1,7 @@
 """Scoring against outcomes whose figures are known."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -142,6 +143,9 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
 
     for k in range(200):
         add(k, "C6", 0.0, float(rng.normal()) - 3.0, float(rng.normal()))
+    for k in range(400, 440):
+        add(k, "C6", 0.0, -3.0, 9.0)
+        outcomes[-1] = replace(outcomes[-1], noise="ar0.6")
     for k in range(200, 400):
         d = float(rng.choice([3.0, 4.0, 5.0, 6.0]))
         add(k, "C0", d, float(rng.normal()) - 3.0 + d, 0.3 * d + float(rng.normal()))
@@ -152,6 +156,8 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
     assert curves["who"].tuned_ahead.value > curves["who"].ahead.value
     assert curves[OURS].ahead.value < 0.0 < curves["who"].needed.value
     assert curves[OURS].tuned_ahead.value == 0.0
+    assert dict(curves["who"].elsewhere)["ar0.6"].value == 1.0
+    assert dict(curves[OURS].elsewhere)["ar0.6"].value == 0.0
     assert curves["who"].needed.low < curves["who"].needed.value < curves["who"].needed.high
     reached = {f.name: f for f in contest(list(curves.values()))}
     assert reached["opponents at 1 % behind the diagnosis as it is, rich"].met is True

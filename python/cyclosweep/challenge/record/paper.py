@@ -338,9 +338,28 @@ def _power(score: Plain) -> str:
         )
         parts.append(
             f"### {programme.capitalize()} programme\n\n"
-            f"![Power against visibility](proof-power-{programme}.svg)\n\n" + table(heads, rows)
+            f"![Power against visibility](proof-power-{programme}.svg)\n\n"
+            + table(heads, rows)
+            + _elsewhere(rivals)
         )
     return "\n\n".join(parts)
+
+
+def _elsewhere(rivals: Sequence[Plain]) -> str:
+    """False alarms of thresholds that were set on white noise, under every other family."""
+    families = [f for f in NOISES if any(f in o["elsewhere"] for o in rivals)]
+    if not families:
+        return ""
+    rows = (
+        (o["who"], *(text(o["elsewhere"].get(f), 2) for f in families))
+        for o in rivals
+        if o["elsewhere"]
+    )
+    return (
+        "\n\nFalse alarms at those thresholds under other noise. A threshold that holds on white "
+        "noise alone is no use to a test engineer, whose noise is not; the diagnosis as it is "
+        "stands in the table of false alarms above.\n\n" + table(("who", *families), rows)
+    )
 
 
 def _needed(e: Plain | None) -> str:

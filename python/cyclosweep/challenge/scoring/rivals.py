@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.power import d_for_power
@@ -43,6 +44,8 @@ class OpponentCurve:
         Share found by the diagnosis as it is, or with its evidence tuned alike, minus the share
         found by the opponent at that threshold, on the same recordings of d = 3 to 10 [-]. The
         intervals draw recordings with nothing missing, and so thresholds, again as well.
+    elsewhere : tuple of (str, Estimate)
+        Family of noise, and false alarms at that threshold under it: it was set on white noise.
     default_power, tuned_power, tuned_naming : tuple of (float, Estimate)
         Visibility and share found, or named right, at defaults and at that threshold; naming
         is empty for opponents that name nothing.
@@ -56,6 +59,7 @@ class OpponentCurve:
     needed: Estimate
     ahead: Estimate
     tuned_ahead: Estimate
+    elsewhere: tuple[tuple[str, Estimate], ...]
     default_power: tuple[tuple[float, Estimate], ...]
     tuned_power: tuple[tuple[float, Estimate], ...]
     tuned_naming: tuple[tuple[float, Estimate], ...]
@@ -75,6 +79,7 @@ class OpponentCurve:
             "needed": vars(self.needed),
             "ahead": vars(self.ahead),
             "tuned_ahead": vars(self.tuned_ahead),
+            "elsewhere": {family: vars(e) for family, e in self.elsewhere},
             "default_power": listed(self.default_power),
             "tuned_power": listed(self.tuned_power),
             "tuned_naming": listed(self.tuned_naming),
@@ -165,6 +170,12 @@ def _curve(
         ),
         ahead=_ahead(middle, theirs, statistics, None),
         tuned_ahead=_ahead(middle, theirs, statistics, own),
+        elsewhere=tuple(
+            (family, share_of([said[o.key][who]["score"] > threshold for o in others]))
+            for family in NOISES
+            if (others := [o for o in there if o.tier == "C6" and o.noise == family])
+            and family != "white"
+        ),
         default_power=tuple(flagged),
         tuned_power=tuple(found),
         tuned_naming=tuple(named),
