@@ -360,10 +360,12 @@ def _silent(bench: Bench, variant: Variant) -> bool:
 
 
 def doubts(said: dict[str, Any]) -> bool:
-    """Whether a diagnosis of confounded causes says so and names nothing it cannot know."""
+    """Whether a diagnosis of confounded causes says so and names nothing it cannot know.
+
+    That no difference was found would be wrong here, too.
+    """
     named = {str(e.get("name")) for e in said.get("effects") or []}
-    sure = said.get("verdict") == "IDENTIFIED" and said.get("stationary", True)
-    return not sure and not named & UNSHOWN and said.get("verdict", "FAILURE") != "FAILURE"
+    return said.get("verdict") in {"AMBIGUOUS", "UNKNOWN_PHYSICS"} and not named & UNSHOWN
 
 
 def _rms(error: Array, loops: Loops, ramp: int, *, free_datum: bool) -> float:
@@ -483,12 +485,15 @@ def _found_again(
     rows = []
     for v in laid:
         number, plain = reference[v.file]
-        shape = left_over(v.loops, signature(v.detail, v.loops, _rng(seed, number, v.detail)))
+        # The conditioning ramp is not fitted, so that what a model says of it does not count.
+        fitted, use = v.loops.only(FIRST, SECOND), np.isin(v.loops.run, (FIRST, SECOND))
+        laid_on = signature(v.detail, v.loops, _rng(seed, number, v.detail))
+        shape = left_over(fitted, laid_on[use])
         change = angle[f"{v.key}-again"] - angle[f"{plain.key}-again"]
         there = np.isfinite(change)
         share = math.nan
         if there.all():
-            taken = left_over(v.loops, change)
+            taken = left_over(fitted, change[use])
             share = float(taken @ shape / (shape @ shape) / v.size_deg)
         shown = v.detail in bench.named(plain)
         good = None if shown else v.detail in bench.named(v)

@@ -143,7 +143,8 @@ def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: P
         ({"verdict": "IDENTIFIED", "effects": [{"name": "creep"}]}, False),
         ({"verdict": "UNKNOWN_PHYSICS", "effects": [{"name": "creep"}]}, True),
         ({"verdict": "AMBIGUOUS", "effects": [{"name": "thermal_drift"}]}, False),
-        ({"verdict": "INSUFFICIENT_DATA"}, True),
+        ({"verdict": "UNKNOWN_PHYSICS", "stationary": False}, True),
+        ({"verdict": "INSUFFICIENT_DATA"}, False),
         ({"failure": "exit status 1"}, False),
     ],
 )

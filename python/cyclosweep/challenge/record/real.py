@@ -203,8 +203,8 @@ def _confounded(rows: Sequence[Plain]) -> str:
         "### Several causes at once\n\n"
         "A file that warmed up while it was taken, and the same kind of drive cold at another "
         "locking position, as one recording: temperature, run-in, reaming and position differ "
-        "together and none was recorded. Right is an answer that leaves the doubt and names "
-        "nothing that these files cannot show.\n\n"
+        "together and none was recorded. Right is AMBIGUOUS or UNKNOWN_PHYSICS without a "
+        "name that these files cannot show.\n\n"
         + _table(
             ("recording", "said", "named", "right"),
             (
