@@ -3,11 +3,19 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO_OUT ?= out/demo
+PROOF_OUT ?= build/proof
+PROOF_SEED ?= 500000
+PROOF_FLAGS ?=
+RECORD_OUT ?= build/record
+RECORD_SEED ?= 100000
+RECORD_FLAGS ?=
+RECORD := $(BIN)/python -m cyclosweep.challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
-.PHONY: help env demo test test-rust test-python test-grid lint bench docs golden clean
+.PHONY: help env demo test test-rust test-python test-grid lint bench docs golden proof \
+	proof-record clean
 .DEFAULT_GOAL := help
 
 help:
@@ -16,6 +24,8 @@ help:
 	@echo "make test-grid  closed form against a 0.01 deg grid on 10,000 random drives, some minutes"
 	@echo "make lint    rustfmt, clippy, ruff, mypy, stubtest"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
+	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; a quarter of an hour"
+	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
 	@echo "make docs    regenerate the tables in docs that come from code"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
 
@@ -54,6 +64,13 @@ bench: env
 	$(BIN)/python -m pip install --quiet "numba>=0.61"
 	$(BIN)/python benches/run.py --full
 	$(BIN)/python benches/instructions.py
+
+# The loops of a real drive take part where CYCLOSWEEP_MEASURED names the folder of their files.
+proof: env
+	$(RECORD) --subset --fresh --out $(PROOF_OUT) --seed $(PROOF_SEED) --verify 20 --against docs/proof.json $(PROOF_FLAGS)
+
+proof-record: env
+	$(RECORD) --out $(RECORD_OUT) --seed $(RECORD_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
 
 docs: env
 	$(BIN)/python docs/generate.py

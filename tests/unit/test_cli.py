@@ -192,3 +192,22 @@ def test_simulate_takes_the_least_programme_and_spares_what_it_reads(tmp_path: P
     assert_one_line(
         run("simulate", "reference-87", str(programme), "--out", str(nowhere)), 2, str(nowhere)
     )
+
+
+def test_a_quick_diagnosis_writes_the_same_verdict_without_a_report(tmp_path: Path) -> None:
+    from cyclosweep.challenge import make_case
+
+    make_case(7, effects=("friction_hysteresis",), d=30, programme="poor", samples=400).write(
+        tmp_path
+    )
+    quick = run("diagnose", "recording.csv", "--out", "quick", "--quick", cwd=tmp_path)
+    whole = run("diagnose", "recording.csv", "--out", "whole", cwd=tmp_path)
+    assert quick.returncode == whole.returncode == 0, quick.stderr + whole.stderr
+    files = {
+        name: sorted(p.name for p in (tmp_path / name).iterdir()) for name in ("quick", "whole")
+    }
+    assert files["quick"] == ["diagnosis.json", "model.json"]
+    assert files["whole"] == ["diagnosis.json", "model.json", "report.html"]
+    said = [json.loads((tmp_path / name / "diagnosis.json").read_text()) for name in files]
+    for key in ("verdict", "mismatch", "explanation_set"):
+        assert said[0][key] == said[1][key]

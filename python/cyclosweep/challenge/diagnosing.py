@@ -14,6 +14,16 @@ from pathlib import Path
 from typing import Any
 
 LAUNCH = "from cyclosweep.cli import main; main()"
+LAUNCH_MANY = """
+import json, sys
+from cyclosweep.cli import app
+for arguments in json.loads(sys.argv[1]):
+    try:
+        app(arguments, standalone_mode=False)
+    except (Exception, SystemExit) as error:
+        print(error, file=sys.stderr)
+"""
+"""Several commands in one process, one after the other; what fails leaves the others alone."""
 KEPT_ENVIRONMENT = ("PATH", "HOME", "LANG", "LC_ALL", "VIRTUAL_ENV", "PYTHONPATH", "SYSTEMROOT")
 
 
@@ -123,12 +133,57 @@ def read_diagnosis(results: Path, key: str) -> dict[str, Any]:
     return answer
 
 
+def predict_batch(
+    waiting: Sequence[tuple[Path, Path, Path]], limit_s: float, program: Sequence[str]
+) -> None:
+    """Let repaired models predict programmes they have not seen, many in one process.
+
+    Parameters
+    ----------
+    waiting : sequence of (Path, Path, Path)
+        Model, programme, and where the prediction goes. A programme's TOML is shown with it.
+    limit_s : float
+        Time allowed for each [s].
+    program : sequence of str
+        Command that starts ``cyclosweep``; where empty, one process of this interpreter
+        makes all predictions, because starting takes longer than predicting.
+    """
+    if program:
+        for model, later, out in waiting:
+            predict(model, later, out, limit_s, program)
+        return
+    with tempfile.TemporaryDirectory(prefix="prediction-") as scratch:
+        work = Path(scratch)
+        calls = []
+        for k, (model, later, _) in enumerate(waiting):
+            shutil.copy(model, work / f"model-{k}.json")
+            shutil.copy(later, work / f"program-{k}.csv")
+            if later.with_suffix(".toml").exists():
+                shutil.copy(later.with_suffix(".toml"), work / f"program-{k}.toml")
+            calls.append(
+                ["simulate", f"model-{k}.json", f"program-{k}.csv", "--out", f"out-{k}.csv"]
+            )
+        _run(
+            [sys.executable, "-c", LAUNCH_MANY],
+            [json.dumps(calls)],
+            work,
+            limit_s * len(waiting) + 30.0,
+        )
+        for k, (_, _, out) in enumerate(waiting):
+            if (work / f"out-{k}.csv").exists():
+                partial = out.with_suffix(".tmp")
+                shutil.copy(work / f"out-{k}.csv", partial)
+                partial.replace(out)
+
+
 def predict(model: Path, later: Path, out: Path, limit_s: float, program: Sequence[str]) -> str:
     """Let a repaired model predict a programme it has not seen; return what went wrong, if so."""
     with tempfile.TemporaryDirectory(prefix="prediction-") as scratch:
         work = Path(scratch)
         shutil.copy(model, work / "model.json")
         shutil.copy(later, work / "program.csv")
+        if later.with_suffix(".toml").exists():
+            shutil.copy(later.with_suffix(".toml"), work / "program.toml")
         message = _run(
             program,
             ["simulate", "model.json", "program.csv", "--out", "prediction.csv"],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +19,8 @@ LARGEST_COMMAND_NM = 24.0
 """Beyond this the motor's current limit holds the torque while the command goes on [N m]."""
 
 CONDITIONING, FIRST, SECOND = 100, 101, 102
+SMALL_PAIRS = ((1, 2), (3, 4))
+"""Repeats among the small ramps, of which the first (0) is conditioning; no ramp twice."""
 INJECTABLE = ("datum_drift", "load_asymmetry", "overload_softening")
 """Effects whose signature can be laid over a measured loop without simulating its friction."""
 
@@ -50,9 +53,14 @@ class Loops:
             }
         )
 
+    def only(self, *runs: int) -> Loops:
+        """Return some of the ramps."""
+        keep = np.isin(self.run, runs)
+        return Loops(self.time_s[keep], self.torque_nm[keep], self.angle_deg[keep], self.run[keep])
 
-def read_loops(path: Path) -> Loops:
-    """Read the large torque ramps of one measured file.
+
+def read_loops(path: Path, *, large: bool = True) -> Loops:
+    """Read the large torque ramps of one measured file, or its small ones.
 
     Rows that share a clock tick are averaged in file order, commands beyond the current limit
     are left out, and revolutions become degrees.
@@ -60,7 +68,7 @@ def read_loops(path: Path) -> Loops:
     table = pl.read_csv(path)
     table = table.rename({name: name.strip().lstrip("\ufeff") for name in table.columns})
     ticks = (
-        table.filter(pl.col("test_nr") >= CONDITIONING)
+        table.filter((pl.col("test_nr") >= CONDITIONING) == large)
         .group_by("test_nr", "TIME", maintain_order=True)
         .mean()
         .filter(pl.col("CONTROL_TORQUE").abs() <= LARGEST_COMMAND_NM)
@@ -73,7 +81,12 @@ def read_loops(path: Path) -> Loops:
     )
 
 
-def repeated_null(loops: Loops, smallest_nm: float = 3.0) -> Loops:
+def repeated_null(
+    loops: Loops,
+    smallest_nm: float = 3.0,
+    pair: tuple[int, int] = (FIRST, SECOND),
+    flank: float = 0.0,
+) -> Loops:
     """Loops with nothing missing and the measurement's own noise.
 
     The two repeats differ by what does not repeat. That difference, divided by the square root
@@ -86,25 +99,83 @@ def repeated_null(loops: Loops, smallest_nm: float = 3.0) -> Loops:
         Measured ramps with two repeats.
     smallest_nm : float
         Torque below which readings are left out [N m].
+    pair : tuple of int
+        The two repeats; their order turns the sign of the noise.
+    flank : float
+        Sign of the torque to keep; zero for both.
     """
-    one, two = (np.flatnonzero(loops.run == number) for number in (FIRST, SECOND))
+    one, two = (np.flatnonzero(loops.run == number) for number in pair)
     count = min(one.size, two.size)
     one, two = one[:count], two[:count]
     torque = loops.torque_nm[one]
     columns = np.column_stack([np.ones(count), np.sign(torque), torque])
-    loaded = (np.abs(torque) >= smallest_nm) & (np.abs(loops.torque_nm[two]) >= smallest_nm)
+    # A ramp that lags behind its repeat is still on the other flank for a reading or two.
+    loaded = np.abs(torque) >= smallest_nm
+    loaded &= np.sign(torque) * loops.torque_nm[two] >= smallest_nm
     line = columns @ np.linalg.lstsq(columns[loaded], loops.angle_deg[one][loaded])[0]
     noise = (loops.angle_deg[two] - loops.angle_deg[one]) / np.sqrt(2.0)
     # The mean difference of a flank is a change of datum or play between the repeats.
     for side in (-1.0, 1.0):
-        flank = loaded & (np.sign(torque) == side)
-        noise[flank] -= noise[flank].mean()
+        here = loaded & (np.sign(torque) == side)
+        if here.any():
+            noise[here] -= noise[here].mean()
+    if flank:
+        loaded &= np.sign(torque) == flank
     return Loops(
         loops.time_s[one][loaded],
         torque[loaded],
         (line + noise)[loaded],
         loops.run[one][loaded],
     )
+
+
+def repeated_nulls(path: Path) -> list[tuple[str, Loops]]:
+    """Every null that the repeats of one file give, each with its name.
+
+    Large ramps give both flanks, the positive and the negative one, each with either sign of
+    the noise; small ramps give both flanks of two pairs. Nulls of one file share their noise
+    and are no independent draws. Pairs that do not repeat are left out.
+    """
+    found = []
+    large, small = read_loops(path), read_loops(path, large=False)
+    for words, loops, smallest, pairs, flanks in (
+        ("large", large, 3.0, ((FIRST, SECOND),), (0.0, 1.0, -1.0)),
+        ("small", small, 1.0, SMALL_PAIRS, (0.0,)),
+    ):
+        for pair in pairs:
+            if not set(pair) <= set(loops.run.tolist()) or not repeats(
+                repeated_null(loops, smallest, pair)
+            ):
+                continue
+            for order in (pair, pair[::-1]):
+                for flank in flanks:
+                    side = {0.0: "", 1.0: ", positive flank", -1.0: ", negative flank"}[flank]
+                    name = f"{words} ramps {order[0]} and {order[1]}{side}"
+                    found.append((name, repeated_null(loops, smallest, order, flank)))
+    return found
+
+
+def _branches(loops: Loops) -> list[NDArray[np.int64]]:
+    """Readings of one ramp between its turning points."""
+    ends = sorted((int(np.argmax(loops.torque_nm)), int(np.argmin(loops.torque_nm))))
+    order = np.arange(loops.torque_nm.size)
+    return [order[: ends[0]], order[ends[0] : ends[1]], order[ends[1] :]]
+
+
+def as_template(first: Loops, second: Loops) -> Array:
+    """Angle of one ramp at the torques of another, branch by branch [deg].
+
+    What one measured ramp says of the next is the floor below which no model can be expected.
+    """
+    predicted = np.full(second.torque_nm.size, np.nan)
+    for known, asked in zip(_branches(first), _branches(second), strict=True):
+        if known.size < 2 or not asked.size:
+            continue
+        torque, place = np.unique(first.torque_nm[known], return_inverse=True)
+        count = np.bincount(place)
+        angle = np.bincount(place, first.angle_deg[known]) / count
+        predicted[asked] = np.interp(second.torque_nm[asked], torque, angle)
+    return predicted
 
 
 def left_over(loops: Loops, angle_deg: Array) -> Array:
@@ -148,11 +219,33 @@ def signature(name: str, loops: Loops, rng: np.random.Generator) -> Array:
 
 def injected(loops: Loops, name: str, size_deg: float, rng: np.random.Generator) -> Loops:
     """Measured loops with an effect of a given size laid over them [deg]."""
-    angle = loops.angle_deg + size_deg * signature(name, loops, rng)
-    return Loops(loops.time_s, loops.torque_nm, angle, loops.run)
+    return with_angle(loops, loops.angle_deg + size_deg * signature(name, loops, rng))
 
 
-def write_loops(loops: Loops, folder: Path, drive: str, conditioning: bool) -> None:
+def with_angle(loops: Loops, angle_deg: Array) -> Loops:
+    """Return the same loops with another angle."""
+    return Loops(loops.time_s, loops.torque_nm, angle_deg, loops.run)
+
+
+def one_after_the_other(first: Loops, second: Loops, shift: int = 100) -> Loops:
+    """Two measurements as one recording, each about its own middle; runs of the second shifted."""
+    middle = [0.5 * (x.angle_deg.max() + x.angle_deg.min()) for x in (first, second)]
+    later = first.time_s[-1] - second.time_s[0] + 600.0
+    return Loops(
+        np.concatenate([first.time_s, second.time_s + later]),
+        np.concatenate([first.torque_nm, second.torque_nm]),
+        np.concatenate([first.angle_deg - middle[0], second.angle_deg - middle[1]]),
+        np.concatenate([first.run, second.run + shift]),
+    )
+
+
+def write_loops(
+    loops: Loops,
+    folder: Path,
+    drive: str,
+    conditioning: Sequence[int] = (),
+    holdout: Sequence[int] = (),
+) -> None:
     """Write loops as a recording.
 
     Parameters
@@ -163,12 +256,18 @@ def write_loops(loops: Loops, folder: Path, drive: str, conditioning: bool) -> N
         Where ``recording.csv`` and ``recording.toml`` go.
     drive : str
         Name or file of the drive, as the TOML states it.
-    conditioning : bool
-        Whether the first ramp is there to condition the drive.
+    conditioning, holdout : sequence of int
+        Ramps that condition the drive, and those kept for the verdict.
     """
     folder.mkdir(parents=True, exist_ok=True)
     loops.frame().write_csv(folder / "recording.csv")
+    loops.frame().drop("angle_deg").write_csv(folder / "program.csv")
     lines = ['side = "output"', f'drive = "{drive}"', 'history = "continuous"']
     if conditioning:
-        lines.append(f"conditioning_runs = [{CONDITIONING}]")
+        lines.append(f"conditioning_runs = {list(conditioning)}")
+    # A programme needs no drive, and what is held out is predicted like any other ramp.
+    said = [line for line in lines if not line.startswith("drive")]
+    (folder / "program.toml").write_text("\n".join(said) + "\n")
+    if holdout:
+        lines.append(f"holdout_runs = {list(holdout)}")
     (folder / "recording.toml").write_text("\n".join(lines) + "\n")

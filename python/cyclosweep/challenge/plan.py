@@ -78,8 +78,17 @@ def contest() -> list[Stratum]:
     return nulls + in_the_open()
 
 
+def tuning() -> list[Stratum]:
+    """Strata that add to those of C6 what the opponents' thresholds need."""
+    return [
+        Stratum("C6", programme, "white", (), weight)
+        for programme, weight in (("rich", 2), ("poor", 5))
+    ]
+
+
 MIXES = {
     "contest": contest,
+    "tuning": tuning,
     "all": lambda: nothing_missing() + in_the_open() + concealed(),
     "null": nothing_missing,
     "open": in_the_open,
@@ -132,7 +141,7 @@ def make_plan(cases: int, seed: int, mix: str = "all", samples: int = 3000) -> l
         Number of cases.
     seed : int
         Seed of the challenge; shuffles the strata within every turn of the plan.
-    mix : {"all", "null", "open", "concealed", "contest"}
+    mix : {"all", "null", "open", "concealed", "contest", "tuning"}
         Which strata take part.
     samples : int
         Readings of each recording.

@@ -18,17 +18,24 @@ ORDERS = {"transmission_error": (1, 2, 3), "phase_dependent_compliance": (1, 2, 
 """Orders of crank position that the true model has to fit."""
 
 
-def _freedom(names: list[str], signatures_deg: Array, programme: Programme) -> Array:
-    """Columns along which the true model's fit can move, shape (N, K)."""
+def _freedom(
+    names: list[str], signatures_deg: Array, programme: Programme
+) -> tuple[Array, list[int]]:
+    """Columns along which the true model's fit can move, shape (N, K).
+
+    Beside each stands the number of the cause whose waves it belongs to; minus one for none.
+    """
     columns = [calibration(programme), signatures_deg]
-    for name in names:
+    owner = [-1] * (3 + len(names))
+    for k, name in enumerate(names):
         if name in ORDERS:
             phase = np.deg2rad(np.outer(programme.crank_deg, ORDERS[name]))
             waves = np.hstack([np.cos(phase), np.sin(phase)])
             if name == "phase_dependent_compliance":
                 waves = waves * programme.torque_nm[:, None]
             columns.append(waves)
-    return np.hstack(columns)
+            owner += [k] * waves.shape[1]
+    return np.hstack(columns), owner
 
 
 def fitting_error(
@@ -43,7 +50,9 @@ def fitting_error(
 
     Calibration, each cause's amplitude and the waves over crank position are fitted to the
     recording by generalised least squares; other shapes are taken as known, so that a real fit
-    of the true model does somewhat worse.
+    of the true model does somewhat worse. Waves that a few mesh positions do not determine are
+    held to the size that the cause really has: a fit without that knowledge predicts so badly
+    between those positions that anything would look good beside it.
 
     Parameters
     ----------
@@ -65,14 +74,21 @@ def fitting_error(
     there = second.take(later.recorded)
     signatures = np.column_stack(held) if held else np.zeros((len(there), 0))
     seen = first.take(found.seen)
-    fitted = noise.whiten(
-        _freedom(names, found.signatures_deg, seen), seen, specimen.compliance_deg_per_nm
-    )
-    size = np.linalg.norm(fitted, axis=0)
+    plain, owner = _freedom(names, found.signatures_deg, seen)
+    predicted, _ = _freedom(names, signatures, there)
+    fitted = noise.whiten(plain, seen, specimen.compliance_deg_per_nm)
+    fitted = fitted * np.sqrt(noise.information())
+    held_to = np.zeros((len(owner), len(owner)))
+    for column, cause in enumerate(owner):
+        if cause >= 0:
+            # As large as all of the cause, for each wave: one over its standard deviation.
+            rms = np.sqrt(np.mean(plain[:, column] ** 2))
+            held_to[column, column] = rms / max(found.visibility.raw_rms_deg[cause], 1e-12)
+    rows = np.vstack([fitted, held_to])
+    size = np.linalg.norm(rows, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    predicted = _freedom(names, signatures, there) / size
     # Directions that the recording does not determine are left where they are, as a fit would.
-    _, singular, turned = np.linalg.svd(fitted / size, full_matrices=False)
+    _, singular, turned = np.linalg.svd(rows / size, full_matrices=False)
     known = singular > 1e-6 * singular[0]
-    spread = (predicted @ turned[known].T) / singular[known]
-    return float(np.sqrt(np.mean(np.sum(spread**2, axis=1)) / noise.information()))
+    spread = ((predicted / size) @ turned[known].T) / singular[known]
+    return float(np.sqrt(np.mean(np.sum(spread**2, axis=1))))

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
 import multiprocessing
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
@@ -19,7 +22,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from cyclosweep.challenge.board.gallery import Exhibit, choose, exhibit
 from cyclosweep.challenge.board.page import write_page
 from cyclosweep.challenge.board.terminal import print_board
-from cyclosweep.challenge.diagnosing import command, diagnose_batch, predict, read_diagnosis
+from cyclosweep.challenge.diagnosing import (
+    command,
+    diagnose_batch,
+    predict,
+    predict_batch,
+    read_diagnosis,
+)
 from cyclosweep.challenge.opponents.contest import absent, meet_opponents
 from cyclosweep.challenge.plan import Entry, make_entry, make_plan
 from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
@@ -56,6 +65,8 @@ class Options:
         Recordings of each stratum that the costly opponents see.
     passphrase : str
         Key of the answers; drawn at random and kept beside the run where empty.
+    until : float
+        Clock of ``time.monotonic`` after which no further work is begun [s].
     """
 
     workers: int = 1
@@ -67,6 +78,11 @@ class Options:
     opponents: str = "all"
     costly_limit: int = 300
     passphrase: str = ""
+    until: float = math.inf
+
+
+class OutOfTimeError(Exception):
+    """The time given is over; what is done is kept."""
 
 
 class Folders:
@@ -114,12 +130,22 @@ def _prepare(entry: Entry, recordings: Path, answers: Path, passphrase: str) -> 
     # With nothing missing there is no repaired model whose predictions would be scored, and a
     # programme for each of ten thousand nulls would take gigabytes.
     predicted = entry.stratum.tier != "C6"
-    case.write(recordings / entry.key, program=predicted)
+    written = case.write(recordings / entry.key, program=predicted)
     answer = dict(case.truth)
+    # With these a recording can be checked, or made again, after it was deleted.
+    answer["files"] = {
+        file.name: hashlib.sha256(file.read_bytes()).hexdigest()
+        for file in sorted(written.iterdir())
+    }
     if predicted:
         answer["held_out_clean_deg"] = case.held_out_clean_deg.round(5).tolist()
         answer["held_out_read_deg"] = case.held_out_read_deg.round(5).tolist()
     return entry.key, seal(answer, answers / f"{entry.key}.sealed", passphrase)
+
+
+def program_of(options: Options) -> tuple[str, ...]:
+    """Command that starts ``cyclosweep``."""
+    return options.program or tuple(command())
 
 
 def _pool(workers: int, processes: bool) -> Executor:
@@ -132,36 +158,56 @@ def _pool(workers: int, processes: bool) -> Executor:
 
 
 def _results(
-    workers: int, processes: bool, jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]]
+    workers: int,
+    processes: bool,
+    jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]],
+    until: float,
 ) -> Iterator[T]:
-    """Results of jobs as they come; a single worker is this process itself."""
+    """Results of jobs as they come; a single worker is this process itself.
+
+    Raises
+    ------
+    OutOfTimeError
+        If work is left when the time is over; what had begun by then is finished.
+    """
     if workers == 1:
         for function, arguments in jobs:
+            if time.monotonic() > until:
+                raise OutOfTimeError
             yield function(*arguments)
+        return
+    if not jobs:
         return
     pool = _pool(workers, processes)
     try:
         futures = [pool.submit(function, *arguments) for function, arguments in jobs]
+        late = False
         for future in as_completed(futures):
-            yield future.result()
+            if not late and time.monotonic() > until:
+                late = sum(other.cancel() for other in futures) > 0
+            if not future.cancelled():
+                yield future.result()
+        if late:
+            raise OutOfTimeError
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _work(
+def work(
     title: str,
     workers: int,
     jobs: Sequence[tuple[Callable[..., T], tuple[Any, ...]]],
     console: Console,
     done: Callable[[T], None] = lambda _: None,
     *,
+    until: float = math.inf,
     processes: bool = True,
 ) -> None:
     """Run jobs, showing progress; ``done`` takes each result as it comes."""
     columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
         task = progress.add_task(title, total=len(jobs))
-        for result in _results(workers, processes, jobs):
+        for result in _results(workers, processes, jobs, until):
             done(result)
             progress.advance(task)
 
@@ -183,8 +229,11 @@ def prepare(plan: Sequence[Entry], folders: Folders, options: Options, console: 
     jobs = [
         (_prepare, (entry, folders.recordings, folders.answers, passphrase)) for entry in missing
     ]
-    _work("recordings", options.workers, jobs, console, keep)
-    return folders.publish(hashes)
+    try:
+        work("recordings", options.workers, jobs, console, keep, until=options.until)
+    finally:
+        root = folders.publish(hashes)
+    return root
 
 
 def _removed(entry: Entry, folders: Folders, options: Options) -> str:
@@ -208,7 +257,7 @@ def diagnose(plan: Sequence[Entry], folders: Folders, options: Options, console:
             flags: tuple[str, ...] = (options.removal_flag, removed) if removed else ()
             waiting.setdefault(flags, []).append(entry.key)
     jobs: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
-    program = options.program or tuple(command())
+    program = program_of(options)
     for flags, keys in waiting.items():
         for k in range(0, len(keys), options.batch):
             some = {key: folders.recordings / key for key in keys[k : k + options.batch]}
@@ -216,23 +265,27 @@ def diagnose(plan: Sequence[Entry], folders: Folders, options: Options, console:
             jobs.append(
                 (diagnose_batch, (some, folders.diagnoses, every, options.limit_s, program))
             )
-    _work("diagnoses", options.workers, jobs, console, processes=False)
+    work("diagnoses", options.workers, jobs, console, until=options.until, processes=False)
 
 
 def predict_all(
     plan: Sequence[Entry], folders: Folders, options: Options, console: Console
 ) -> None:
     """Let every model that named something predict its specimen's second programme."""
-    program = options.program or tuple(command())
-    jobs = []
+    waiting = []
     for entry in plan:
         target = folders.diagnoses / entry.key
         model, done = target / "model.json", target / "prediction.csv"
-        named = read_diagnosis(folders.diagnoses, entry.key).get("verdict") == "IDENTIFIED"
         later = folders.recordings / entry.key / "program.csv"
-        if named and model.exists() and later.exists() and not done.exists():
-            jobs.append((predict, (model, later, done, options.limit_s, program)))
-    _work("predictions", options.workers, jobs, console, processes=False)
+        if model.exists() and later.exists() and not done.exists():
+            said = read_diagnosis(folders.diagnoses, entry.key)
+            if said.get("verdict") == "IDENTIFIED":
+                waiting.append((model, later, done))
+    jobs = [
+        (predict_batch, (waiting[k : k + options.batch], options.limit_s, options.program))
+        for k in range(0, len(waiting), options.batch)
+    ]
+    work("predictions", options.workers, jobs, console, until=options.until, processes=False)
 
 
 def held_out_ratio(answer: dict[str, Any], prediction: Path) -> HeldOut:
@@ -259,17 +312,30 @@ def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> l
     for entry in plan:
         answer = unseal(folders.answers / f"{entry.key}.sealed", passphrase, hashes[entry.key])
         ratio = held_out_ratio(answer, folders.diagnoses / entry.key / "prediction.csv")
-        for column in ("held_out_clean_deg", "held_out_read_deg"):
+        for column in ("held_out_clean_deg", "held_out_read_deg", "files"):
             answer.pop(column, None)
         outcomes.append(make_outcome(answer, read_diagnosis(folders.diagnoses, entry.key), ratio))
     return outcomes
 
 
-def gallery(outcomes: list[Outcome], folders: Folders, options: Options) -> list[Exhibit]:
+def opponents_said(folders: Folders) -> dict[str, Any]:
+    """Return what the opponents said, by key of the case."""
+    return {
+        file.stem: json.loads(file.read_text()) for file in sorted(folders.opponents.glob("*.json"))
+    }
+
+
+def gallery(
+    outcomes: list[Outcome],
+    folders: Folders,
+    options: Options,
+    make_again: Callable[[str], None] = lambda _: None,
+) -> list[Exhibit]:
     """Let the repaired models of some cases predict their own recordings, and lay them out."""
-    program = options.program or tuple(command())
+    program = program_of(options)
     items = []
     for outcome in choose(outcomes):
+        make_again(outcome.key)
         kept = folders.diagnoses / outcome.key
         recording = folders.recordings / outcome.key / "recording.csv"
         again = kept / "again.csv"
@@ -341,9 +407,9 @@ def run_challenge(
     meetings = meet_opponents(
         plan, folders.recordings, folders.opponents, chosen.opponents, chosen.costly_limit
     )
-    _work("opponents", chosen.workers, meetings, screen)
+    work("opponents", chosen.workers, meetings, screen, until=chosen.until)
     outcomes = open_answers(plan, folders, chosen)
-    score = make_score(outcomes, folders.opponents, about | {"root": root})
+    score = make_score(outcomes, opponents_said(folders), about | {"root": root})
     (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
     (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))
     exhibits = gallery(outcomes, folders, chosen)

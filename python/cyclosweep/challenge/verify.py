@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from cyclosweep.challenge.plan import make_entry, make_plan
+from cyclosweep.challenge.plan import Entry, make_entry, make_plan
 from cyclosweep.challenge.seal import SealError, root_hash, unseal
 
 
@@ -38,28 +40,48 @@ def verify_run(out: str | Path, every: int = 1) -> list[str]:
     if root_hash(hashes.items()) != published:
         complaints.append("ROOT.txt: not the hash of HASHES.txt")
     for entry in make_plan(len(hashes), about["seed"], about["mix"], about["samples"])[::every]:
-        if entry.key not in hashes:
-            complaints.append(f"{entry.key}: no hash was published")
-            continue
-        file = folder / "answers" / f"{entry.key}.sealed"
-        try:
-            answer = unseal(file, passphrase, hashes[entry.key])
-        except (SealError, OSError) as error:
-            complaints.append(str(error))
-            continue
-        case = make_entry(entry)
-        made = json.loads(json.dumps(case.truth))
-        complaints += [
-            f"{entry.key}: the answer's {key!r} is not what the seed gives"
-            for key in made
-            if answer.get(key) != made[key]
-        ]
-        with TemporaryDirectory() as scratch:
-            case.write(scratch, program=entry.stratum.tier != "C6")
-            complaints += [
-                f"{entry.key}/{again.name}: not what the seed gives"
-                for again in sorted(Path(scratch).iterdir())
-                if again.read_bytes()
-                != (folder / "recordings" / entry.key / again.name).read_bytes()
-            ]
+        complaints += verify_entry(entry, folder, passphrase, hashes)
+    return complaints
+
+
+def verify_entry(
+    entry: Entry, folder: Path, passphrase: str, hashes: Mapping[str, str]
+) -> list[str]:
+    """Check one case: its seal, and that its answer and recording are what its seed gives.
+
+    Parameters
+    ----------
+    entry : Entry
+        The case.
+    folder : pathlib.Path
+        Folder of the run. Where recordings were deleted, those made again are compared with
+        the hashes in the sealed answer.
+    passphrase : str
+        Key of the answers.
+    hashes : mapping
+        Published hashes by key.
+    """
+    if entry.key not in hashes:
+        return [f"{entry.key}: no hash was published"]
+    file = folder / "answers" / f"{entry.key}.sealed"
+    try:
+        answer = unseal(file, passphrase, hashes[entry.key])
+    except (SealError, OSError) as error:
+        return [str(error)]
+    case = make_entry(entry)
+    made = json.loads(json.dumps(case.truth))
+    complaints = [
+        f"{entry.key}: the answer's {key!r} is not what the seed gives"
+        for key in made
+        if answer.get(key) != made[key]
+    ]
+    with TemporaryDirectory() as scratch:
+        case.write(scratch, program=entry.stratum.tier != "C6")
+        for again in sorted(Path(scratch).iterdir()):
+            kept = folder / "recordings" / entry.key / again.name
+            digest = hashlib.sha256(again.read_bytes()).hexdigest()
+            if digest != answer["files"][again.name] or (
+                kept.exists() and kept.read_bytes() != again.read_bytes()
+            ):
+                complaints.append(f"{entry.key}/{again.name}: not what the seed gives")
     return complaints

@@ -84,6 +84,12 @@ def diagnose(
         typer.Option("--without", metavar="EFFECT", help="Do not consider this effect."),
     ] = None,
     png: Annotated[bool, typer.Option("--png", help="Write the report's pictures too.")] = False,
+    quick: Annotated[
+        bool,
+        typer.Option(
+            "--quick", help="Verdict, effects and model alone: no report, self-check or held-out."
+        ),
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Find the physics that the simulation leaves out of a recording.
@@ -110,6 +116,7 @@ def diagnose(
                     folder,
                     meta,
                     png=png,
+                    quick=quick,
                     quiet=as_json,
                     drive=known,
                     tolerance_deg=tolerance,
@@ -130,23 +137,36 @@ def diagnose(
 
 
 def _diagnose_one(
-    path: Path, folder: Path, meta: Path | None, *, png: bool, quiet: bool, **options: Any
+    path: Path,
+    folder: Path,
+    meta: Path | None,
+    *,
+    png: bool,
+    quick: bool,
+    quiet: bool,
+    **options: Any,
 ) -> dict[str, Any]:
     from cyclosweep.diagnosis import diagnose as run
     from cyclosweep.recording import Recording
 
     recording: Recording = Recording.read(path, meta)
     with _saying(recording.name) as say:
-        found = run(recording, progress=say, **options)
-        say("writing the report")
-        found.write(folder)
+        found = run(recording, progress=say, full=not quick, **options)
+        if quick:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "diagnosis.json").write_text(found.to_json(), encoding="utf-8")
+            if found.model is not None:
+                (folder / "model.json").write_text(found.model.to_json(), encoding="utf-8")
+        else:
+            say("writing the report")
+            found.write(folder)
         if png:
             found.report(folder / "pictures")
     if not quiet:
         from cyclosweep.report import print_summary
 
         print_summary(found.report_data())
-        print(f"Report: {folder / 'report.html'}")
+        print(f"Report: {folder / 'report.html'}" if not quick else f"Written: {folder}")
     content: dict[str, Any] = json.loads(found.to_json())
     return content
 

@@ -10,7 +10,7 @@ import cyclosweep.challenge as challenge
 
 ROOT = Path(challenge.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
-SCORING = {"opponents", "scoring", "board", "runner"}
+SCORING = {"opponents", "scoring", "board", "runner", "record", "measured_run"}
 RIG_MAY = {"numpy", "scipy", "polars"}
 SCORING_MAY = RIG_MAY | {"rich", "sklearn", "statsmodels", "pysindy", "plotly"}
 

@@ -1,6 +1,7 @@
 """Measured loops: read as they are, turned into a null, and with effects laid over them."""
 
 import gzip
+import json
 import sys
 from pathlib import Path
 
@@ -9,15 +10,21 @@ import pytest
 
 from cyclosweep.challenge.measured import (
     INJECTABLE,
+    as_template,
     injected,
     left_over,
+    one_after_the_other,
     read_loops,
     repeated_null,
+    repeated_nulls,
     repeats,
     signature,
+    with_angle,
     write_loops,
 )
-from cyclosweep.challenge.measured_run import run_measured
+from cyclosweep.challenge.measured_run import doubts, run_measured
+from cyclosweep.challenge.record.real import real_drive
+from cyclosweep.challenge.runner import Options
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
 
@@ -26,7 +33,7 @@ STAND_IN = Path(__file__).parent / "stand_in.py"
 def file(tmp_path: Path) -> Path:
     """Ramps like the measured ones: a line with play, three rows a clock tick."""
     rng = np.random.default_rng(1)
-    target = tmp_path / "loops" / "ramp.csv.gz"
+    target = tmp_path / "loops" / "2024__torqueramp__base_runin1.csv.gz"
     target.parent.mkdir()
     with gzip.open(target, "wt", encoding="utf-8-sig") as out:
         out.write("TIME,POSITION,TORQUE,CONTROL_TORQUE,Q_CURRENT,FAULT,test_nr\n")
@@ -73,21 +80,76 @@ def test_other_effects_are_refused(file: Path) -> None:
 
 
 def test_written_loops_say_how_to_read_them(file: Path, tmp_path: Path) -> None:
-    write_loops(read_loops(file), tmp_path / "a", "thirteen.toml", conditioning=True)
+    write_loops(read_loops(file), tmp_path / "a", "thirteen.toml", (100,), (102,))
     text = (tmp_path / "a" / "recording.toml").read_text()
     assert 'side = "output"' in text
     assert "conditioning_runs = [100]" in text
+    assert "holdout_runs = [102]" in text
+    # A programme is predicted whole, what was held out with it.
+    assert "holdout" not in (tmp_path / "a" / "program.toml").read_text()
+    # A prediction sees no drive file.
+    assert "drive" not in (tmp_path / "a" / "program.toml").read_text()
+
+
+def test_nulls_of_a_file_come_in_both_orders_and_by_flank(file: Path) -> None:
+    nulls = dict(repeated_nulls(file))
+    assert [n.split(" ramps ")[1] for n in nulls] == [
+        f"{pair}{side}"
+        for pair in ("101 and 102", "102 and 101")
+        for side in ("", ", positive flank", ", negative flank")
+    ]
+    there, back = nulls["large ramps 101 and 102"], nulls["large ramps 102 and 101"]
+    noise = [left_over(x, x.angle_deg) for x in (there, back)]
+    assert np.corrcoef(noise[0], noise[1])[0, 1] < -0.9
+    assert np.all(nulls["large ramps 101 and 102, negative flank"].torque_nm < 0.0)
+
+
+def test_a_ramp_predicts_its_own_kind(file: Path) -> None:
+    loops = read_loops(file)
+    second = loops.only(102)
+    error = as_template(loops.only(101), second) - second.angle_deg
+    loaded = np.abs(second.torque_nm) > 1.0
+    assert np.sqrt(np.mean(error[loaded] ** 2)) < 0.02
+
+
+def test_two_files_as_one_recording_share_no_run_and_no_datum(file: Path) -> None:
+    loops = read_loops(file)
+    joined = one_after_the_other(loops, with_angle(loops, loops.angle_deg + 7.0))
+    assert set(joined.run) == {100, 101, 102, 200, 201, 202}
+    assert np.all(np.diff(joined.time_s) > 0.0)
+    assert joined.angle_deg.max() < 4.0
 
 
 def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: Path) -> None:
     drive = tmp_path / "thirteen.toml"
     drive.write_text('name = "thirteen"\n')
-    program = (sys.executable, str(STAND_IN))
-    rows = run_measured(file.parent, tmp_path / "out", drive, sizes_deg=(0.3,), program=program)
-    assert [row.kind for row in rows] == ["as measured", "repeated loops", *INJECTABLE]
-    assert rows[0].found is None
+    options = Options(program=(sys.executable, str(STAND_IN)))
+    rows = run_measured(file.parent, tmp_path / "out", drive, sizes_deg=(0.3,), options=options)
+    kinds = [row.kind for row in rows]
+    assert kinds[:2] == ["both ramps", "predicted"]
+    assert kinds.count("repeated loops") == 6
+    assert [row.detail for row in rows if row.kind == "effect injected"] == list(INJECTABLE)
     assert all(row.verdict != "FAILURE" for row in rows)
+    assert (tmp_path / "out" / "measured.json").exists()
+    page = real_drive(json.loads((tmp_path / "out" / "measured.json").read_text()))
+    assert "### Repeated loops" in page
     assert run_measured(tmp_path / "nowhere", tmp_path / "none", drive) == []
+    assert "were not there" in real_drive([])
+
+
+@pytest.mark.parametrize(
+    ("said", "good"),
+    [
+        ({"verdict": "IDENTIFIED", "effects": [{"name": "creep"}]}, False),
+        ({"verdict": "UNKNOWN_PHYSICS", "effects": [{"name": "creep"}]}, True),
+        ({"verdict": "AMBIGUOUS", "effects": [{"name": "thermal_drift"}]}, False),
+        ({"verdict": "UNKNOWN_PHYSICS", "stationary": False}, True),
+        ({"verdict": "INSUFFICIENT_DATA"}, False),
+        ({"failure": "exit status 1"}, False),
+    ],
+)
+def test_confounded_causes_are_answered_right_by_doubt(said: dict, good: bool) -> None:
+    assert doubts(said) is good
 
 
 @pytest.mark.shared

@@ -8,11 +8,11 @@ from challenge_answers import outcome, said, truth
 
 from cyclosweep.challenge import make_case
 from cyclosweep.challenge.opponents import contest
-from cyclosweep.challenge.opponents.contest import CHEAP, COSTLY, NEEDS, meet_opponents
+from cyclosweep.challenge.opponents.contest import CHEAP, CHEAPEST, COSTLY, NEEDS, meet_opponents
 from cyclosweep.challenge.opponents.seen import Seen
 from cyclosweep.challenge.opponents.subset import best_subset, bic_subset
 from cyclosweep.challenge.plan import make_plan
-from cyclosweep.challenge.scoring.rivals import opponent_curves
+from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -61,11 +61,18 @@ def test_only_recordings_fit_for_comparison_are_shown(tmp_path: Path) -> None:
     fit = [
         e
         for e in plan
-        if e.stratum.tier in {"C0", "C6"}
-        and e.stratum.noise == "white"
-        and e.stratum.programme in {"rich", "poor"}
+        if e.stratum.tier in {"C0", "C6"} and e.stratum.programme in {"rich", "poor"}
     ]
-    assert len(jobs) == len(fit)
+    shown = {arguments[2]: set(arguments[3]) for _, arguments in jobs}
+    assert set(shown) == {e.key for e in fit}
+    for entry in fit:
+        white = entry.stratum.noise == "white"
+        assert shown[entry.key] == (set(CHEAP) if white else set(CHEAPEST))
+    later = meet_opponents(plan, tmp_path, tmp_path, "cheap", 5, first=100)
+    assert {arguments[2] for _, arguments in later} == {e.key for e in fit if e.number >= 100}
+    # Of other noise only so many are shown as of white to the costly ones.
+    none = meet_opponents(plan, tmp_path, tmp_path, "cheap", 0)
+    assert len(none) == sum(e.stratum.noise == "white" for e in fit)
     assert meet_opponents(plan, tmp_path, tmp_path, "none", 5) == []
     with pytest.raises(ValueError, match="opponents"):
         meet_opponents(plan, tmp_path, tmp_path, "some", 5)
@@ -80,7 +87,8 @@ def test_tuned_threshold_lets_one_in_a_hundred_through() -> None:
     for k in range(100):
         singles.append(outcome({**truth("creep"), "key": f"s{k}"}, said("NOTHING_MISSING")))
         words[f"s{k}"] = {"x": {"score": rng.normal() + 5.0, "flagged": True, "named": None}}
-    (curve,) = opponent_curves([*nulls, *singles], words)
+    curve, own = opponent_curves([*nulls, *singles], words)
+    assert (curve.who, own.who) == ("x", OURS)
     assert curve.tuned_alarms.value <= 0.01
     assert curve.default_alarms.value == 1.0
     assert curve.tuned_power[0][1].value > 0.97

@@ -1,6 +1,7 @@
 """Scoring against outcomes whose figures are known."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +9,13 @@ from challenge_answers import outcome, said, truth
 from scipy import stats
 
 from cyclosweep.challenge.oracle import oracle_d
-from cyclosweep.challenge.scoring.calibration import calibration_error
+from cyclosweep.challenge.scoring.calibration import calibration_error, chance_error
 from cyclosweep.challenge.scoring.confusion import confusion
-from cyclosweep.challenge.scoring.figures import all_figures
+from cyclosweep.challenge.scoring.figures import all_figures, contest
 from cyclosweep.challenge.scoring.intervals import bootstrapped, share
 from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
+from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves
 
 
 def test_named_right_takes_exactly_the_true_set() -> None:
@@ -95,6 +97,70 @@ def test_calibration_error_of_honest_and_boastful_probabilities() -> None:
     boastful = [one(0.99, k % 2 == 0) for k in range(100)]
     assert calibration_error(honest) == pytest.approx(0.0, abs=1e-9)
     assert calibration_error(boastful) == pytest.approx(0.49, abs=1e-9)
+
+
+def test_honest_probabilities_of_few_cases_show_an_error_by_chance() -> None:
+    def one(k: int) -> Outcome:
+        explanation = [
+            {"effects": ["creep"], "probability": 0.7},
+            {"effects": ["hum"], "probability": 0.3},
+        ]
+        return outcome(truth("creep"), said("IDENTIFIED", explanation_set=explanation))
+
+    few, many = (chance_error([one(k) for k in range(n)]) for n in (10, 1000))
+    assert few.count == 20
+    # Mean absolute deviation of a share of ten with chance 0.7 is 0.116.
+    assert few.value == pytest.approx(0.116, abs=0.02)
+    assert many.value < 0.02
+    assert math.isnan(chance_error([]).value)
+
+
+def test_an_explanation_with_a_nameless_part_is_not_the_true_set() -> None:
+    parts = [{"effects": ["creep"], "without_name": ["smooth odd"], "probability": 1.0}]
+    assert not outcome(truth("creep"), said("UNKNOWN_PHYSICS", explanation_set=parts)).covered
+    known = [{"effects": ["creep"], "without_name": [], "probability": 1.0}]
+    assert outcome(truth("creep"), said("IDENTIFIED", "creep", explanation_set=known)).covered
+
+
+def test_an_alarm_without_an_explanation_does_not_cover() -> None:
+    none = [outcome(truth("creep"), said("UNKNOWN_PHYSICS", explanation_set=[]))]
+    found = {f.name: f.estimate for f in all_figures(none)}
+    assert found["explanation set covers the truth, rich"].value == 0.0
+
+
+def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> None:
+    rng = np.random.default_rng(8)
+    outcomes, words = [], {}
+
+    def add(k: int, tier: str, d: float, excess: float, theirs: float) -> None:
+        mismatch = {"evidence": excess + 5.0, "threshold": 5.0}
+        verdict = "IDENTIFIED" if excess > 1.0 else "NOTHING_MISSING"
+        t = truth(*(["creep"] if d else []), tier=tier) | {"key": f"case-{k}"}
+        for cause in t["causes"]:
+            cause["d"] = d
+        outcomes.append(outcome(t, said(verdict, mismatch=mismatch)))
+        words[f"case-{k}"] = {"who": {"score": theirs, "flagged": False, "named": None}}
+
+    for k in range(200):
+        add(k, "C6", 0.0, float(rng.normal()) - 3.0, float(rng.normal()))
+    for k in range(400, 440):
+        add(k, "C6", 0.0, -3.0, 9.0)
+        outcomes[-1] = replace(outcomes[-1], noise="ar0.6")
+    for k in range(200, 400):
+        d = float(rng.choice([3.0, 4.0, 5.0, 6.0]))
+        add(k, "C0", d, float(rng.normal()) - 3.0 + d, 0.3 * d + float(rng.normal()))
+    curves = {c.who: c for c in opponent_curves(outcomes, words)}
+    assert set(curves) == {"who", OURS}
+    # Ours is stricter than one in a hundred as it is, and finds more when tuned alike.
+    assert curves["who"].ahead.low > 0.0
+    assert curves["who"].tuned_ahead.value > curves["who"].ahead.value
+    assert curves[OURS].ahead.value < 0.0 < curves["who"].needed.value
+    assert curves[OURS].tuned_ahead.value == 0.0
+    assert dict(curves["who"].elsewhere)["ar0.6"].value == 1.0
+    assert dict(curves[OURS].elsewhere)["ar0.6"].value == 0.0
+    assert curves["who"].needed.low < curves["who"].needed.value < curves["who"].needed.high
+    reached = {f.name: f for f in contest(list(curves.values()))}
+    assert reached["opponents at 1 % behind the diagnosis as it is, rich"].met is True
 
 
 def test_confusion_counts_every_single_cause_once() -> None:

@@ -17,6 +17,8 @@ from cyclosweep.challenge.opponents.subset import aic_subset, bic_subset
 from cyclosweep.challenge.plan import Entry
 
 CHEAP = ("runs_test", "ljung_box", "aic_subset", "bic_subset", "stlsq", "error_ladder")
+CHEAPEST = ("runs_test", "ljung_box", "aic_subset", "bic_subset", "error_ladder")
+"""These see recordings with nothing missing under every family of noise, not white alone."""
 COSTLY = ("lasso_cv", "bagged_stlsq", "gaussian_process")
 NEEDS = {
     "ljung_box": "statsmodels",
@@ -76,7 +78,12 @@ def meet(recording: Path, results: Path, key: str, names: tuple[str, ...]) -> No
 
 
 def meet_opponents(
-    plan: Sequence[Entry], recordings: Path, results: Path, who: str, costly_limit: int
+    plan: Sequence[Entry],
+    recordings: Path,
+    results: Path,
+    who: str,
+    costly_limit: int,
+    first: int = 0,
 ) -> list[tuple[Callable[..., None], tuple[Any, ...]]]:
     """List the meetings of a challenge: single effects in the open, and nothing missing.
 
@@ -89,7 +96,10 @@ def meet_opponents(
     who : {"all", "cheap", "none"}
         Which opponents; those whose library is absent stay away.
     costly_limit : int
-        Recordings of each stratum that the costly ones see.
+        Recordings of each stratum that the costly ones see, and of each other family of noise
+        with nothing missing that the cheapest do.
+    first : int
+        Place in the plan from which recordings are shown; those before are only counted.
 
     Raises
     ------
@@ -105,11 +115,15 @@ def meet_opponents(
     jobs: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
     for entry in plan:
         stratum = entry.stratum
-        plain = stratum.noise == "white" and stratum.programme in {"rich", "poor"}
-        if stratum.tier not in {"C0", "C6"} or not plain:
+        if stratum.tier not in {"C0", "C6"} or stratum.programme not in {"rich", "poor"}:
             continue
         count[stratum.name] += 1
-        costly = COSTLY if who == "all" and count[stratum.name] <= costly_limit else ()
-        there = tuple(name for name in (*CHEAP, *costly) if name not in left_out)
+        early = count[stratum.name] <= costly_limit
+        names: tuple[str, ...] = CHEAPEST if early else ()
+        if stratum.noise == "white":
+            names = (*CHEAP, *(COSTLY if who == "all" and early else ()))
+        there = tuple(name for name in names if name not in left_out)
+        if entry.number < first or not there:
+            continue
         jobs.append((meet, (recordings / entry.key, results, entry.key, there)))
     return jobs

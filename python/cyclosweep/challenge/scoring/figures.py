@@ -11,10 +11,15 @@ import numpy as np
 
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.oracle import oracle_d
-from cyclosweep.challenge.scoring.calibration import calibration_error, stated_and_true
+from cyclosweep.challenge.scoring.calibration import (
+    calibration_error,
+    chance_error,
+    stated_and_true,
+)
 from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
+from cyclosweep.challenge.scoring.rivals import OURS, OpponentCurve
 
 LEVEL = 0.01
 
@@ -159,7 +164,8 @@ def naming(outcomes: Chosen) -> list[Figure]:
             )
     for programme, size in (("rich", 1.3), ("poor", 1.8)):
         single = [o for o in outcomes if o.tier in {"C0", "C1", "C2"} and o.programme == programme]
-        said = [o for o in single if o.explanations and o.alarm]
+        # An alarm that explains nothing does not cover the truth.
+        said = [o for o in single if o.alarm]
         figures += [
             _figure(
                 f"explanation set covers the truth, {programme}",
@@ -168,7 +174,7 @@ def naming(outcomes: Chosen) -> list[Figure]:
             ),
             _figure(
                 f"mean size of the explanation set, {programme}",
-                bootstrapped([len(o.explanations) for o in said]),
+                bootstrapped([len(o.explanations) for o in said if o.explanations]),
                 at_most=size,
             ),
         ]
@@ -192,16 +198,26 @@ def sizes(outcomes: Chosen) -> list[Figure]:
     named = [s for o in outcomes if o.named_right and len(o.causes) == 1 for s in o.sizes]
     large = [s for s in named if s.d >= 9.9]
     error = [s.error for s in large]
-    covered = [s.low_deg <= s.true_deg <= s.high_deg for s in named if math.isfinite(s.low_deg)]
+    stated = [s for s in named if math.isfinite(s.low_deg)]
+    covered = [(s.d >= 9.9, s.low_deg <= s.true_deg <= s.high_deg) for s in stated]
     figures = [
         _figure(
             "amplitude error over the Cramer-Rao bound, d at least 10",
             bootstrapped(error, "rms"),
             at_most=1.10,
         ),
-        _figure("95 % interval of the size covers it", share_of(covered), within=(0.93, 0.97)),
+        _figure(
+            "95 % interval of the size covers it, d at least 10",
+            share_of([holds for visible, holds in covered if visible]),
+            within=(0.93, 0.97),
+        ),
+        _figure(
+            "the same at every d, of those found and named right",
+            share_of([holds for _, holds in covered]),
+        ),
     ]
     right = [o for o in outcomes if o.named_right]
+    straight = [o for o in right if not SLOPES & set(o.causes)]
     for name in sorted({key for o in right for key in o.pulls}):
         pulls = [o.pulls[name] for o in right if name in o.pulls]
         bias = bootstrapped(pulls)
@@ -212,7 +228,26 @@ def sizes(outcomes: Chosen) -> list[Figure]:
                 at_most=0.5,
             )
         )
+        for words, there in (("median", right), ("median, effects that are no slope", straight)):
+            middle = bootstrapped([o.pulls[name] for o in there if name in o.pulls], "median")
+            figures.append(
+                _figure(
+                    f"the same, {words}: {name}",
+                    Estimate(abs(middle.value), *_folded(middle), middle.count),
+                )
+            )
     return figures
+
+
+SLOPES = frozenset(
+    {
+        "contact_stiffening",
+        "clearance_takeup",
+        "overload_softening",
+        "phase_dependent_compliance",
+    }
+)
+"""Effects that are a compliance themselves: how much of it is the baseline's is a convention."""
 
 
 def _folded(estimate: Estimate) -> tuple[float, float]:
@@ -236,6 +271,8 @@ def prediction(outcomes: Chosen) -> list[Figure]:
             "held-out error over the fitted true model's, median", bootstrapped(fitted, "median")
         ),
         _figure("held-out error over the true model's at its true parameters", bootstrapped(known)),
+        _figure("the same, median", bootstrapped(known, "median")),
+        _figure("the same, 95 of 100 within", bootstrapped(known, "late")),
     ]
 
 
@@ -262,14 +299,36 @@ def unknown(outcomes: Chosen) -> list[Figure]:
             ),
         ]
     aliased = [o for o in outcomes if o.tier == "C7"]
-    figures.append(
+    figures += [
         _figure(
             "exact aliases called untestable",
-            share_of([set(o.aliases) <= set(o.untestable) and not o.alarm for o in aliased]),
+            share_of([set(o.aliases) <= set(o.untestable) for o in aliased]),
             at_least=1.0,
             must=1.0,
+        ),
+        *_always_hidden(outcomes),
+        _figure("alarms on exact aliases", share_of([o.alarm for o in aliased])),
+    ]
+    return figures
+
+
+ANYWHERE = frozenset({"rig_compliance", "torque_offset"})
+AT_ONE_POSITION = frozenset({"transmission_error", "phase_dependent_compliance"})
+"""Exact aliases of the calibration on any programme, and on those at a single mesh position."""
+
+
+def _always_hidden(outcomes: Chosen) -> list[Figure]:
+    """Whether every diagnosis names what its programme can never show."""
+    figures = []
+    for programme, hidden in (("rich", ANYWHERE), ("poor", ANYWHERE | AT_ONE_POSITION)):
+        there = [o for o in outcomes if o.programme == programme and not o.failure]
+        figures.append(
+            _figure(
+                f"exact aliases called untestable in every recording, {programme}",
+                share_of([hidden <= set(o.untestable) for o in there]),
+                at_least=1.0,
+            )
         )
-    )
     return figures
 
 
@@ -279,7 +338,10 @@ def probabilities(outcomes: Chosen) -> list[Figure]:
     stated, _ = stated_and_true(there)
     if not stated:
         empty = Estimate(math.nan, math.nan, math.nan, 0)
-        return [_figure("calibration error of stated probabilities", empty, at_most=0.03)]
+        return [
+            _figure("calibration error of stated probabilities", empty, at_most=0.03),
+            _figure("the same if every stated probability were exact", empty),
+        ]
     rng = np.random.default_rng(99)
     drawn = [
         calibration_error([there[k] for k in rng.integers(0, len(there), len(there))])
@@ -287,14 +349,54 @@ def probabilities(outcomes: Chosen) -> list[Figure]:
     ]
     low, high = np.nanquantile(drawn, [0.025, 0.975])
     estimate = Estimate(calibration_error(there), float(low), float(high), len(stated))
-    return [_figure("calibration error of stated probabilities", estimate, at_most=0.03)]
+    return [
+        _figure("calibration error of stated probabilities", estimate, at_most=0.03),
+        _figure("the same if every stated probability were exact", chance_error(there)),
+    ]
+
+
+def contest(curves: Sequence[OpponentCurve]) -> list[Figure]:
+    """Count the opponents that the diagnosis leaves behind on identical files."""
+    figures = []
+    for programme in ("rich", "poor"):
+        there = [c for c in curves if c.programme == programme and c.who != OURS]
+        for words, ahead in (
+            ("as it is", [c.ahead.low > 0.0 for c in there]),
+            ("at its own 1 %", [c.tuned_ahead.low > 0.0 for c in there]),
+        ):
+            figures.append(
+                _figure(
+                    f"opponents at 1 % behind the diagnosis {words}, {programme}",
+                    share_of(ahead),
+                    at_least=1.0,
+                    must=1.0 if words == "as it is" else None,
+                )
+            )
+    return figures
+
+
+def timing(
+    verdict_s: Sequence[float], whole_s: Sequence[float], agree: Sequence[bool]
+) -> list[Figure]:
+    """Time of the verdict alone and of the whole report, and whether both say the same."""
+
+    def late(values: Sequence[float]) -> Estimate:
+        return bootstrapped(values, "late")
+
+    return [
+        _figure("time of the verdict alone, s, median", bootstrapped(verdict_s, "median")),
+        _figure("time of the verdict alone, s, 95 of 100 within", late(verdict_s), at_most=5.0),
+        _figure("time of the whole report, s, median", bootstrapped(whole_s, "median")),
+        _figure("time of the whole report, s, 95 of 100 within", late(whole_s), at_most=10.0),
+        _figure("verdict alone says what the whole report says", share_of(agree), at_least=1.0),
+    ]
 
 
 def effort(outcomes: Chosen) -> list[Figure]:
     """Time of a diagnosis, and how many gave no answer."""
     return [
         _figure(
-            "time of a diagnosis, seconds",
+            "time of a diagnosis as run here, s, median",
             bootstrapped([o.elapsed_s for o in outcomes], "median"),
             at_most=10.0,
         ),

@@ -59,14 +59,16 @@ def share_of(flags: ArrayLike) -> Estimate:
 
 
 def _summary(table: NDArray[np.float64], statistic: str) -> float:
-    """Mean, median or root mean square of a sample."""
+    """Mean, median, root mean square or 95th percentile of a sample."""
+    if statistic == "late":
+        return float(np.quantile(table, 0.95))
     if statistic == "rms":
         return float(np.sqrt(np.mean(table**2)))
     return float(np.median(table) if statistic == "median" else np.mean(table))
 
 
 def bootstrapped(values: ArrayLike, statistic: str = "mean", draws: int = 2000) -> Estimate:
-    """Mean, median or root mean square with a percentile bootstrap interval."""
+    """Mean, median, rms or 95th percentile ("late") with a percentile bootstrap interval."""
     table = np.asarray(values, dtype=float)
     table = table[np.isfinite(table)]
     if table.size == 0:

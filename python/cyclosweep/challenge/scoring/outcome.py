@@ -98,6 +98,9 @@ class Outcome:
         What went wrong, if something did.
     rivals : dict
         Overlap of the first cause's signature with that of every other effect.
+    excess : float
+        Its evidence that something is missing over its own threshold [nat]; minus infinity
+        where it stated none.
     """
 
     key: str
@@ -123,6 +126,7 @@ class Outcome:
     elapsed_s: float
     failure: str
     rivals: dict[str, float] = field(default_factory=dict)
+    excess: float = -math.inf
 
     @property
     def alarm(self) -> bool:
@@ -221,9 +225,15 @@ def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: HeldOut)
     visible = [c for c in truth["causes"] if c["kind"] != "alias"]
     least = min(visible, key=lambda c: c["d"], default=None)
     explanations = tuple(
-        (tuple(sorted(e.get("effects") or [])), _number(e.get("probability")))
+        # A part without a name keeps an explanation from being the true set of named effects.
+        (
+            tuple(sorted([*(e.get("effects") or []), *(e.get("without_name") or [])])),
+            _number(e.get("probability")),
+        )
         for e in said.get("explanation_set") or []
     )
+    mismatch = said.get("mismatch") or {}
+    excess = _number(mismatch.get("evidence")) - _number(mismatch.get("threshold"))
     return Outcome(
         key=truth["key"],
         stratum=truth["stratum"],
@@ -241,11 +251,12 @@ def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: HeldOut)
         named=tuple(str(e.get("name")) for e in said.get("effects") or []),
         explanations=explanations,
         untestable=tuple(str(e.get("name")) for e in said.get("not_testable") or []),
-        p_mismatch=_number((said.get("mismatch") or {}).get("p_value")),
+        p_mismatch=_number(mismatch.get("p_value")),
         sizes=_sizes(truth, said),
         pulls=_pulls(truth, said),
         held_out=held_out,
         elapsed_s=_number(said.get("challenge_elapsed_s")),
         failure=str(said.get("failure", "")),
         rivals=truth.get("rivals", {}),
+        excess=excess if math.isfinite(excess) else -math.inf,
     )

@@ -32,12 +32,15 @@ def d_for_power(
 ) -> Estimate:
     """Visibility at which nine in ten are found, with a bootstrap interval [-].
 
-    Returns nothing where fewer than twenty cases, or cases of one outcome only, are there.
+    Without ``draws`` the bounds are the value itself. Returns nothing where fewer than twenty
+    cases, or cases of one outcome only, are there.
     """
     x, y = np.asarray(d, dtype=float), np.asarray(hits, dtype=float)
     if x.size < 20 or y.min() == y.max():
         return NOTHING
     value = _fit(x, y, level)
+    if draws == 0:
+        return Estimate(value, value, value, int(x.size))
     rng = np.random.default_rng(54321)
     drawn = []
     for _ in range(draws):

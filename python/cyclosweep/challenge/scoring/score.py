@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import polars as pl
@@ -14,7 +12,7 @@ import polars as pl
 from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import Bin, calibration_bins
 from cyclosweep.challenge.scoring.confusion import confusion
-from cyclosweep.challenge.scoring.figures import Figure, all_figures
+from cyclosweep.challenge.scoring.figures import Figure, all_figures, contest
 from cyclosweep.challenge.scoring.intervals import Estimate, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.rivals import OpponentCurve, opponent_curves
@@ -125,19 +123,26 @@ def _curves(outcomes: Sequence[Outcome]) -> list[Curve]:
     return curves
 
 
-def make_score(outcomes: Sequence[Outcome], opponents: Path, about: dict[str, Any]) -> Score:
+def make_score(
+    outcomes: Sequence[Outcome],
+    said: Mapping[str, Any],
+    about: dict[str, Any],
+    further: Sequence[Figure] = (),
+) -> Score:
     """Score the outcomes of a challenge.
 
     Parameters
     ----------
     outcomes : sequence of Outcome
         One for every case.
-    opponents : pathlib.Path
-        Folder with what the opponents said, a JSON file a case.
+    said : mapping
+        What the opponents said, by key of the case and name of the opponent.
     about : dict
         What the challenge was made of.
+    further : sequence of Figure
+        Figures that do not follow from the outcomes.
     """
-    said = {file.stem: json.loads(file.read_text()) for file in sorted(opponents.glob("*.json"))}
+    curves = opponent_curves(outcomes, said)
     verdicts = (
         pl.DataFrame(
             {
@@ -153,9 +158,9 @@ def make_score(outcomes: Sequence[Outcome], opponents: Path, about: dict[str, An
     named = [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C5-alien"} and o.d > 9.0]
     return Score(
         about=about | {"cases": len(outcomes)},
-        figures=all_figures(outcomes),
+        figures=[*all_figures(outcomes), *contest(curves), *further],
         curves=_curves(outcomes),
-        opponents=opponent_curves(outcomes, said),
+        opponents=curves,
         confusion={
             programme: confusion([o for o in named if o.programme == programme])
             for programme in ("rich", "poor")

@@ -1,0 +1,92 @@
+"""What a record is made of, and in which steps it grows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+STEPS = 25
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the challenges that make up a record.
+
+    Attributes
+    ----------
+    name : str
+        Name of its folder; also a mix of ``plan.MIXES``.
+    cases : int
+        Cases in all.
+    offset : int
+        What is added to the record's seed, so that no two parts share specimens.
+    costly : int
+        Recordings of each stratum that the costly opponents see.
+    """
+
+    name: str
+    cases: int
+    offset: int
+    costly: int
+
+    def slice(self, step: int, steps: int) -> tuple[int, int]:
+        """First case of a step, and the first one after it."""
+        return self.cases * step // steps, self.cases * (step + 1) // steps
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large a record is.
+
+    Attributes
+    ----------
+    null, opened, concealed, tuning : int
+        Cases of each part.
+    costly_nulls, costly_open : int
+        Recordings of each programme with nothing missing, and of each visibility and programme,
+        that the costly opponents see.
+    samples : int
+        Readings of each recording.
+    steps : int
+        Steps in which all parts grow together.
+    """
+
+    null: int = 10_000
+    opened: int = 3_600
+    concealed: int = 966
+    tuning: int = 350
+    costly_nulls: int = 300
+    costly_open: int = 60
+    samples: int = 3_000
+    steps: int = STEPS
+
+    def parts(self) -> list[Part]:
+        """Parts in the order in which a step runs through them."""
+        shared = self.costly_nulls * 2 // 3
+        return [
+            Part("null", self.null, 0, shared),
+            Part("open", self.opened, 1, self.costly_open),
+            Part("concealed", self.concealed, 2, 0),
+            Part("tuning", self.tuning, 3, self.costly_nulls - shared),
+        ]
+
+    def slices(self) -> Iterator[tuple[Part, int, int]]:
+        """Every slice with its first case and the first one after it, all parts in turn."""
+        for step in range(self.steps):
+            for part in self.parts():
+                first, last = part.slice(step, self.steps)
+                if last > first:
+                    yield part, first, last
+
+
+FULL = Size()
+SUBSET = Size(
+    null=640,
+    opened=144,
+    concealed=92,
+    tuning=140,
+    costly_nulls=24,
+    costly_open=3,
+    steps=8,
+)
+"""A quarter of an hour on two cores."""

@@ -1,0 +1,202 @@
+"""The run of record in small, with a stand-in for the diagnosis."""
+
+import io
+import json
+import shutil
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from cyclosweep.challenge.record import run as record_run
+from cyclosweep.challenge.record.compare import fits, pairs
+from cyclosweep.challenge.record.ledger import Ledger
+from cyclosweep.challenge.record.paper import write_paper
+from cyclosweep.challenge.record.parts import FULL, SUBSET, Size
+from cyclosweep.challenge.record.run import Kept, Record, run_record
+from cyclosweep.challenge.record.verify import verify_record
+from cyclosweep.challenge.runner import Options
+from cyclosweep.challenge.seal import SealError
+
+STAND_IN = Path(__file__).parent / "stand_in.py"
+OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
+SMALL = Size(null=4, opened=4, concealed=2, tuning=2, samples=400, steps=2)
+
+
+def quiet() -> Console:
+    return Console(file=io.StringIO(), width=150)
+
+
+def make(out: Path, **changes: object) -> dict:
+    options = replace(OPTIONS, **changes)
+    run_record(Record(out, 40, SMALL, Kept(options)), quiet())
+    return json.loads((out / "score.json").read_text())
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("record")
+    make(out)
+    return out
+
+
+def events(out: Path) -> list[tuple[str, str, int]]:
+    lines = (out / "PUBLISHED.jsonl").read_text().splitlines()
+    return [(e["event"], e["part"], e["first"]) for e in map(json.loads, lines)]
+
+
+def test_every_slice_is_published_before_it_is_diagnosed(whole: Path) -> None:
+    found = events(whole)
+    for event, part, first in found:
+        if event == "diagnosed":
+            assert found.index(("sealed", part, first)) < found.index((event, part, first))
+    assert len([e for e in found if e[0] == "diagnosed"]) == 8
+    assert verify_record(whole) == []
+
+
+def test_all_parts_grow_together(whole: Path) -> None:
+    order = [part for event, part, _ in events(whole) if event == "sealed"]
+    assert order == ["null", "open", "concealed", "tuning"] * 2
+    for size in (FULL, SUBSET):
+        ends = {part.name: last for part, _, last in size.slices()}
+        assert ends == {part.name: part.cases for part in size.parts()}
+
+
+def test_parts_of_a_full_record_are_whole_turns_of_their_plans() -> None:
+    assert FULL.null == 10 * 1000
+    assert FULL.opened == 12 * 300
+
+
+def test_a_diagnosis_never_runs_on_what_is_not_published(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+
+    def look(plan: list, *_: object) -> None:
+        log = Ledger(tmp_path / "PUBLISHED.jsonl")
+        assert log.lines[-1]["event"] == "sealed"
+        assert log.lines[-1]["answers"] == len(plan)
+        seen.append(len(plan))
+        raise record_run.OutOfTimeError
+
+    monkeypatch.setattr(record_run, "diagnose", look)
+    make(tmp_path)
+    assert seen == [2]
+
+
+def test_out_of_time_is_scored_and_goes_on_to_the_same_score(tmp_path: Path, whole: Path) -> None:
+    empty = make(tmp_path, until=time.monotonic() - 1.0)
+    assert empty["about"]["cases"] == 0
+    record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    part, first, last = next(SMALL.slices())
+    record.run_slice(part, first, last, quiet())
+    partial = make(tmp_path, until=time.monotonic() - 1.0)
+    assert partial["about"]["parts"]["null"] == 2
+    assert untimed(make(tmp_path)) == untimed(json.loads((whole / "score.json").read_text()))
+
+
+def test_a_kill_between_two_diagnoses_costs_nothing(tmp_path: Path, whole: Path) -> None:
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
+    log = tmp_path / "PUBLISHED.jsonl"
+    lines = log.read_text().splitlines(keepends=True)
+    # As if killed in the last slice: one diagnosis was there, one was not, and half a line.
+    log.write_text("".join(lines[:-1]) + lines[-1][:20])
+    shown = tmp_path / "parts" / "tuning"
+    record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    last = record.plan(record.size.parts()[3], 2)[1]
+    record_run.make_entry(last).write(shown / "recordings" / last.key)
+    (shown / "diagnoses" / last.key / "diagnosis.json").unlink()
+    before = untimed(json.loads((whole / "score.json").read_text()))
+    assert untimed(make(tmp_path)) == before
+    assert verify_record(tmp_path) == []
+
+
+def untimed(score: dict) -> list:
+    return [f for f in score["figures"] if "time" not in f["name"]]
+
+
+def test_another_version_of_the_diagnosis_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Record(tmp_path, 40, SMALL)
+    monkeypatch.setattr(record_run, "code", lambda: {"diagnosis": "other", "rig": "other"})
+    with pytest.raises(ValueError, match="mixes no versions"):
+        Record(tmp_path, 40, SMALL)
+    Record(tmp_path, 40, SMALL, fresh=True)
+
+
+def test_another_seed_or_size_is_refused_and_only_records_are_deleted(tmp_path: Path) -> None:
+    Record(tmp_path / "a", 40, SMALL)
+    with pytest.raises(ValueError, match="seed"):
+        Record(tmp_path / "a", 50, SMALL)
+    with pytest.raises(ValueError, match="size"):
+        Record(tmp_path / "a", 40, FULL)
+    with pytest.raises(ValueError, match="multiple of ten"):
+        Record(tmp_path / "b", 41, SMALL)
+    (tmp_path / "c").mkdir()
+    (tmp_path / "c" / "mine.txt").write_text("mine")
+    with pytest.raises(ValueError, match="not deleted"):
+        Record(tmp_path / "c", 40, SMALL, fresh=True)
+
+
+def test_a_changed_log_or_diagnosis_is_noticed(tmp_path: Path, whole: Path) -> None:
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
+    kept = tmp_path / "parts" / "null" / "diagnoses" / "case-000001" / "diagnosis.json"
+    good = kept.read_text()
+    kept.write_text(good.replace("NOTHING_MISSING", "IDENTIFIED") + " ")
+    with pytest.raises(SealError, match="diagnoses changed"):
+        make(tmp_path)
+    assert any("not those that were kept" in words for words in verify_record(tmp_path))
+    kept.write_text(good)
+    log = tmp_path / "PUBLISHED.jsonl"
+    log.write_text(log.read_text().replace('"answers": 2', '"answers": 4', 1))
+    with pytest.raises(SealError, match="does not follow"):
+        Record(tmp_path, 40, SMALL)
+    assert "does not follow" in verify_record(tmp_path)[0]
+
+
+def test_words_of_the_opponents_are_laid_beside_the_right_part(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
+    for part in ("null", "open"):
+        file = tmp_path / "parts" / part / "opponents" / "case-000001.json"
+        file.write_text(json.dumps({"who": {"score": 1.0, "flagged": True, "named": None}}))
+    # A case that is made but not yet part of a finished slice does not count.
+    (tmp_path / "parts" / "open" / "opponents" / "case-000099.json").write_text("{}")
+    outcomes, said = Record(tmp_path, 40, SMALL, Kept(OPTIONS)).outcomes()
+    assert set(said) == {"null/case-000001", "open/case-000001"}
+    assert set(said) < {outcome.key for outcome in outcomes}
+
+
+def test_recordings_are_gone_and_made_again_for_the_check(whole: Path) -> None:
+    assert not list((whole / "parts" / "null" / "recordings").iterdir())
+    again = whole / "parts" / "open" / "recordings" / "case-000000"
+    again.mkdir()
+    (again / "recording.csv").write_text("torque_nm,angle_deg\n")
+    assert verify_record(whole, 6) == ["open/case-000000/recording.csv: not what the seed gives"]
+    (again / "recording.csv").unlink()
+    again.rmdir()
+
+
+def test_page_of_record_holds_every_figure_and_the_notes(whole: Path, tmp_path: Path) -> None:
+    (tmp_path / "proof-notes.md").write_text("What we learnt.\n")
+    page = write_paper(whole, tmp_path).read_text()
+    record = json.loads((tmp_path / "proof.json").read_text())
+    for figure in record["figures"]:
+        assert f"| {figure['name']} |" in page
+    assert "What we learnt." in page
+    assert record["record"]["diagnosis"] in page
+    assert (tmp_path / "proof-power-rich.svg").read_text().startswith("<svg xmlns=")
+    log = (tmp_path / "proof-published.jsonl").read_text()
+    assert log == (whole / "PUBLISHED.jsonl").read_text()
+
+
+def test_figures_of_two_runs_agree_within_their_intervals(whole: Path) -> None:
+    near = {"value": 0.90, "low": 0.86, "high": 0.93, "count": 300}
+    far = {"value": 0.60, "low": 0.50, "high": 0.70, "count": 90}
+    assert fits(near, {**near, "value": 0.92, "low": 0.89, "high": 0.95})
+    assert not fits(near, far)
+    score = {"figures": [{"name": "x", "estimate": near}, {"name": "time of it", "estimate": far}]}
+    assert [p.name for p in pairs(score, score)] == ["x"]
