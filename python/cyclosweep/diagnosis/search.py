@@ -25,6 +25,8 @@ CAUTION = {"saturation at the end of the range": 1.0}
 SHAPE_ERROR = 0.05
 """Share of an effect's own visibility below which a remainder is taken for error of its shape:
 no model of an effect is exact, and large effects show it."""
+MOST_FORGIVEN = 20.0
+"""Evidence up to which a remainder is so taken; a further effect of visibility 7 has more."""
 ENRICHED = 2
 """Times an effect is given more freedom of shape."""
 PRUNED = 3
@@ -135,7 +137,7 @@ class Search:
     def _slack(self, node: Node) -> float:
         """Evidence that a sufficient structure may leave in its residual."""
         explained = max(self.root.fit.chi2 - node.fit.chi2, 0.0)
-        return max(self.threshold, 0.5 * SHAPE_ERROR**2 * explained)
+        return max(self.threshold, min(0.5 * SHAPE_ERROR**2 * explained, MOST_FORGIVEN))
 
     def _enriched(self, node: Node) -> Node | None:
         """Give a term more freedom of shape where the residual asks for more of the same effect."""
