@@ -34,14 +34,19 @@
 //! Bits depend neither on the number of threads nor on how a study is cut.
 
 pub mod active_pins;
+mod arrangement;
+mod blocks;
 pub mod columns;
+mod elementary;
 pub mod compliance;
 pub mod error;
 pub mod hypotrochoid;
 pub mod hysteresis;
 pub mod inputs;
 mod joe_kuo;
+pub mod judge;
 mod known;
+pub mod lanes;
 pub mod outputs;
 pub mod pin;
 mod published_map;
