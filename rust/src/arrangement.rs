@@ -4,6 +4,7 @@
 
 use crate::active_pins::ActiveCount;
 use crate::rounding::{ceil, floor, larger, nearest, smaller};
+use crate::stages::stage;
 
 /// Angles closer than this (turns) count as equal: sectors shorter than it are rounding.
 pub(crate) const TIE: f64 = 1e-12;
@@ -25,12 +26,16 @@ pub(crate) struct Arrangement {
     pub first_hole: f64,
 }
 
-/// Active contacts, all discs together, over one turn of the mesh zone.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Counts {
-    pub mean: f64,
-    pub min: f64,
-    pub max: f64,
+stage! {
+    /// Active contacts, all discs together, over one turn of the mesh zone.
+    Counts, CountsBlock {
+        /// Mean.
+        mean,
+        /// Smallest.
+        min,
+        /// Largest.
+        max,
+    }
 }
 
 impl From<ActiveCount> for Counts {
@@ -44,13 +49,6 @@ impl From<ActiveCount> for Counts {
 }
 
 impl Counts {
-    /// Before anything is known.
-    pub(crate) const NONE: Self = Self {
-        mean: f64::NAN,
-        min: f64::NAN,
-        max: f64::NAN,
-    };
-
     /// `a` where a choice falls on it, `b` elsewhere.
     #[inline(always)]
     pub(crate) fn choose(is_first: bool, a: Self, b: Self) -> Self {
@@ -110,8 +108,8 @@ impl Arrangement {
     pub(crate) fn fold(&self) -> f64 {
         let mut fold = 1.0;
         for (divisor, reciprocal) in [(2.0, 0.5), (3.0, 1.0 / 3.0), (4.0, 0.25)] {
-            let is_common = divides(divisor, reciprocal, self.pins)
-                & divides(divisor, reciprocal, self.discs);
+            let is_common =
+                divides(divisor, reciprocal, self.pins) & divides(divisor, reciprocal, self.discs);
             fold = if is_common { divisor } else { fold };
         }
         fold

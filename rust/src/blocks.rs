@@ -1,17 +1,17 @@
 //! The stages of a block of variants: looked up where they are known, computed a block at a time
 //! elsewhere, and once more, alone, for the few variants that a block cannot settle.
 
-use crate::active_pins::Criterion;
 use crate::error::DesignError;
 use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
 use crate::judge::judged;
 use crate::known::{FiledBlock, Known};
 use crate::lanes::{BLOCK, InputLanes, Mask, for_each_lane};
+use crate::map_stage::{Criteria, Map, MapParts};
 use crate::outputs::{Assembly, AssemblyBlock, Block, Output};
 use crate::shaft::SegmentKind;
 use crate::shaft_plan::ShaftPlan;
 use crate::space::{Rows, Space};
-use crate::stages::{Criteria, Geometry, Map, PinBending, Rating, Shaft, Stage};
+use crate::stages::{Geometry, PinBending, Rating, Shaft, Stage};
 
 /// What of the stages is needed.
 #[derive(Clone, Copy)]
@@ -41,6 +41,7 @@ pub(crate) struct Scratch {
     /// The inputs of a variant looked at alone.
     alone: Inputs,
     geometry: FiledBlock<Geometry>,
+    map_parts: MapParts,
     map: FiledBlock<Map>,
     shaft: FiledBlock<Shaft>,
     pin: FiledBlock<PinBending>,
@@ -64,7 +65,9 @@ impl Stages {
         let needs_stiffness = plan.is_empty();
         let mut stages = Stages {
             geometry: Known::of(space, base, &geometry_inputs, &geometry),
-            map: Known::of(space, base, &map_inputs, &|inputs| map(inputs, Criteria::ALL)),
+            map: Known::of(space, base, &map_inputs, &|inputs| {
+                map(inputs, Criteria::ALL)
+            }),
             shaft: Known::of(space, base, &shaft_inputs, &|inputs| shaft(inputs, &plan)),
             pin: Known::of(space, base, &pin_inputs, &pin),
             rating: Known::of(space, base, &rating_inputs, &|inputs| {
@@ -94,6 +97,7 @@ impl Stages {
             inputs: InputLanes::new(base),
             alone: base.clone(),
             geometry: self.geometry.block(),
+            map_parts: MapParts::new(),
             map: self.map.block(),
             shaft: self.shaft.block(),
             pin: self.pin.block(),
@@ -162,11 +166,13 @@ impl Stages {
         }
         if self.map.is_open() {
             let needed = criteria(wanted, self.criterion);
-            Map::compute_block(inputs, needed, scratch.map.open(), &mut mask);
+            let (parts, out) = (&mut scratch.map_parts, scratch.map.open());
+            Map::compute_block(inputs, needed, parts, out, &mut mask);
         }
         if self.shaft.is_open() {
             let out = scratch.shaft.open();
-            self.plan.compliances(inputs, &mut mask, &mut out.compliance);
+            self.plan
+                .compliances(inputs, &mut mask, &mut out.compliance);
         }
         if self.pin.is_open() {
             let out = scratch.pin.open();
@@ -181,13 +187,9 @@ impl Stages {
                 Rating::of(lane, needs_stiffness, judge).put(out, row);
             });
         }
-        let mut all = 1;
-        for holds in &mask {
-            all &= holds;
-        }
-        if all == 0 {
-            for row in 0..len {
-                if mask[row] == 0 {
+        if mask[..len].iter().fold(1, |all, holds| all & holds) == 0 {
+            for (row, holds) in mask[..len].iter().enumerate() {
+                if *holds == 0 {
                     self.compute_alone(wanted, scratch, row);
                 }
             }
@@ -216,7 +218,9 @@ impl Stages {
         }
         if self.rating.is_open() {
             let needs_stiffness = self.plan.is_empty();
-            scratch.rating.put(rating(alone, needs_stiffness).into(), row);
+            scratch
+                .rating
+                .put(rating(alone, needs_stiffness).into(), row);
         }
     }
 }
@@ -238,11 +242,10 @@ impl Scratch {
 
 /// The criteria whose figures are needed where the chosen one has this code, if it is known.
 fn criteria(wanted: Wanted, code: Option<f64>) -> Criteria {
-    let chosen = code.and_then(|code| Criterion::ALL.get(code as usize));
-    match (wanted.map, wanted.every_criterion, chosen) {
-        (false, ..) => Criteria::NONE,
-        (true, false, Some(criterion)) => Criteria::only(*criterion),
-        _ => Criteria::ALL,
+    match (wanted.map, code) {
+        (false, _) => Criteria::NONE,
+        (true, None) => Criteria::ALL,
+        (true, Some(code)) => Criteria::of(code, wanted.every_criterion),
     }
 }
 

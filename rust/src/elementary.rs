@@ -27,7 +27,7 @@ pub fn asin(x: f64) -> f64 {
     let above = polynomial(
         square,
         [
-            3.479_331_075_960_211_7e-5,
+            3.479_331_075_960_212e-5,
             7.915_349_942_898_145e-4,
             -4.005_553_450_067_941e-2,
             2.012_125_321_348_629_3e-1,
@@ -68,7 +68,11 @@ pub fn atan(x: f64) -> f64 {
     let below = if is_large { x } else { below };
     let turned = if is_small { 0.0 } else { FRAC_PI_4 };
     let turned = if is_large { FRAC_PI_2 } else { turned };
-    let low = if is_small { 0.0 } else { 0.5 * LOW_BITS_OF_PI_2 };
+    let low = if is_small {
+        0.0
+    } else {
+        0.5 * LOW_BITS_OF_PI_2
+    };
     let low = if is_large { LOW_BITS_OF_PI_2 } else { low };
     let reduced = above / below;
     let square = reduced * reduced;

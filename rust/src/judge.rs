@@ -33,7 +33,7 @@ pub trait Judge {
     /// Requires a finite number not below zero.
     #[inline(always)]
     fn non_negative(&mut self, parameter: &'static str, value: f64) -> f64 {
-        self.require((value >= 0.0) & (value <= f64::MAX), || {
+        self.require((0.0..=f64::MAX).contains(&value), || {
             negative(parameter, value)
         });
         value

@@ -142,8 +142,8 @@ macro_rules! for_each_lane {
     ($inputs:expr, $mask:expr, |$row:ident, $lane:ident, $judge:ident| $formula:expr) => {
         // Where the inputs lie is found once, not in every turn.
         let first = $inputs.first();
-        for ($row, holds) in $mask.iter_mut().enumerate() {
-            let $lane = &first.at($row);
+        for (row, holds) in $mask.iter_mut().enumerate() {
+            let ($row, $lane) = (row, &first.at(row));
             let mut judge = $crate::judge::AllHold(true);
             let $judge = &mut judge;
             $formula;

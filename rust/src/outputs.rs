@@ -6,9 +6,10 @@ use crate::compliance::{
 };
 use crate::inputs::NM_PER_RAD_OF_NM_PER_ARCMIN;
 use crate::lanes::{BLOCK, Lanes};
+use crate::map_stage::{Map, MapBlock};
 use crate::stages::{
-    GeometryBlock, Map, MapBlock, PinBending, PinBendingBlock, Rating, RatingBlock, Shaft,
-    ShaftBlock, Stage, stage,
+    GeometryBlock, PinBending, PinBendingBlock, Rating, RatingBlock, Shaft, ShaftBlock, Stage,
+    stage,
 };
 
 /// A result column; the twists are numbered by the study's list of loads.
@@ -245,13 +246,7 @@ impl Block<'_> {
 
     /// Writes one column, in its own unit, for the first variants of the block.
     #[inline(always)]
-    pub fn write(
-        &self,
-        assembly: &AssemblyBlock,
-        output: Output,
-        loads: &[f64],
-        out: &mut [f64],
-    ) {
+    pub fn write(&self, assembly: &AssemblyBlock, output: Output, loads: &[f64], out: &mut [f64]) {
         let Block {
             geometry,
             map,

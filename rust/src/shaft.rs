@@ -151,17 +151,25 @@ impl Term {
         keyway_coefficient: f64,
         judge: &mut impl Judge,
     ) -> Self {
-        let factor = segment.factor(keyway_coefficient, judge);
-        let after = segment.diameter;
-        let falls = after < before;
-        judge.require(!falls, || DesignError::ShaftStepNotAscending {
-            from: before,
-            to: after,
-        });
-        let shoulder = shoulder_factor(before, after);
-        let shoulder = if after > before { shoulder } else { 0.0 };
-        Self { factor, shoulder }
+        Self {
+            factor: segment.factor(keyway_coefficient, judge),
+            shoulder: shoulder(before, segment.diameter, judge),
+        }
     }
+}
+
+/// The shoulder's term where the diameter rises from `before` to `after`, zero where it stays.
+///
+/// Requires that it does not fall.
+#[inline(always)]
+pub fn shoulder(before: f64, after: f64, judge: &mut impl Judge) -> f64 {
+    let falls = after < before;
+    judge.require(!falls, || DesignError::ShaftStepNotAscending {
+        from: before,
+        to: after,
+    });
+    let shoulder = shoulder_factor(before, after);
+    if after > before { shoulder } else { 0.0 }
 }
 
 /// Eq. (4) without 32/(pi G): the segments in series, with the shoulder of Eq. (6) wherever the

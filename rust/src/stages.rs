@@ -6,13 +6,11 @@
 
 use std::ops::Range;
 
-use crate::active_pins::{Criterion, MAX_PINS, PinMap};
-use crate::arrangement::{Arrangement, Counts, first_hole, reduced_clocking};
+use crate::active_pins::MAX_PINS;
 use crate::error::DesignError;
-use crate::hypotrochoid::crossing_angle;
 use crate::inputs::Input;
 use crate::judge::Judge;
-use crate::lanes::{InputLanes, Mask, Variant, for_each_lane};
+use crate::lanes::Variant;
 use crate::pin::{Pin, pin_compliance};
 use crate::rounding::{is_whole_within, smaller};
 
@@ -89,38 +87,6 @@ stage! {
 }
 
 stage! {
-    /// The active-pin map and what goes with its inputs alone.
-    Map, MapBlock {
-        /// Active contacts by the chosen criterion: mean over one turn of the mesh zone.
-        active_mean,
-        /// Smallest.
-        active_min,
-        /// Largest.
-        active_max,
-        /// eta_OP by the chosen criterion.
-        efficiency,
-        /// The factor on the compliance in Eq. (13): eta_OP, or one by statics.
-        twist_factor,
-        /// eta_OP by `inside`.
-        efficiency_inside,
-        /// eta_OP by `published-map`.
-        efficiency_published_map,
-        /// Mean participation by statics.
-        participation,
-        /// N_OP.
-        pins,
-        /// N_OP p where statics feeds the twist, N_OP elsewhere.
-        pins_in_twist,
-        /// i^2.
-        ratio_squared,
-        /// Largest pin force per output torque (1/m): 4 / (n N R).
-        force_per_torque,
-        /// One where the statics hold: at most two discs.
-        statics_applicable,
-    }
-}
-
-stage! {
     /// The output shaft.
     Shaft, ShaftBlock {
         /// C_OS^t (rad/(N m)); NaN for a drive that gives its stiffness instead of a shaft.
@@ -154,16 +120,15 @@ stage! {
     }
 }
 
-/// The three whole numbers of a design, checked.
-struct WholeNumbers {
-    ratio: f64,
-    discs: f64,
-    pins: f64,
+/// The whole numbers of a design, with the number of discs checked.
+pub(crate) struct WholeNumbers {
+    pub ratio: f64,
+    pub pins: f64,
 }
 
 impl WholeNumbers {
     #[inline(always)]
-    fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
+    pub(crate) fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
         let ratio = judge.finite("ratio", inputs.get(Input::Ratio));
         judge.require(is_whole_within(ratio, 3.0, 300.0), || {
             DesignError::RatioOutOfRange { ratio }
@@ -176,7 +141,7 @@ impl WholeNumbers {
         judge.require(is_whole_within(pins, 3.0, MAX_PINS as f64), || {
             DesignError::PinCountOutOfRange { pins }
         });
-        Self { ratio, discs, pins }
+        Self { ratio, pins }
     }
 }
 
@@ -209,8 +174,7 @@ impl Geometry {
             "output_pin_circle_radius",
             inputs.get(Input::OutputPinCircleRadius),
         );
-        let diameter =
-            judge.positive("output_pin_diameter", inputs.get(Input::OutputPinDiameter));
+        let diameter = judge.positive("output_pin_diameter", inputs.get(Input::OutputPinDiameter));
         let bore = judge.non_negative("output_pin_bore", inputs.get(Input::OutputPinBore));
         let wall = judge.non_negative("bush_wall", inputs.get(Input::BushWall));
         let rim = judge.positive("disc_outer_radius", inputs.get(Input::DiscOuterRadius));
@@ -241,158 +205,6 @@ impl Geometry {
             hole_diameter: hole,
             hole_web: smaller(smaller(between, outer), inner),
             short_width_coefficient: k1,
-        }
-    }
-}
-
-/// Which criteria's figures are needed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Criteria {
-    /// Those of `published-map`.
-    pub published_map: bool,
-    /// Those of `inside`.
-    pub inside: bool,
-    /// Those of `statics`.
-    pub statics: bool,
-}
-
-impl Criteria {
-    /// All of them.
-    pub const ALL: Self = Self {
-        published_map: true,
-        inside: true,
-        statics: true,
-    };
-    /// None of them: only the checks.
-    pub const NONE: Self = Self {
-        published_map: false,
-        inside: false,
-        statics: false,
-    };
-
-    /// One of them.
-    #[must_use]
-    pub fn only(criterion: Criterion) -> Self {
-        Self {
-            published_map: criterion == Criterion::PublishedMap,
-            inside: criterion == Criterion::Inside,
-            statics: criterion == Criterion::Statics,
-        }
-    }
-}
-
-impl Map {
-    /// The inputs this stage reads.
-    pub const INPUTS: [Input; 7] = [
-        Input::Ratio,
-        Input::DiscCount,
-        Input::Eccentricity,
-        Input::OutputPinCount,
-        Input::OutputPinCircleRadius,
-        Input::HoleClocking,
-        Input::Criterion,
-    ];
-
-    /// Checks and computes; figures that go with a criterion that is not needed are NaN.
-    #[inline(always)]
-    pub fn of(inputs: &impl Variant, needed: Criteria, judge: &mut impl Judge) -> Self {
-        let WholeNumbers { ratio, discs, pins } = WholeNumbers::of(inputs, judge);
-        let circle = inputs.get(Input::OutputPinCircleRadius);
-        let delta = crossing_angle(inputs.get(Input::Eccentricity), circle, judge)
-            * std::f64::consts::TAU.recip();
-        let clocking = judge.finite("hole_clocking", inputs.get(Input::HoleClocking));
-        let code = judge.finite("criterion", inputs.get(Input::Criterion));
-        judge.require((code >= 0.0) & (code < Criterion::ALL.len() as f64), || {
-            DesignError::NonFinite {
-                parameter: "criterion",
-            }
-        });
-        // The walks over windows that stand in where a closed form does not hold.
-        let by_walking = || PinMap {
-            ratio,
-            discs: discs as u32,
-            pins: pins as u32,
-            delta,
-            clocking,
-        };
-        let in_a_turn = judge.settle(clocking.abs() <= 1.0, clocking, || {
-            reduced_clocking(clocking, pins)
-        });
-        let arrangement = Arrangement {
-            ratio,
-            discs,
-            pins,
-            delta,
-            first_hole: first_hole(in_a_turn, pins),
-        };
-        let mut published = Counts::NONE;
-        if needed.published_map {
-            let (counts, holds) = arrangement.published_map();
-            published = judge.settle(holds, counts, || by_walking().published_map().into());
-        }
-        let inside = if needed.inside {
-            arrangement.inside()
-        } else {
-            Counts::NONE
-        };
-        let (mut statics, mut participation) = (Counts::NONE, f64::NAN);
-        if needed.statics {
-            statics = arrangement.statics();
-            let (even, holds) = arrangement.even_participation();
-            participation = judge.settle(holds, even, || by_walking().participation().mean);
-        }
-        let by_statics = code >= Criterion::Statics as u8 as f64;
-        let by_map = code < Criterion::Inside as u8 as f64;
-        let others = Counts::choose(by_statics, statics, inside);
-        let active = Counts::choose(by_map, published, others);
-        let efficiency = arrangement.efficiency(active.mean);
-        Self {
-            active_mean: active.mean,
-            active_min: active.min,
-            active_max: active.max,
-            efficiency,
-            twist_factor: if by_statics { 1.0 } else { efficiency },
-            efficiency_inside: arrangement.efficiency(inside.mean),
-            efficiency_published_map: arrangement.efficiency(published.mean),
-            participation,
-            pins,
-            pins_in_twist: if by_statics {
-                pins * participation
-            } else {
-                pins
-            },
-            ratio_squared: ratio * ratio,
-            force_per_torque: 4.0 / (discs * pins * circle),
-            statics_applicable: if discs <= 2.0 { 1.0 } else { 0.0 },
-        }
-    }
-
-    /// [`Map::of`] for every variant of a block.
-    #[inline(always)]
-    pub fn compute_block(
-        inputs: &InputLanes,
-        needed: Criteria,
-        block: &mut MapBlock,
-        mask: &mut Mask,
-    ) {
-        macro_rules! compute {
-            ($needed:expr) => {
-                for_each_lane!(inputs, mask, |row, lane, judge| {
-                    const NEEDED: Criteria = $needed;
-                    Map::of(lane, NEEDED, judge).put(block, row)
-                })
-            };
-        }
-        // One loop each for what is usually needed, so that none chooses within.
-        if needed == Criteria::NONE {
-            compute!(Criteria::NONE);
-        } else if !needed.inside && !needed.statics {
-            compute!(Criteria {
-                published_map: true,
-                ..Criteria::NONE
-            });
-        } else {
-            compute!(Criteria::ALL);
         }
     }
 }
