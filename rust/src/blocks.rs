@@ -18,6 +18,8 @@ use crate::stages::{Geometry, PinBending, Rating, Shaft, Stage};
 pub(crate) struct Wanted {
     pub map: bool,
     pub every_criterion: bool,
+    /// Whether every variant is to be looked at alone.
+    pub one_by_one: bool,
 }
 
 /// What of a study's stages is known before any variant.
@@ -155,7 +157,7 @@ impl Stages {
     /// Computes the open stages of a block.
     #[inline(always)]
     fn compute(&self, wanted: Wanted, scratch: &mut Scratch, len: usize) {
-        let mut mask: Mask = [1; BLOCK];
+        let mut mask: Mask = [u64::from(!wanted.one_by_one); BLOCK];
         let inputs = &mut scratch.inputs;
         if self.geometry.is_open() {
             inputs.find_half_pitch_sines();

@@ -58,11 +58,30 @@ pub struct Study {
     evaluated: AtomicU64,
 }
 
+/// How variants are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Path {
+    Blocks,
+    OneByOne,
+}
+
 /// A stretch of the result columns that one thread writes.
 struct Task<'a> {
     first: usize,
     status: &'a mut [u8],
     values: Vec<&'a mut [f64]>,
+}
+
+impl std::fmt::Debug for Study {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Study")
+            .field("space", &self.space)
+            .field("base", &self.base)
+            .field("kinds", &self.kinds)
+            .field("loads", &self.loads)
+            .field("limits", &self.limits)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Study {
@@ -122,14 +141,25 @@ impl Study {
     #[must_use]
     pub fn axis_values(&self, axis: usize, rows: Rows<'_>, len: usize) -> Vec<f64> {
         let mut values = vec![0.0; len];
+        self.axes_into(&[axis], rows, vec![&mut values]);
         values
-            .par_chunks_mut(TASK)
-            .enumerate()
-            .for_each(|(task, out)| {
-                self.space
-                    .fill(axis, part(rows, task * TASK, out.len()), out);
+    }
+
+    /// Values of some axes, in the user's unit, into memory of the caller's: one column an axis,
+    /// all of a length.
+    pub fn axes_into(&self, axes: &[usize], rows: Rows<'_>, values: Vec<&mut [f64]>) {
+        let (space, mut nothing) = (&self.space, Vec::new());
+        nothing.resize(values.first().map_or(0, |column| column.len()), 0);
+        tasks(&mut nothing, values)
+            .into_par_iter()
+            .for_each(|task| {
+                with_widest(AxesWork {
+                    space,
+                    axes,
+                    rows,
+                    task,
+                })
             });
-        values
     }
 
     /// Why one variant cannot be built, with its numbers; limits are not looked at.
@@ -148,15 +178,7 @@ impl Study {
     /// study is cut.
     #[must_use]
     pub fn evaluate(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
-        let mut status = vec![0; len];
-        let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
-        let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
-        let any_refused = self.evaluate_into(rows, outputs, &mut status, slices);
-        Columns {
-            status,
-            any_refused,
-            values,
-        }
+        self.columns(rows, len, outputs, Path::Blocks)
     }
 
     /// [`Study::evaluate`] into memory of the caller's, one column an output, each as long as
@@ -168,21 +190,56 @@ impl Study {
         status: &mut [u8],
         values: Vec<&mut [f64]>,
     ) -> bool {
+        self.run(rows, outputs, status, values, Path::Blocks)
+    }
+
+    /// [`Study::evaluate`] the slow way, for tests: every variant alone, without the machine's own
+    /// vector instructions. The bits are the same.
+    #[must_use]
+    pub fn evaluate_one_by_one(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
+        self.columns(rows, len, outputs, Path::OneByOne)
+    }
+
+    fn columns(&self, rows: Rows<'_>, len: usize, outputs: &[Output], path: Path) -> Columns {
+        let mut status = vec![0; len];
+        let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
+        let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
+        let any_refused = self.run(rows, outputs, &mut status, slices, path);
+        Columns {
+            status,
+            any_refused,
+            values,
+        }
+    }
+
+    fn run(
+        &self,
+        rows: Rows<'_>,
+        outputs: &[Output],
+        status: &mut [u8],
+        values: Vec<&mut [f64]>,
+        path: Path,
+    ) -> bool {
         self.evaluated
             .fetch_add(status.len() as u64, Ordering::Relaxed);
         let stages = self
             .stages
             .get_or_init(|| Stages::new(&self.space, &self.base, &self.kinds));
+        let wanted = self.wanted(outputs, path);
         let work = |scratch: &mut Scratch, task: Task<'_>| {
-            with_widest(TaskWork {
+            let work = TaskWork {
                 study: self,
                 stages,
-                wanted: self.wanted(outputs),
+                wanted,
                 outputs,
                 rows: part(rows, task.first, task.status.len()),
                 scratch,
                 task,
-            })
+            };
+            match path {
+                Path::Blocks => with_widest(work),
+                Path::OneByOne => work.run(),
+            }
         };
         tasks(status, values)
             .into_par_iter()
@@ -191,7 +248,7 @@ impl Study {
     }
 
     /// What of the stages the outputs and limits need.
-    fn wanted(&self, outputs: &[Output]) -> Wanted {
+    fn wanted(&self, outputs: &[Output], path: Path) -> Wanted {
         let limited = self.limits.iter().filter_map(|limit| match limit.column {
             Limited::Output(output) => Some(output),
             Limited::Input(_) => None,
@@ -200,6 +257,7 @@ impl Study {
         Wanted {
             map: needed().any(|output| !output.is_free_of_map()),
             every_criterion: needed().any(Output::needs_every_criterion),
+            one_by_one: path == Path::OneByOne,
         }
     }
 
@@ -241,6 +299,26 @@ impl Study {
                 out.fill(self.base.at(input));
                 factor(input)
             }
+        }
+    }
+}
+
+/// Axes of one task.
+struct AxesWork<'a> {
+    space: &'a Space,
+    axes: &'a [usize],
+    rows: Rows<'a>,
+    task: Task<'a>,
+}
+
+impl Wide for AxesWork<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let rows = part(self.rows, self.task.first, self.task.status.len());
+        for (axis, column) in self.axes.iter().zip(self.task.values) {
+            self.space.fill(*axis, rows, column);
         }
     }
 }

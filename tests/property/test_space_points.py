@@ -35,7 +35,8 @@ def points(space: cs.Space, start: int | None = None, stop: int | None = None) -
     core = space.core()
     first = space.start if start is None else start
     last = space.stop if stop is None else stop
-    return {axis.name: core.axis(axis.name, first, last) for axis in space.axes}
+    names = [axis.name for axis in space.axes]
+    return dict(zip(names, core.axes(names, first, last), strict=True))
 
 
 def unit(space: cs.Space, name: str, low: float, high: float) -> npt.NDArray[np.float64]:
