@@ -31,7 +31,10 @@
 //! A [`space::Space`] gives every variant its inputs from its index alone. [`stages`] cut the
 //! model by the inputs each part needs; [`columns::Study`] computes a stage once where its inputs
 //! do not vary, once per combination on a grid, per variant elsewhere, in blocks on all cores.
-//! Bits depend neither on the number of threads nor on how a study is cut.
+//! A stage's formulas are written once, without branches, before a [`judge`] of their conditions:
+//! over a block's [`lanes`] they become the machine's vector instructions, and the few variants that
+//! a block cannot settle are computed alone, with the reason where they are refused. Bits depend
+//! neither on the number of threads, nor on how a study is cut, nor on the machine's instructions.
 
 pub mod active_pins;
 mod arrangement;

@@ -224,3 +224,10 @@ def test_a_space_is_cut_in_steps_of_one(reference: cs.Drive) -> None:
     with pytest.raises(IndexError):
         space[2]
     assert [drive.output_pin_count for drive in space] == [6, 8]
+
+
+def test_the_one_space_too_large_for_len(reference: cs.Drive) -> None:
+    space = cs.Space.sobol(reference, 2**63, eccentricity_mm=(0.3, 0.8))
+    with pytest.raises(OverflowError, match="one too many for len"):
+        len(space)
+    assert len(space[1:]) == 2**63 - 1
