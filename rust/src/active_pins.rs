@@ -3,7 +3,7 @@
 //! Angles in this file are in turns (1 turn = 2 pi rad): an eighth of a turn is then a binary
 //! number and the ideal map comes out exact.
 
-use crate::arrangement::{Arrangement, Counts, TIE, first_hole, reduced_clocking};
+use crate::arrangement::{Arrangement, Counts, TIE, first_hole, fold, reduced_clocking};
 use crate::rounding::floor;
 
 /// Most output pins a design may have.
@@ -108,12 +108,14 @@ impl PinMap {
         } else {
             reduced_clocking(self.clocking, pins)
         };
+        let discs = f64::from(self.discs);
         Arrangement {
             ratio: self.ratio,
-            discs: f64::from(self.discs),
+            discs,
             pins,
             delta: self.delta,
             first_hole: first_hole(clocking, pins),
+            fold: fold(pins, discs),
         }
     }
 
@@ -143,7 +145,7 @@ impl PinMap {
     /// M = lcm(N, n). One spring per hole-pin contact; valid for one or two discs.
     #[must_use]
     pub fn participation(&self) -> Participation {
-        let fold = self.arrangement().fold() as u32;
+        let fold = self.arrangement().fold as u32;
         let lattice = self.pins / fold * self.discs;
         let share = f64::from(fold) / f64::from(self.pins);
         let m = f64::from(lattice);
@@ -199,7 +201,7 @@ impl PinMap {
     }
 
     fn equal_window_sectors(&self, low: f64, high: f64, mut add: impl FnMut(f64, f64, u32)) {
-        let fold = self.arrangement().fold() as u32;
+        let fold = self.arrangement().fold as u32;
         let lattice = f64::from(self.pins / fold * self.discs);
         let origin = self.first_hole();
         let travel = 1.0 + 1.0 / self.ratio;

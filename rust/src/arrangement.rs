@@ -24,6 +24,8 @@ pub(crate) struct Arrangement {
     pub delta: f64,
     /// Where the first hole from ring pin 0 on stands, from 0 to 1 pitch.
     pub first_hole: f64,
+    /// See [`fold`].
+    pub fold: f64,
 }
 
 stage! {
@@ -95,24 +97,23 @@ fn divides(divisor: f64, reciprocal: f64, whole: f64) -> bool {
     nearest(whole * reciprocal) * divisor == whole
 }
 
+/// Greatest common divisor of the pins and the discs, of which there are one to four.
+#[inline(always)]
+pub(crate) fn fold(pins: f64, discs: f64) -> f64 {
+    let mut fold = 1.0;
+    for (divisor, reciprocal) in [(2.0, 0.5), (3.0, 1.0 / 3.0), (4.0, 0.25)] {
+        let is_common = divides(divisor, reciprocal, pins) & divides(divisor, reciprocal, discs);
+        fold = if is_common { divisor } else { fold };
+    }
+    fold
+}
+
 impl Arrangement {
     /// Torque transfer efficiency eta_OP (Eqs. 1-3) of a mean number of active contacts:
     /// `mean / (n_discs N_OP / 2)`, which is Eq. (2) for two discs.
     #[inline(always)]
     pub(crate) fn efficiency(&self, mean: f64) -> f64 {
         mean / (0.5 * (self.discs * self.pins))
-    }
-
-    /// Greatest common divisor of the pins and the discs, of which there are one to four.
-    #[inline(always)]
-    pub(crate) fn fold(&self) -> f64 {
-        let mut fold = 1.0;
-        for (divisor, reciprocal) in [(2.0, 0.5), (3.0, 1.0 / 3.0), (4.0, 0.25)] {
-            let is_common =
-                divides(divisor, reciprocal, self.pins) & divides(divisor, reciprocal, self.discs);
-            fold = if is_common { divisor } else { fold };
-        }
-        fold
     }
 
     /// Counts by the criterion `inside`: hole j of disc d is active while
@@ -136,7 +137,7 @@ impl Arrangement {
     /// lattice steps rounded down and up, and its integral is that of a floor function.
     #[inline(always)]
     fn equal_windows(&self, low: f64, high: f64) -> Counts {
-        let fold = self.fold();
+        let fold = self.fold;
         let per_pitch = self.discs / fold;
         let lattice = self.pins * per_pitch;
         let width = (high - low) * lattice;
@@ -156,7 +157,7 @@ impl Arrangement {
     /// pairs of lattice points half a turn apart add to one, so that an even lattice gives n/4.
     #[inline(always)]
     pub(crate) fn even_participation(&self) -> (f64, bool) {
-        let lattice = self.pins * (self.discs / self.fold());
+        let lattice = self.pins * (self.discs / self.fold);
         (0.25 * self.discs, divides(2.0, 0.5, lattice))
     }
 

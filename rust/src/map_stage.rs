@@ -1,7 +1,7 @@
 //! The stage of the active pins: counts by each criterion that is needed, and what goes with them.
 
 use crate::active_pins::{Criterion, PinMap};
-use crate::arrangement::{Arrangement, Counts, CountsBlock, first_hole, reduced_clocking};
+use crate::arrangement::{Arrangement, Counts, CountsBlock, first_hole, fold, reduced_clocking};
 use crate::error::DesignError;
 use crate::hypotrochoid::crossing_angle;
 use crate::inputs::Input;
@@ -92,6 +92,8 @@ stage! {
         delta,
         /// Where the first hole from ring pin 0 on stands, from 0 to 1 pitch.
         first_hole,
+        /// Greatest common divisor of pins and discs.
+        fold,
     }
 }
 
@@ -137,6 +139,7 @@ impl Angles {
         Self {
             delta: angle * std::f64::consts::TAU.recip(),
             first_hole: first_hole(in_a_turn, pins),
+            fold: fold(pins, inputs.get(Input::DiscCount)),
         }
     }
 
@@ -148,6 +151,7 @@ impl Angles {
             pins: inputs.get(Input::OutputPinCount),
             delta: self.delta,
             first_hole: self.first_hole,
+            fold: self.fold,
         }
     }
 
