@@ -61,7 +61,7 @@ lint: env
 	$(BIN)/python -m mypy.stubtest cyclosweep._core
 
 bench: env
-	$(BIN)/python -m pip install --quiet "numba>=0.61"
+	. $(BIN)/activate && maturin develop --release --locked --quiet --extras bench
 	$(BIN)/python benches/run.py --full
 	$(BIN)/python benches/instructions.py
 

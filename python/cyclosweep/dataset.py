@@ -126,6 +126,7 @@ class Dataset:
         identities = [read_manifest(manifest), next(filter(None, map(read_footer, found)), None)]
         for identity in filter(None, identities):
             if identity.get("study") != self.study.hash:
+                self._refuse_another_stretch(identity)
                 raise InputError(
                     f"{self.folder}: holds another study, expected this one or an empty folder; "
                     "--fresh deletes what is there"
@@ -135,6 +136,21 @@ class Dataset:
                     f"{self.folder}: parts of {identity.get('rows_per_part')} variants, "
                     f"expected {self.rows_per_part}; --fresh deletes what is there"
                 )
+
+    def _refuse_another_stretch(self, identity: dict[str, Any]) -> None:
+        """Say so where the folder holds other variants of the same study (`--rows`)."""
+        there, here = identity.get("definition"), self.study.definition()
+        if not isinstance(there, dict) or {**there, "start": 0, "stop": 0} != {
+            **here,
+            "start": 0,
+            "stop": 0,
+        }:
+            return
+        raise InputError(
+            f"{self.folder}: holds variants {there.get('start'):,} to {there.get('stop'):,} of "
+            f"this study, found {here['start']:,} to {here['stop']:,} asked for; expected the "
+            "same, another folder, or --fresh, which deletes what is there"
+        )
 
     def is_whole(self, part: Part) -> bool:
         """Whether a part is there and belongs to this study."""

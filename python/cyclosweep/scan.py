@@ -230,16 +230,17 @@ def _split(predicate: pl.Expr | None, cheap: set[str]) -> tuple[list[pl.Expr], l
 
 def _inputs(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
     dtypes = study.schema()
+    axes = [name for name in names if name != "variant"]
+    values = dict(zip(axes, study.core.axes(axes, start, stop), strict=True))
     columns = []
     for name in names:
         if name == "variant":
             columns.append(pl.int_range(start, stop, dtype=pl.UInt64, eager=True).alias(name))
-            continue
-        values = study.core.axis(name, start, stop)
-        if name == "criterion":
-            columns.append(pl.Series(name, values.astype(np.uint8)).cat.to(dtypes[name]))
+        elif name == "criterion":
+            codes = pl.Series(name, values[name].astype(np.uint8))
+            columns.append(codes.cat.to(dtypes[name]))
         else:
-            columns.append(pl.Series(name, values).cast(dtypes[name]))
+            columns.append(pl.Series(name, values[name]).cast(dtypes[name]))
     return pl.DataFrame(columns)
 
 
@@ -256,10 +257,16 @@ def _results(
     else:
         status, any_refused, columns = study.core.evaluate_at(picked, outputs)
     dtypes = study.schema()
-    series = {}
+    series = {"status": pl.Series("status", status)}
     for name, values in zip(outputs, columns, strict=True):
-        column = pl.Series(name, values, nan_to_null=any_refused or name in _MAY_NOT_APPLY)
-        series[name] = column if dtypes[name] == pl.Float64() else column.cast(dtypes[name])
-    if "status" in names:
-        series["status"] = pl.Series("status", status).cat.to(dtypes["status"])
-    return [series[name] for name in names]
+        series[name] = pl.Series(name, values, nan_to_null=name in _MAY_NOT_APPLY)
+    table = pl.DataFrame(series)
+    if any_refused and outputs:
+        # Nothing is copied: polars joins the validity to the columns.
+        built = pl.col("status") == 0
+        table = table.with_columns(pl.when(built).then(pl.col(*outputs)))
+    table = table.with_columns(
+        *(pl.col(name).cast(dtypes[name]) for name in outputs if dtypes[name] != pl.Float64()),
+        pl.col("status").cat.to(dtypes["status"]),
+    )
+    return [table[name] for name in names]

@@ -6,6 +6,7 @@ import difflib
 import functools
 import hashlib
 import math
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, overload
@@ -181,7 +182,7 @@ class Space:
         Raises
         ------
         InputError
-            As for :meth:`grid`, and for more than 128 axes.
+            As for :meth:`grid`, without an axis, and for more than 128 axes.
 
         Notes
         -----
@@ -241,6 +242,8 @@ class Space:
         is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
         if not (is_whole and 0 <= seed < 2**64):
             raise InputError(f"seed: found {seed!r}, expected a whole number from 0 to 2^64 - 1")
+        if not axes:
+            raise InputError(f"{method}: no axes, expected at least one input that varies")
         built = tuple(_sampled_axis(drive, name, values) for name, values in axes.items())
         return cls._made(drive, method, built, int(count), int(seed))
 
@@ -275,7 +278,12 @@ class Space:
         )
 
     def __len__(self) -> int:
-        return self.stop - self.start
+        count = self.stop - self.start
+        if count > sys.maxsize:
+            raise OverflowError(
+                f"{count:,} variants are one too many for len(), expected space.stop - space.start"
+            )
+        return count
 
     @overload
     def __getitem__(self, key: slice) -> Space: ...

@@ -3,12 +3,11 @@
 //! Angles in this file are in turns (1 turn = 2 pi rad): an eighth of a turn is then a binary
 //! number and the ideal map comes out exact.
 
-use crate::rounding::{ceil, floor};
+use crate::arrangement::{Arrangement, Counts, TIE, first_hole, fold, reduced_clocking};
+use crate::rounding::floor;
 
 /// Most output pins a design may have.
 pub const MAX_PINS: usize = 64;
-/// Angles closer than this (turns) count as equal: sectors shorter than it are rounding.
-pub(crate) const TIE: f64 = 1e-12;
 
 /// Rule by which a hole-pin contact counts as active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +51,16 @@ pub struct ActiveCount {
     pub max: u32,
 }
 
+impl From<Counts> for ActiveCount {
+    fn from(counts: Counts) -> Self {
+        Self {
+            mean: counts.mean,
+            min: counts.min as u32,
+            max: counts.max as u32,
+        }
+    }
+}
+
 /// Participation p = sum of sin^2 over the loaded contacts / N_OP.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Participation {
@@ -91,57 +100,41 @@ pub struct PinMap {
 }
 
 impl PinMap {
-    /// Torque transfer efficiency eta_OP (Eqs. 1-3) of a mean number of active contacts:
-    /// `mean / (n_discs N_OP / 2)`, which is Eq. (2) for two discs.
-    #[inline]
+    /// The same with real numbers, the clocking reduced.
+    pub(crate) fn arrangement(&self) -> Arrangement {
+        let pins = f64::from(self.pins);
+        let clocking = if self.clocking.abs() <= 1.0 {
+            self.clocking
+        } else {
+            reduced_clocking(self.clocking, pins)
+        };
+        let discs = f64::from(self.discs);
+        Arrangement {
+            ratio: self.ratio,
+            discs,
+            pins,
+            delta: self.delta,
+            first_hole: first_hole(clocking, pins),
+            fold: fold(pins, discs),
+        }
+    }
+
+    /// Torque transfer efficiency eta_OP (Eqs. 1-3) of a mean number of active contacts.
     #[must_use]
     pub fn efficiency(&self, mean: f64) -> f64 {
-        mean / (0.5 * f64::from(self.discs * self.pins))
+        self.arrangement().efficiency(mean)
     }
 
-    /// Counts by the criterion `inside`: hole j of disc d is active while
-    /// `cos(theta (1 + 1/i) + 2 pi d / n - phi_j) < -e / (2 R_OP)`.
-    #[inline]
+    /// Counts by the criterion `inside`: the hole's centre lies inside the pins' pitch circle.
     #[must_use]
     pub fn inside(&self) -> ActiveCount {
-        self.equal_windows(0.25 + self.delta, 0.75 - self.delta)
+        self.arrangement().inside().into()
     }
 
-    /// Counts by `statics`: the hole pushes its pin along the eccentricity's direction, so a
-    /// contact carries load while `sin(psi) > 0`, half a turn.
-    #[inline]
+    /// Counts by `statics`: the hole pushes its pin in the sense of the torque.
     #[must_use]
     pub fn statics(&self) -> ActiveCount {
-        self.equal_windows(0.0, 0.5)
-    }
-
-    /// Counts for windows alike on every hole, open while psi lies in (`low`, `high`) turns.
-    ///
-    /// All holes of all discs stand on one lattice of lcm(N, n) points, each gcd(N, n)-fold, so
-    /// the count is a difference of two floor functions: its extremes are the window's width in
-    /// lattice steps rounded down and up, and its integral is that of a floor function.
-    #[inline(always)]
-    fn equal_windows(&self, low: f64, high: f64) -> ActiveCount {
-        let fold = gcd(self.pins, self.discs);
-        let per_pitch = small_quotient(self.discs, fold);
-        let lattice = f64::from(self.pins) * per_pitch;
-        let width = (high - low) * lattice;
-        let (min, max) = (floor(width) as u32 * fold, ceil(width) as u32 * fold);
-        if min == max {
-            return ActiveCount {
-                mean: f64::from(min),
-                min,
-                max,
-            };
-        }
-        let origin = self.first_hole_in_pitches() * per_pitch;
-        let travel = 1.0 + 1.0 / self.ratio;
-        let up = |edge: f64| {
-            floor_integral((travel - edge) * lattice - origin)
-                - floor_integral(-edge * lattice - origin)
-        };
-        let mean = f64::from(fold) * (up(low) - up(high)) / (lattice * travel);
-        ActiveCount { mean, min, max }
+        self.arrangement().statics().into()
     }
 
     /// Participation of the pins by statics, over one turn of the mesh zone.
@@ -150,10 +143,9 @@ impl PinMap {
     /// of sin^2 over the loaded half. Pairs half a turn apart add to one: an even lattice gives
     /// n/4 at every position. An odd one pulsates about it by (sec(pi/M) - 1) / 4 of a contact,
     /// M = lcm(N, n). One spring per hole-pin contact; valid for one or two discs.
-    #[inline]
     #[must_use]
     pub fn participation(&self) -> Participation {
-        let fold = gcd(self.pins, self.discs);
+        let fold = self.arrangement().fold as u32;
         let lattice = self.pins / fold * self.discs;
         let share = f64::from(fold) / f64::from(self.pins);
         let m = f64::from(lattice);
@@ -201,27 +193,15 @@ impl PinMap {
     #[must_use]
     pub fn first_hole_window(&self) -> (f64, f64) {
         let shrink = self.ratio / (self.ratio + 1.0);
-        let nearest = self.nearest_left_hole() / f64::from(self.pins);
+        let nearest = self.arrangement().nearest_left_hole() / f64::from(self.pins);
         (
             (nearest + 0.25 + self.delta) * shrink,
             (nearest + 0.75 - self.delta) * shrink,
         )
     }
 
-    /// Angle (pitches) of the left half's hole nearest ring pin 0, above minus one and not above
-    /// zero.
-    #[inline(always)]
-    pub(crate) fn nearest_left_hole(&self) -> f64 {
-        let first = self.first_hole_in_pitches();
-        if first < TIE * f64::from(self.pins) {
-            first
-        } else {
-            first - 1.0
-        }
-    }
-
     fn equal_window_sectors(&self, low: f64, high: f64, mut add: impl FnMut(f64, f64, u32)) {
-        let fold = gcd(self.pins, self.discs);
+        let fold = self.arrangement().fold as u32;
         let lattice = f64::from(self.pins / fold * self.discs);
         let origin = self.first_hole();
         let travel = 1.0 + 1.0 / self.ratio;
@@ -249,31 +229,9 @@ impl PinMap {
     }
 
     /// Angle (turns) of the first hole from ring pin 0 on, within one pitch.
-    #[inline]
     fn first_hole(&self) -> f64 {
-        self.first_hole_in_pitches() / f64::from(self.pins)
+        self.arrangement().first_hole / f64::from(self.pins)
     }
-
-    /// Where the first hole from ring pin 0 on stands, from 0 to 1 pitch: holes bear no numbers,
-    /// and a clocking of many turns would cost digits.
-    #[inline(always)]
-    fn first_hole_in_pitches(&self) -> f64 {
-        let pins = f64::from(self.pins);
-        let clocking = if self.clocking.abs() <= 1.0 {
-            self.clocking
-        } else {
-            self.clocking % (1.0 / pins)
-        };
-        let place = clocking * pins + 0.5;
-        place - floor(place)
-    }
-}
-
-/// Integral of the floor function from 0 to `y`.
-#[inline]
-fn floor_integral(y: f64) -> f64 {
-    let n = floor(y);
-    n * (0.5 * (n - 1.0) + (y - n))
 }
 
 /// Integral from 0 to `y` (in lattice steps) of the sum of sin^2 over the loaded half of an odd
@@ -296,29 +254,6 @@ fn odd_integral(y: f64, m: f64) -> f64 {
         } else {
             first(0.5) + second(rest - 0.5)
         }
-}
-
-/// `whole / part` of two small counts without a division.
-#[inline(always)]
-fn small_quotient(whole: u32, part: u32) -> f64 {
-    f64::from(if part == 1 { whole } else { whole / part })
-}
-
-/// Greatest common divisor of the pins and the discs, of which there are one to four in a design.
-#[inline(always)]
-fn gcd(pins: u32, discs: u32) -> u32 {
-    match discs {
-        1 => 1,
-        2 => 2 - pins % 2,
-        4 => 1 << pins.trailing_zeros().min(2),
-        _ => {
-            let (mut a, mut b) = (pins, discs);
-            while b != 0 {
-                (a, b) = (b, a % b);
-            }
-            a
-        }
-    }
 }
 
 #[cfg(test)]

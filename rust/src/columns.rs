@@ -5,17 +5,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use crate::blocks::{Scratch, Stages, Wanted, explained};
 use crate::error::{DesignError, Status};
-use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
-use crate::known::{Known, filed};
-use crate::outputs::{Assembly, Block, Output};
+use crate::inputs::{Inputs, SCALARS, SEGMENT_FIELDS, factor};
+use crate::lanes::{BLOCK, Wide, with_widest};
+use crate::outputs::Output;
 use crate::shaft::SegmentKind;
-use crate::shaft_plan::ShaftPlan;
 use crate::space::{Rows, Space};
-use crate::stages::{Geometry, Map, PinBending, Rating, Shaft, Stage};
 
-/// Variants computed together: their stages stay in the cache.
-pub(crate) const BLOCK: usize = 128;
 /// Variants a thread takes at a time.
 const TASK: usize = 32 * BLOCK;
 
@@ -50,18 +47,6 @@ pub struct Columns {
     pub values: Vec<Vec<f64>>,
 }
 
-struct Stages {
-    geometry: Known<Geometry>,
-    map: Known<Map>,
-    shaft: Known<Shaft>,
-    pin: Known<PinBending>,
-    rating: Known<Rating>,
-    /// What of the shaft is known where the whole is not.
-    plan: ShaftPlan,
-    /// Axes that a stage computed for every variant reads: number and input.
-    open_axes: Vec<(usize, usize)>,
-}
-
 /// The definition of a study, ready to evaluate.
 pub struct Study {
     space: Space,
@@ -73,11 +58,11 @@ pub struct Study {
     evaluated: AtomicU64,
 }
 
-/// What of the stages is needed.
-#[derive(Clone, Copy)]
-struct Wanted {
-    map: bool,
-    every_criterion: bool,
+/// How variants are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Path {
+    Blocks,
+    OneByOne,
 }
 
 /// A stretch of the result columns that one thread writes.
@@ -87,18 +72,16 @@ struct Task<'a> {
     values: Vec<&'a mut [f64]>,
 }
 
-/// A thread's working memory for one block.
-struct Scratch {
-    /// Values of each axis, in the core's unit.
-    axes: Vec<[f64; BLOCK]>,
-    /// The inputs of the variant at hand.
-    inputs: Inputs,
-    geometry: [Geometry; BLOCK],
-    map: [Map; BLOCK],
-    shaft: [Shaft; BLOCK],
-    pin: [PinBending; BLOCK],
-    rating: [Rating; BLOCK],
-    assembly: [Assembly; BLOCK],
+impl std::fmt::Debug for Study {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Study")
+            .field("space", &self.space)
+            .field("base", &self.base)
+            .field("kinds", &self.kinds)
+            .field("loads", &self.loads)
+            .field("limits", &self.limits)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Study {
@@ -158,14 +141,25 @@ impl Study {
     #[must_use]
     pub fn axis_values(&self, axis: usize, rows: Rows<'_>, len: usize) -> Vec<f64> {
         let mut values = vec![0.0; len];
+        self.axes_into(&[axis], rows, vec![&mut values]);
         values
-            .par_chunks_mut(TASK)
-            .enumerate()
-            .for_each(|(task, out)| {
-                self.space
-                    .fill(axis, part(rows, task * TASK, out.len()), out);
+    }
+
+    /// Values of some axes, in the user's unit, into memory of the caller's: one column an axis,
+    /// all of a length.
+    pub fn axes_into(&self, axes: &[usize], rows: Rows<'_>, values: Vec<&mut [f64]>) {
+        let (space, mut nothing) = (&self.space, Vec::new());
+        nothing.resize(values.first().map_or(0, |column| column.len()), 0);
+        tasks(&mut nothing, values)
+            .into_par_iter()
+            .for_each(|task| {
+                with_widest(AxesWork {
+                    space,
+                    axes,
+                    rows,
+                    task,
+                })
             });
-        values
     }
 
     /// Why one variant cannot be built, with its numbers; limits are not looked at.
@@ -174,31 +168,17 @@ impl Study {
         let mut inputs = self.base.clone();
         for (number, axis) in self.space.axes().iter().enumerate() {
             let mut value = [0.0];
-            self.fill_axis(number, axis.input, Rows::At(&[variant]), &mut value);
-            inputs.set(axis.input, value[0]);
+            self.space.fill(number, Rows::At(&[variant]), &mut value);
+            inputs.set(axis.input, value[0] * factor(axis.input));
         }
-        let plan = ShaftPlan::open(&self.kinds);
-        Geometry::of(&inputs)
-            .and_then(|_| Map::check(&inputs))
-            .and_then(|_| Shaft::of(&inputs, &plan))
-            .and_then(|_| PinBending::of(&inputs))
-            .and_then(|_| Rating::of(&inputs, plan.is_empty()))
-            .err()
+        explained(&inputs, &self.kinds)
     }
 
     /// Evaluates `len` variants. Bits do not depend on the number of threads, nor on how a
     /// study is cut.
     #[must_use]
     pub fn evaluate(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
-        let mut status = vec![0; len];
-        let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
-        let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
-        let any_refused = self.evaluate_into(rows, outputs, &mut status, slices);
-        Columns {
-            status,
-            any_refused,
-            values,
-        }
+        self.columns(rows, len, outputs, Path::Blocks)
     }
 
     /// [`Study::evaluate`] into memory of the caller's, one column an output, each as long as
@@ -210,34 +190,65 @@ impl Study {
         status: &mut [u8],
         values: Vec<&mut [f64]>,
     ) -> bool {
+        self.run(rows, outputs, status, values, Path::Blocks)
+    }
+
+    /// [`Study::evaluate`] the slow way, for tests: every variant alone, without the machine's own
+    /// vector instructions. The bits are the same.
+    #[must_use]
+    pub fn evaluate_one_by_one(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
+        self.columns(rows, len, outputs, Path::OneByOne)
+    }
+
+    fn columns(&self, rows: Rows<'_>, len: usize, outputs: &[Output], path: Path) -> Columns {
+        let mut status = vec![0; len];
+        let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
+        let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
+        let any_refused = self.run(rows, outputs, &mut status, slices, path);
+        Columns {
+            status,
+            any_refused,
+            values,
+        }
+    }
+
+    fn run(
+        &self,
+        rows: Rows<'_>,
+        outputs: &[Output],
+        status: &mut [u8],
+        values: Vec<&mut [f64]>,
+        path: Path,
+    ) -> bool {
         self.evaluated
             .fetch_add(status.len() as u64, Ordering::Relaxed);
-        let stages = self.stages();
-        let wanted = self.wanted(outputs);
+        let stages = self
+            .stages
+            .get_or_init(|| Stages::new(&self.space, &self.base, &self.kinds));
+        let wanted = self.wanted(outputs, path);
+        let work = |scratch: &mut Scratch, task: Task<'_>| {
+            let work = TaskWork {
+                study: self,
+                stages,
+                wanted,
+                outputs,
+                rows: part(rows, task.first, task.status.len()),
+                scratch,
+                task,
+            };
+            match path {
+                Path::Blocks => with_widest(work),
+                Path::OneByOne => work.run(),
+            }
+        };
         tasks(status, values)
             .into_par_iter()
-            .map_init(
-                || self.scratch(stages),
-                |scratch, mut task| {
-                    let mut any = false;
-                    let len = task.status.len();
-                    for from in (0..len).step_by(BLOCK) {
-                        let to = (from + BLOCK).min(len);
-                        let rows = part(rows, task.first + from, to - from);
-                        let status = &mut task.status[from..to];
-                        self.stage_block(stages, scratch, rows, wanted, status);
-                        any |= self.limit_block(scratch, rows, status);
-                        let values = task.values.iter_mut().map(|column| &mut column[from..to]);
-                        self.write_block(scratch, outputs, status, values);
-                    }
-                    any
-                },
-            )
+            .map_init(|| stages.scratch(&self.base), work)
             .reduce(|| false, |a, b| a | b)
     }
 
     /// What of the stages the outputs and limits need.
-    fn wanted(&self, outputs: &[Output]) -> Wanted {
+    fn wanted(&self, outputs: &[Output], path: Path) -> Wanted {
         let limited = self.limits.iter().filter_map(|limit| match limit.column {
             Limited::Output(output) => Some(output),
             Limited::Input(_) => None,
@@ -246,84 +257,18 @@ impl Study {
         Wanted {
             map: needed().any(|output| !output.is_free_of_map()),
             every_criterion: needed().any(Output::needs_every_criterion),
+            one_by_one: path == Path::OneByOne,
         }
     }
 
-    /// Stages of one block and the status that follows from them.
-    fn stage_block(
-        &self,
-        stages: &Stages,
-        scratch: &mut Scratch,
-        rows: Rows<'_>,
-        wanted: Wanted,
-        status: &mut [u8],
-    ) {
-        let len = status.len();
-        let Scratch {
-            axes,
-            inputs,
-            geometry,
-            map,
-            shaft,
-            pin,
-            rating,
-            assembly,
-            ..
-        } = scratch;
-        stages.geometry.look_up(rows, &mut geometry[..len]);
-        stages.map.look_up(rows, &mut map[..len]);
-        stages.shaft.look_up(rows, &mut shaft[..len]);
-        stages.pin.look_up(rows, &mut pin[..len]);
-        stages.rating.look_up(rows, &mut rating[..len]);
-        if !stages.open_axes.is_empty() {
-            for (number, input) in &stages.open_axes {
-                self.fill_axis(*number, *input, rows, &mut axes[*number][..len]);
-            }
-            for row in 0..len {
-                for (number, input) in &stages.open_axes {
-                    inputs.set(*input, axes[*number][row]);
-                }
-                if stages.geometry.is_open() {
-                    geometry[row] = filed(Geometry::of(inputs));
-                }
-                if stages.map.is_open() {
-                    map[row] = filed(if wanted.map {
-                        Map::of(inputs, wanted.every_criterion)
-                    } else {
-                        Map::check(inputs)
-                    });
-                }
-                if stages.shaft.is_open() {
-                    shaft[row] = filed(Shaft::of(inputs, &stages.plan));
-                }
-                if stages.pin.is_open() {
-                    pin[row] = filed(PinBending::of(inputs));
-                }
-                if stages.rating.is_open() {
-                    rating[row] = filed(Rating::of(inputs, stages.plan.is_empty()));
-                }
-            }
-        }
-        for (k, status) in status.iter_mut().enumerate() {
-            assembly[k] = Assembly::of(&map[k], &shaft[k], &pin[k], &rating[k]);
-            *status = geometry[k]
-                .status()
-                .or(map[k].status())
-                .or(shaft[k].status())
-                .or(pin[k].status())
-                .or(rating[k].status()) as u8;
-        }
-    }
-
-    /// Files variants outside a limit under that limit. True when any variant is refused.
-    fn limit_block(&self, scratch: &mut Scratch, rows: Rows<'_>, status: &mut [u8]) -> bool {
-        let len = status.len();
+    /// Files variants outside a limit under that limit.
+    fn limit_block(&self, scratch: &mut Scratch, rows: Rows<'_>, status: &mut [u8]) {
         for (number, limit) in self.limits.iter().enumerate() {
             let mut limited = [0.0; BLOCK];
-            let limited = &mut limited[..len];
+            let limited = &mut limited[..status.len()];
             let unit = match limit.column {
                 Limited::Output(output) => {
-                    scratch.block(len).write(output, &self.loads, limited);
+                    scratch.write(output, &self.loads, limited);
                     1.0
                 }
                 Limited::Input(input) => self.fill_limited(input, rows, limited),
@@ -332,29 +277,6 @@ impl Study {
             for (status, value) in status.iter_mut().zip(limited) {
                 if *status == Status::Ok as u8 && !range.contains(value) {
                     *status = (Status::ALL.len() + number) as u8;
-                }
-            }
-        }
-        status.iter().any(|status| *status != Status::Ok as u8)
-    }
-
-    /// Results of one block, NaN where a variant is refused.
-    fn write_block<'a>(
-        &self,
-        scratch: &Scratch,
-        outputs: &[Output],
-        status: &[u8],
-        values: impl Iterator<Item = &'a mut [f64]>,
-    ) {
-        let block = scratch.block(status.len());
-        let any_refused = status.iter().any(|status| *status != Status::Ok as u8);
-        for (output, column) in outputs.iter().zip(values) {
-            block.write(*output, &self.loads, column);
-            if any_refused {
-                for (value, status) in column.iter_mut().zip(status) {
-                    if *status != Status::Ok as u8 {
-                        *value = f64::NAN;
-                    }
                 }
             }
         }
@@ -379,85 +301,71 @@ impl Study {
             }
         }
     }
+}
 
-    /// Values of an axis in the core's unit.
-    fn fill_axis(&self, axis: usize, input: usize, rows: Rows<'_>, out: &mut [f64]) {
-        self.space.fill(axis, rows, out);
-        let factor = factor(input);
-        if factor != 1.0 {
-            for value in out {
-                *value *= factor;
-            }
+/// Axes of one task.
+struct AxesWork<'a> {
+    space: &'a Space,
+    axes: &'a [usize],
+    rows: Rows<'a>,
+    task: Task<'a>,
+}
+
+impl Wide for AxesWork<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let rows = part(self.rows, self.task.first, self.task.status.len());
+        for (axis, column) in self.axes.iter().zip(self.task.values) {
+            self.space.fill(*axis, rows, column);
         }
-    }
-
-    fn scratch(&self, stages: &Stages) -> Scratch {
-        Scratch {
-            axes: vec![[0.0; BLOCK]; self.space.axes().len()],
-            inputs: self.base.clone(),
-            geometry: stages.geometry.block(),
-            map: stages.map.block(),
-            shaft: stages.shaft.block(),
-            pin: stages.pin.block(),
-            rating: stages.rating.block(),
-            assembly: [Assembly::NONE; BLOCK],
-        }
-    }
-
-    /// What of each stage is known before any variant: computed once, on first use.
-    fn stages(&self) -> &Stages {
-        self.stages.get_or_init(|| {
-            let axes = self.space.axes();
-            let of_inputs = |inputs: &[Input]| inputs.iter().map(|i| *i as usize).collect();
-            let mut shaft_inputs: Vec<usize> = of_inputs(&Shaft::INPUTS);
-            shaft_inputs.extend(SCALARS..SCALARS + SEGMENT_FIELDS.len() * self.kinds.len());
-            let geometry_inputs: Vec<usize> = of_inputs(&Geometry::INPUTS);
-            let map_inputs: Vec<usize> = of_inputs(&Map::INPUTS);
-            let pin_inputs: Vec<usize> = of_inputs(&PinBending::INPUTS);
-            let rating_inputs: Vec<usize> = of_inputs(&Rating::INPUTS);
-            let varies = |input| axes.iter().any(|axis| axis.input == input);
-            let plan = ShaftPlan::new(&self.kinds, &self.base, varies);
-            let (space, base, needs_stiffness) = (&self.space, &self.base, plan.is_empty());
-            let mut stages = Stages {
-                geometry: Known::of(space, base, &geometry_inputs, &Geometry::of),
-                map: Known::of(space, base, &map_inputs, &|inputs| Map::of(inputs, true)),
-                shaft: Known::of(space, base, &shaft_inputs, &|inputs| {
-                    Shaft::of(inputs, &plan)
-                }),
-                pin: Known::of(space, base, &pin_inputs, &PinBending::of),
-                rating: Known::of(space, base, &rating_inputs, &|inputs| {
-                    Rating::of(inputs, needs_stiffness)
-                }),
-                open_axes: Vec::new(),
-                plan,
-            };
-            for (number, axis) in axes.iter().enumerate() {
-                let reads = |open: bool, inputs: &[usize]| open && inputs.contains(&axis.input);
-                if reads(stages.geometry.is_open(), &geometry_inputs)
-                    || reads(stages.map.is_open(), &map_inputs)
-                    || reads(stages.shaft.is_open(), &shaft_inputs)
-                    || reads(stages.pin.is_open(), &pin_inputs)
-                    || reads(stages.rating.is_open(), &rating_inputs)
-                {
-                    stages.open_axes.push((number, axis.input));
-                }
-            }
-            stages
-        })
     }
 }
 
-impl Scratch {
-    /// The first `len` rows.
-    fn block(&self, len: usize) -> Block<'_> {
-        Block {
-            geometry: &self.geometry[..len],
-            map: &self.map[..len],
-            shaft: &self.shaft[..len],
-            pin: &self.pin[..len],
-            rating: &self.rating[..len],
-            assembly: &self.assembly[..len],
+/// Everything that one task needs.
+struct TaskWork<'a> {
+    study: &'a Study,
+    stages: &'a Stages,
+    wanted: Wanted,
+    outputs: &'a [Output],
+    rows: Rows<'a>,
+    scratch: &'a mut Scratch,
+    task: Task<'a>,
+}
+
+impl Wide for TaskWork<'_> {
+    /// Whether any variant is refused.
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(mut self) -> bool {
+        let mut any_refused = false;
+        let len = self.task.status.len();
+        for from in (0..len).step_by(BLOCK) {
+            let to = (from + BLOCK).min(len);
+            let rows = part(self.rows, from, to - from);
+            let status = &mut self.task.status[from..to];
+            self.stages
+                .evaluate(&self.study.space, rows, self.wanted, self.scratch, status);
+            if !self.study.limits.is_empty() {
+                self.study.limit_block(self.scratch, rows, status);
+            }
+            let refused = status.iter().fold(0, |any, status| any | status) != Status::Ok as u8;
+            any_refused |= refused;
+            for (output, column) in self.outputs.iter().zip(&mut self.task.values) {
+                let column = &mut column[from..to];
+                self.scratch.write(*output, &self.study.loads, column);
+                if refused {
+                    for (value, status) in column.iter_mut().zip(&*status) {
+                        if *status != Status::Ok as u8 {
+                            *value = f64::NAN;
+                        }
+                    }
+                }
+            }
         }
+        any_refused
     }
 }
 

@@ -231,50 +231,11 @@ impl DesignError {
     }
 }
 
-/// Refuses a value that is not finite.
-///
-/// # Errors
-/// [`DesignError::NonFinite`] with the parameter's name.
-#[inline]
-pub fn finite(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
-    if value.abs() <= f64::MAX {
-        Ok(value)
-    } else {
-        Err(DesignError::NonFinite { parameter })
-    }
-}
-
-/// Refuses a value that is not finite or not above zero.
-///
-/// # Errors
-/// [`DesignError::NonFinite`] or [`DesignError::NonPositive`].
-#[inline(always)]
-pub fn positive(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
-    if value > 0.0 && value <= f64::MAX {
-        Ok(value)
-    } else {
-        Err(not_positive(parameter, value))
-    }
-}
-
-/// Refuses a value that is not finite or is below zero.
-///
-/// # Errors
-/// [`DesignError::NonFinite`] or [`DesignError::Negative`].
-#[inline(always)]
-pub fn non_negative(parameter: &'static str, value: f64) -> Result<f64, DesignError> {
-    if (0.0..=f64::MAX).contains(&value) {
-        Ok(value)
-    } else {
-        Err(negative(parameter, value))
-    }
-}
-
-// Compared with MAX, not infinity: the latter becomes a test of bit classes, four times as long.
+/// Why a value is not above zero.
 // Out of line: inlined, the compiler works out every refusal beside every good value.
 #[cold]
 #[inline(never)]
-fn not_positive(parameter: &'static str, value: f64) -> DesignError {
+pub(crate) fn not_positive(parameter: &'static str, value: f64) -> DesignError {
     if value.is_finite() {
         DesignError::NonPositive { parameter, value }
     } else {
@@ -282,9 +243,10 @@ fn not_positive(parameter: &'static str, value: f64) -> DesignError {
     }
 }
 
+/// Why a value is below zero.
 #[cold]
 #[inline(never)]
-fn negative(parameter: &'static str, value: f64) -> DesignError {
+pub(crate) fn negative(parameter: &'static str, value: f64) -> DesignError {
     if value.is_finite() {
         DesignError::Negative { parameter, value }
     } else {

@@ -2,7 +2,9 @@
 
 use nalgebra::{Rotation2, Vector2};
 
+use crate::elementary::asin;
 use crate::error::DesignError;
+use crate::judge::Judge;
 
 /// Unit vector at `angle` (rad), clockwise from ring pin 0.
 #[inline]
@@ -30,26 +32,25 @@ pub fn hole_centre(
 /// The centre lies inside the pitch circle exactly when
 /// `cos(theta (1 + 1/i) - phi) < -e / (2 R_OP)`.
 ///
-/// # Errors
-/// [`DesignError::HoleNeverCrossesPitchCircle`] when `e >= 2 R_OP`.
-#[inline]
-pub fn crossing_angle(eccentricity: f64, pin_circle_radius: f64) -> Result<f64, DesignError> {
+/// Requires `e < 2 R_OP`.
+#[inline(always)]
+pub fn crossing_angle(eccentricity: f64, pin_circle_radius: f64, judge: &mut impl Judge) -> f64 {
     let ratio = eccentricity / (2.0 * pin_circle_radius);
-    if ratio < 1.0 {
-        Ok(ratio.asin())
-    } else {
-        Err(DesignError::HoleNeverCrossesPitchCircle { ratio })
-    }
+    judge.require(ratio < 1.0, || DesignError::HoleNeverCrossesPitchCircle {
+        ratio,
+    });
+    asin(ratio)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judge::judged;
 
     #[test]
     fn a_centre_crosses_the_pitch_circle_where_the_window_opens() {
         let (e, radius, ratio, phi) = (0.00062, 0.045, 87.0, 0.7);
-        let delta = crossing_angle(e, radius).expect("crosses");
+        let delta = judged(|judge| crossing_angle(e, radius, judge)).expect("crosses");
         let opening = (phi + std::f64::consts::FRAC_PI_2 + delta) * ratio / (ratio + 1.0);
         let at = |theta| hole_centre(e, radius, ratio, phi, theta).norm() - radius;
         approx::assert_abs_diff_eq!(at(opening), 0.0, epsilon = 1e-15);
@@ -58,6 +59,6 @@ mod tests {
 
     #[test]
     fn too_large_an_eccentricity_is_refused() {
-        assert!(crossing_angle(0.1, 0.05).is_err());
+        assert!(judged(|judge| crossing_angle(0.1, 0.05, judge)).is_err());
     }
 }

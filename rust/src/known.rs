@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 
-use crate::columns::BLOCK;
 use crate::error::{DesignError, Status};
 use crate::inputs::{Inputs, factor};
+use crate::lanes::BLOCK;
 use crate::space::{Rows, Space};
 use crate::stages::Stage;
 
@@ -13,13 +13,57 @@ use crate::stages::Stage;
 const TABLE_LIMIT: u64 = 1 << 20;
 const TABLE_WORTH: u64 = 4;
 
+/// A stage's outcome: why it refuses the variant, and what it gives where it does not.
+#[derive(Clone, Copy)]
+pub(crate) struct Filed<T> {
+    pub status: Status,
+    pub outcome: T,
+}
+
+impl<T: Stage> From<Result<T, DesignError>> for Filed<T> {
+    #[inline]
+    fn from(outcome: Result<T, DesignError>) -> Self {
+        match outcome {
+            Ok(outcome) => Self {
+                status: Status::Ok,
+                outcome,
+            },
+            Err(error) => Self {
+                status: error.status(),
+                outcome: T::NONE,
+            },
+        }
+    }
+}
+
+/// A stage's outcomes for a block of variants.
+pub(crate) struct FiledBlock<T: Stage> {
+    pub statuses: [Status; BLOCK],
+    pub outcomes: Box<T::Block>,
+}
+
+impl<T: Stage> FiledBlock<T> {
+    /// Where to write outcomes of variants none of which is refused so far.
+    #[inline(always)]
+    pub(crate) fn open(&mut self) -> &mut T::Block {
+        self.statuses = [Status::Ok; BLOCK];
+        &mut self.outcomes
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, filed: Filed<T>, row: usize) {
+        self.statuses[row] = filed.status;
+        filed.outcome.put(&mut self.outcomes, row);
+    }
+}
+
 /// Which of a stage's outcomes are already known.
 pub(crate) enum Known<T> {
     /// Nothing it reads varies.
-    Constant(T),
+    Constant(Filed<T>),
     /// One entry a combination of the grid's axes that it reads.
     Table {
-        entries: Vec<T>,
+        entries: Vec<Filed<T>>,
         axes: Vec<TableAxis>,
     },
     /// To be computed for every variant.
@@ -47,7 +91,7 @@ impl<T: Stage> Known<T> {
             .filter(|a| reads.contains(&axes[*a].input))
             .collect();
         if varying.is_empty() {
-            return Known::Constant(filed(of(base)));
+            return Known::Constant(of(base).into());
         }
         let Some(strides) = space.grid_strides() else {
             return Known::Nothing;
@@ -77,7 +121,7 @@ impl<T: Stage> Known<T> {
                         let value = axes[*axis].values.nth(entry / digit.weight % digit.count);
                         inputs.set(input, value * factor(input));
                     }
-                    filed(of(inputs))
+                    Filed::from(of(inputs))
                 },
             )
             .collect();
@@ -94,47 +138,54 @@ impl<T: Stage> Known<T> {
     }
 
     /// A block to start from: the constant where it is one.
-    pub(crate) fn block(&self) -> [T; BLOCK] {
-        match self {
-            Known::Constant(value) => [*value; BLOCK],
-            Known::Table { .. } | Known::Nothing => [T::refused(Status::Ok); BLOCK],
+    pub(crate) fn block(&self) -> FiledBlock<T> {
+        let Filed { status, outcome } = match self {
+            Known::Constant(filed) => *filed,
+            Known::Table { .. } | Known::Nothing => Filed::from(Ok(T::NONE)),
+        };
+        FiledBlock {
+            statuses: [status; BLOCK],
+            outcomes: outcome.block(),
         }
     }
 
-    /// Looks up every row of a block in the table, if there is one.
-    pub(crate) fn look_up(&self, rows: Rows<'_>, out: &mut [T]) {
+    /// Looks up `len` rows of a block in the table, if there is one.
+    #[inline]
+    pub(crate) fn look_up(&self, rows: Rows<'_>, len: usize, out: &mut FiledBlock<T>) {
         let Known::Table { entries, axes } = self else {
             return;
         };
         let start = match rows {
             Rows::From(start) => start,
             Rows::At(indices) => {
-                for (out, k) in out.iter_mut().zip(indices) {
-                    *out = entries[entry(axes, *k)];
+                for (row, k) in indices[..len].iter().enumerate() {
+                    out.put(entries[entry(axes, *k)], row);
                 }
                 return;
             }
         };
         // Along the fastest axis entries are neighbours; behind it they repeat.
         let last = axes[axes.len() - 1];
-        let mut k = start;
-        let mut rest = out;
-        while !rest.is_empty() {
+        let mut from = 0;
+        while from < len {
+            let k = start + from as u64;
             let at = entry(axes, k);
             let run = if last.stride == 1 {
                 last.count - k % last.count
             } else {
                 last.stride - k % last.stride
             };
-            let run = run.min(rest.len() as u64) as usize;
-            let (now, later) = rest.split_at_mut(run);
+            let to = len.min(from + run.min(BLOCK as u64) as usize);
             if last.stride == 1 {
-                now.copy_from_slice(&entries[at..at + run]);
+                for (row, filed) in (from..to).zip(&entries[at..]) {
+                    out.put(*filed, row);
+                }
             } else {
-                now.fill(entries[at]);
+                let Filed { status, outcome } = entries[at];
+                out.statuses[from..to].fill(status);
+                outcome.put_all(&mut out.outcomes, from..to);
             }
-            rest = later;
-            k += run as u64;
+            from = to;
         }
     }
 }
@@ -145,10 +196,4 @@ fn entry(axes: &[TableAxis], k: u64) -> usize {
     axes.iter()
         .map(|a| k / a.stride % a.count * a.weight)
         .sum::<u64>() as usize
-}
-
-/// A stage's outcome, refusals by their status.
-#[inline(always)]
-pub(crate) fn filed<T: Stage>(outcome: Result<T, DesignError>) -> T {
-    outcome.unwrap_or_else(|error| T::refused(error.status()))
 }

@@ -31,17 +31,26 @@
 //! A [`space::Space`] gives every variant its inputs from its index alone. [`stages`] cut the
 //! model by the inputs each part needs; [`columns::Study`] computes a stage once where its inputs
 //! do not vary, once per combination on a grid, per variant elsewhere, in blocks on all cores.
-//! Bits depend neither on the number of threads nor on how a study is cut.
+//! A stage's formulas are written once, without branches, before a [`judge`] of their conditions:
+//! over a block's [`lanes`] they become the machine's vector instructions, and the few variants that
+//! a block cannot settle are computed alone, with the reason where they are refused. Bits depend
+//! neither on the number of threads, nor on how a study is cut, nor on the machine's instructions.
 
 pub mod active_pins;
+mod arrangement;
+mod blocks;
 pub mod columns;
 pub mod compliance;
+mod elementary;
 pub mod error;
 pub mod hypotrochoid;
 pub mod hysteresis;
 pub mod inputs;
 mod joe_kuo;
+pub mod judge;
 mod known;
+pub mod lanes;
+pub mod map_stage;
 pub mod outputs;
 pub mod pin;
 mod published_map;

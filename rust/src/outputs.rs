@@ -5,7 +5,12 @@ use crate::compliance::{
     twist_deg,
 };
 use crate::inputs::NM_PER_RAD_OF_NM_PER_ARCMIN;
-use crate::stages::{Geometry, Map, PinBending, Rating, Shaft};
+use crate::lanes::{BLOCK, Lanes};
+use crate::map_stage::{Map, MapBlock};
+use crate::stages::{
+    GeometryBlock, PinBending, PinBendingBlock, Rating, RatingBlock, Shaft, ShaftBlock, Stage,
+    stage,
+};
 
 /// A result column; the twists are numbered by the study's list of loads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -162,42 +167,45 @@ pub fn twist_name(load: f64) -> String {
     format!("twist_{}tn_deg", format!("{load}").replace('.', "p"))
 }
 
-/// What the stages of one variant amount to together.
-#[derive(Debug, Clone, Copy)]
-pub struct Assembly {
-    /// C_OS (rad/(N m)): Eq. (11), or the compliance given as measured.
-    pub compliance: f64,
-    /// C*_OS (rad/(N m)) at the input, Eq. (12).
-    pub reflected: f64,
-    /// Twist (deg) at the input for one nominal torque beyond the free play, Eq. (13), by the
-    /// chosen criterion. A stiffness given as measured is taken as it is.
-    pub slope_deg: f64,
-    /// Largest pin force (N).
-    pub pin_force: f64,
+stage! {
+    /// What the stages of one variant amount to together.
+    Assembly, AssemblyBlock {
+        /// C_OS (rad/(N m)): Eq. (11), or the compliance given as measured.
+        compliance,
+        /// C*_OS (rad/(N m)) at the input, Eq. (12).
+        reflected,
+        /// Twist (deg) at the input for one nominal torque beyond the free play, Eq. (13), by the
+        /// chosen criterion. A stiffness given as measured is taken as it is.
+        slope_deg,
+        /// Largest pin force (N).
+        pin_force,
+    }
 }
 
 impl Assembly {
-    /// Before anything is known.
-    pub(crate) const NONE: Self = Self {
-        compliance: f64::NAN,
-        reflected: f64::NAN,
-        slope_deg: f64::NAN,
-        pin_force: f64::NAN,
-    };
-
     /// Assembles one variant.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn of(map: &Map, shaft: &Shaft, pin: &PinBending, rating: &Rating) -> Self {
-        let (compliance, in_twist, factor) = if rating.given_compliance.is_nan() {
-            (
-                output_compliance(shaft.compliance, pin.compliance, map.pins),
-                output_compliance(shaft.compliance, pin.compliance, map.pins_in_twist),
-                map.twist_factor,
-            )
-        } else {
-            (rating.given_compliance, rating.given_compliance, 1.0)
+        let is_given = !rating.given_compliance.is_nan();
+        let given_or = |computed| {
+            if is_given {
+                rating.given_compliance
+            } else {
+                computed
+            }
         };
+        let compliance = given_or(output_compliance(
+            shaft.compliance,
+            pin.compliance,
+            map.pins,
+        ));
+        let in_twist = given_or(output_compliance(
+            shaft.compliance,
+            pin.compliance,
+            map.pins_in_twist,
+        ));
+        let factor = if is_given { 1.0 } else { map.twist_factor };
         let reflected_in_twist = reflected(in_twist, map.ratio_squared);
         Self {
             compliance,
@@ -208,97 +216,103 @@ impl Assembly {
     }
 }
 
-/// The stages of a block of variants, one entry a variant.
+/// The stages of a block of variants.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
     /// Discs, holes and pins.
-    pub geometry: &'a [Geometry],
+    pub geometry: &'a GeometryBlock,
     /// Active pins.
-    pub map: &'a [Map],
+    pub map: &'a MapBlock,
     /// Shaft.
-    pub shaft: &'a [Shaft],
+    pub shaft: &'a ShaftBlock,
     /// Pin.
-    pub pin: &'a [PinBending],
+    pub pin: &'a PinBendingBlock,
     /// Ratings.
-    pub rating: &'a [Rating],
-    /// All together.
-    pub assembly: &'a [Assembly],
+    pub rating: &'a RatingBlock,
 }
 
 impl Block<'_> {
-    /// Writes one column, in its own unit.
-    pub fn write(&self, output: Output, loads: &[f64], out: &mut [f64]) {
+    /// Assembles every variant.
+    #[inline(always)]
+    pub fn assemble(&self, out: &mut AssemblyBlock) {
+        for row in 0..BLOCK {
+            let map = Map::get(self.map, row);
+            let shaft = Shaft::get(self.shaft, row);
+            let pin = PinBending::get(self.pin, row);
+            let rating = Rating::get(self.rating, row);
+            Assembly::of(&map, &shaft, &pin, &rating).put(out, row);
+        }
+    }
+
+    /// Writes one column, in its own unit, for the first variants of the block.
+    #[inline(always)]
+    pub fn write(&self, assembly: &AssemblyBlock, output: Output, loads: &[f64], out: &mut [f64]) {
         let Block {
             geometry,
             map,
             shaft,
             pin,
             rating,
-            assembly,
         } = *self;
         match output {
-            Output::ActivePinsMean => each(out, map, |m| m.active.mean),
-            Output::ActivePinsMin => each(out, map, |m| f64::from(m.active.min)),
-            Output::ActivePinsMax => each(out, map, |m| f64::from(m.active.max)),
-            Output::TorqueTransferEfficiency => each(out, map, |m| m.efficiency),
-            Output::TorqueTransferEfficiencyInside => each(out, map, |m| m.efficiency_inside),
+            Output::ActivePinsMean => copy(out, &map.active_mean),
+            Output::ActivePinsMin => copy(out, &map.active_min),
+            Output::ActivePinsMax => copy(out, &map.active_max),
+            Output::TorqueTransferEfficiency => copy(out, &map.efficiency),
+            Output::TorqueTransferEfficiencyInside => copy(out, &map.efficiency_inside),
             Output::TorqueTransferEfficiencyPublishedMap => {
-                each(out, map, |m| m.efficiency_published_map);
+                copy(out, &map.efficiency_published_map);
             }
-            Output::PinParticipationStatics => each(out, map, |m| m.participation),
-            Output::StaticsApplicable => each(out, map, |m| m.statics_applicable),
-            Output::HoleDiameter => each(out, geometry, |g| g.hole_diameter * 1e3),
-            Output::HoleWeb => each(out, geometry, |g| g.hole_web * 1e3),
-            Output::ShortWidthCoefficient => each(out, geometry, |g| g.short_width_coefficient),
-            Output::NominalTorque => each(out, rating, |r| r.nominal_torque),
-            Output::NaturalFrequency => {
-                for ((value, a), r) in out.iter_mut().zip(assembly).zip(rating) {
-                    *value = natural_frequency(1.0 / a.reflected, r.inertia);
-                }
-            }
-            Output::ShaftCompliance => each(out, shaft, |s| s.compliance),
-            Output::PinCompliance => each(out, pin, |p| p.compliance),
-            Output::OutputCompliance => each(out, assembly, |a| a.compliance),
-            Output::OutputComplianceStatics => {
-                for (k, value) in out.iter_mut().enumerate() {
-                    *value = if rating[k].given_compliance.is_nan() {
-                        output_compliance_statics(
-                            shaft[k].compliance,
-                            pin[k].compliance,
-                            map[k].pins,
-                            map[k].participation,
-                        )
-                    } else {
-                        rating[k].given_compliance
-                    };
-                }
-            }
-            Output::ReflectedCompliance => each(out, assembly, |a| a.reflected),
-            Output::ReflectedStiffness => each(out, assembly, |a| 1.0 / a.reflected),
-            Output::OutputStiffness => {
-                each(out, assembly, |a| {
-                    1.0 / (a.compliance * NM_PER_RAD_OF_NM_PER_ARCMIN)
+            Output::PinParticipationStatics => copy(out, &map.participation),
+            Output::StaticsApplicable => copy(out, &map.statics_applicable),
+            Output::HoleDiameter => each(out, |k| geometry.hole_diameter[k] * 1e3),
+            Output::HoleWeb => each(out, |k| geometry.hole_web[k] * 1e3),
+            Output::ShortWidthCoefficient => copy(out, &geometry.short_width_coefficient),
+            Output::NominalTorque => copy(out, &rating.nominal_torque),
+            Output::NaturalFrequency => each(out, |k| {
+                natural_frequency(1.0 / assembly.reflected[k], rating.inertia[k])
+            }),
+            Output::ShaftCompliance => copy(out, &shaft.compliance),
+            Output::PinCompliance => copy(out, &pin.compliance),
+            Output::OutputCompliance => copy(out, &assembly.compliance),
+            Output::OutputComplianceStatics => each(out, |k| {
+                let given = rating.given_compliance[k];
+                let computed = output_compliance_statics(
+                    shaft.compliance[k],
+                    pin.compliance[k],
+                    map.pins[k],
+                    map.participation[k],
+                );
+                if given.is_nan() { computed } else { given }
+            }),
+            Output::ReflectedCompliance => copy(out, &assembly.reflected),
+            Output::ReflectedStiffness => each(out, |k| 1.0 / assembly.reflected[k]),
+            Output::OutputStiffness => each(out, |k| {
+                1.0 / (assembly.compliance[k] * NM_PER_RAD_OF_NM_PER_ARCMIN)
+            }),
+            Output::PinForceMax => copy(out, &assembly.pin_force),
+            Output::PinBendingStress => each(out, |k| {
+                assembly.pin_force[k] * pin.stress_per_force[k] * 1e-6
+            }),
+            Output::Twist(number) => {
+                let load = loads[number];
+                each(out, |k| {
+                    twist_deg(assembly.slope_deg[k], load, rating.free_play_deg[k])
                 });
-            }
-            Output::PinForceMax => each(out, assembly, |a| a.pin_force),
-            Output::PinBendingStress => {
-                for ((value, a), p) in out.iter_mut().zip(assembly).zip(pin) {
-                    *value = a.pin_force * p.stress_per_force * 1e-6;
-                }
-            }
-            Output::Twist(k) => {
-                let load = loads[k];
-                for ((value, a), r) in out.iter_mut().zip(assembly).zip(rating) {
-                    *value = twist_deg(a.slope_deg, load, r.free_play_deg);
-                }
             }
         }
     }
 }
 
-#[inline]
-fn each<T>(out: &mut [f64], stage: &[T], value: impl Fn(&T) -> f64) {
-    for (out, stage) in out.iter_mut().zip(stage) {
-        *out = value(stage);
+#[inline(always)]
+fn copy(out: &mut [f64], lanes: &Lanes) {
+    out.copy_from_slice(&lanes[..out.len()]);
+}
+
+#[inline(always)]
+fn each(out: &mut [f64], value: impl Fn(usize) -> f64) {
+    assert!(out.len() <= BLOCK);
+    for (row, out) in out.iter_mut().enumerate() {
+        *out = value(row);
     }
 }

@@ -3,7 +3,9 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{DesignError, non_negative, positive};
+use crate::elementary::atan;
+use crate::error::DesignError;
+use crate::judge::Judge;
 
 /// A round, possibly hollow, cantilevered pin. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,21 +19,17 @@ pub struct Pin {
 }
 
 impl Pin {
-    /// Refuses a pin that cannot be made.
-    ///
-    /// # Errors
-    /// [`DesignError::NonPositive`], [`DesignError::Negative`], [`DesignError::NonFinite`] or
-    /// [`DesignError::PinBoreTooLarge`].
-    #[inline]
-    pub fn check(&self) -> Result<(), DesignError> {
-        let diameter = positive("output_pin_diameter", self.diameter)?;
-        let bore = non_negative("output_pin_bore", self.bore)?;
-        positive("output_pin_length", self.length)?;
-        if bore < diameter {
-            Ok(())
-        } else {
-            Err(DesignError::PinBoreTooLarge { bore, diameter })
-        }
+    /// Requires a pin that can be made.
+    #[inline(always)]
+    pub fn require(&self, judge: &mut impl Judge) {
+        let (bore, diameter) = (self.bore, self.diameter);
+        judge.positive("output_pin_diameter", diameter);
+        judge.non_negative("output_pin_bore", bore);
+        judge.positive("output_pin_length", self.length);
+        judge.require(bore < diameter, || DesignError::PinBoreTooLarge {
+            bore,
+            diameter,
+        });
     }
 
     /// Second moment of area (m^4).
@@ -45,7 +43,7 @@ impl Pin {
     /// `L^3 / (3 E I) + L / (kappa G A)`.
     ///
     /// The flexibility of the flange at the pin's root is not in it.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn flexibility(&self, youngs_modulus: f64, poisson: f64) -> f64 {
         // Both terms over their common denominator: one division instead of seven.
@@ -58,7 +56,7 @@ impl Pin {
     }
 
     /// Stress at the root (Pa) under `force` (N): `F L / W`, W = pi (d^4 - b^4) / (32 d).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn root_stress(&self, force: f64) -> f64 {
         let (outer, inner) = (self.diameter * self.diameter, self.bore * self.bore);
@@ -81,10 +79,10 @@ pub fn cowper(m: f64, poisson: f64) -> f64 {
 /// Eqs. (8)-(10), `F = T / R`, `phi = atan(delta / R)`, `C = phi / (F R)`.
 ///
 /// For small deflections it is `flexibility / R^2`, whatever the torque.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn pin_compliance(flexibility: f64, pin_circle_radius: f64, torque: f64) -> f64 {
-    (flexibility * torque / (pin_circle_radius * pin_circle_radius)).atan() / torque
+    atan(flexibility * torque / (pin_circle_radius * pin_circle_radius)) / torque
 }
 
 #[cfg(test)]

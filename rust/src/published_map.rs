@@ -1,12 +1,10 @@
-//! The criterion `published-map`: windows of one disc's holes, and their counts in closed form.
+//! The criterion `published-map`: windows of one disc's holes, and their counts by walking over
+//! them where the closed form of [`crate::arrangement`] does not hold.
 //!
 //! Angles are in turns, as in [`crate::active_pins`].
 
-use crate::active_pins::{ActiveCount, MAX_PINS, PinMap, TIE};
-use crate::rounding::{ceil, floor, larger, smaller};
-
-/// Whole numbers of pitches closer than this to a tie are left to the walk over all windows.
-const NEAR_TIE: f64 = 1e-9;
+use crate::active_pins::{ActiveCount, MAX_PINS, PinMap};
+use crate::arrangement::TIE;
 
 /// Windows of one disc's holes: starts and ends, each ascending (turns).
 pub(crate) struct Windows {
@@ -54,88 +52,6 @@ impl Windows {
     }
 }
 
-/// One half's holes, in pitches of psi: hole m of them opens at `opens - m`, closes at
-/// `closes - m`, clipped to the half turn.
-struct Half {
-    holes: f64,
-    /// Where the last one to close first of all closes.
-    first_close: f64,
-    /// Where its nearest hole closes.
-    closes: f64,
-    /// The half turn's length.
-    end: f64,
-    /// Open holes at the half turn's start and just before its end.
-    at_start: f64,
-    at_end: f64,
-    /// Sum of the windows' lengths.
-    open_length: f64,
-    /// Where, seen from the other half, its nearest hole joins.
-    late: f64,
-}
-
-impl Half {
-    #[inline(always)]
-    fn of(map: &PinMap, nearest: f64, holes: f64, spin: f64) -> Option<Self> {
-        let pins = f64::from(map.pins);
-        let end = 0.5 * (pins + spin);
-        let opens = nearest + (0.25 + map.delta) * pins;
-        let closes = nearest + (0.75 - map.delta) * pins;
-        let first_close = closes - (holes - 1.0);
-        let late = 2.0 * end - closes;
-        let is_plain = opens > spin + NEAR_TIE
-            && first_close > opens + NEAR_TIE
-            && first_close < end - NEAR_TIE
-            && late > NEAR_TIE
-            && is_clear(opens)
-            && is_clear(closes - end);
-        if !is_plain {
-            return None;
-        }
-        let opened_late = smaller(ceil(opens), holes);
-        let still_open = smaller(larger(floor(closes - end) + 1.0, 0.0), holes);
-        let clipped = larger(still_open, 1.0);
-        let ends = (clipped - 1.0) * end + (holes - clipped) * closes + closes
-            - 0.5 * (holes * (holes - 1.0) - clipped * (clipped - 1.0));
-        let starts = opened_late * (opens - 0.5 * (opened_late - 1.0));
-        Some(Self {
-            holes,
-            first_close,
-            closes,
-            end,
-            at_start: holes - opened_late,
-            at_end: still_open,
-            open_length: ends - starts,
-            late,
-        })
-    }
-
-    /// Least and largest count over the half turn, when the other half's nearest hole joins at
-    /// `joins`.
-    #[inline(always)]
-    fn extremes(&self, joins: f64) -> Option<(f64, f64)> {
-        let is_plain = (joins - self.first_close).abs() > NEAR_TIE
-            && (joins - self.end).abs() > NEAR_TIE
-            && is_clear(self.closes - joins);
-        if !is_plain {
-            return None;
-        }
-        if joins > self.end {
-            return Some((smaller(self.at_start, self.at_end), self.holes));
-        }
-        let before = smaller(floor(self.closes - joins) + 1.0, self.holes);
-        let most = if joins < self.first_close { 1.0 } else { 0.0 };
-        let least = smaller(smaller(self.at_start, before), self.at_end + 1.0);
-        Some((least, self.holes + most))
-    }
-}
-
-/// True when `x` is no whole number within rounding.
-#[inline(always)]
-fn is_clear(x: f64) -> bool {
-    let rest = x - floor(x);
-    rest > NEAR_TIE && rest < 1.0 - NEAR_TIE
-}
-
 impl PinMap {
     /// Counts by the criterion `published-map`, a reconstruction that matches the published map
     /// and not the authors' own rule.
@@ -146,39 +62,17 @@ impl PinMap {
     /// (which, at a low ratio, opens a second time before the turn ends). The right half follows
     /// the same rule on its own holes and is then mirrored, theta -> 360 - theta. One disc's
     /// count is multiplied by the number of discs.
-    #[inline]
     #[must_use]
     pub fn published_map(&self) -> ActiveCount {
-        self.counts_in_closed_form()
-            .unwrap_or_else(|| self.counts_by_walking())
+        let (counts, holds) = self.arrangement().published_map();
+        if holds {
+            counts.into()
+        } else {
+            self.counts_by_walking()
+        }
     }
 
-    /// [`PinMap::published_map`] without looking at each hole; none where windows of neighbours
-    /// interleave, open twice or meet within rounding.
-    ///
-    /// Over its own half turn a half's count rises while holes open, stands at all of them, and
-    /// falls while they close; the other half's nearest hole joins before the half turn ends.
-    /// The count is therefore least at the start, where that hole joins, or at the end.
-    #[inline]
-    fn counts_in_closed_form(&self) -> Option<ActiveCount> {
-        let pins = f64::from(self.pins);
-        let nearest = self.nearest_left_hole();
-        let holes = smaller(floor(0.5 * pins - TIE * pins + nearest) + 1.0, pins);
-        let spin = pins / self.ratio;
-        let left = Half::of(self, nearest, holes, spin)?;
-        let right = Half::of(self, -nearest - 1.0, pins - holes, spin)?;
-        let (low_left, high_left) = left.extremes(right.late)?;
-        let (low_right, high_right) = right.extremes(left.late)?;
-        let discs = f64::from(self.discs);
-        let travel = pins + spin;
-        Some(ActiveCount {
-            mean: discs * (left.open_length + right.open_length) / travel,
-            min: smaller(low_left, low_right) as u32 * self.discs,
-            max: larger(high_left, high_right) as u32 * self.discs,
-        })
-    }
-
-    fn counts_by_walking(&self) -> ActiveCount {
+    pub(crate) fn counts_by_walking(&self) -> ActiveCount {
         let windows = self.published_windows();
         let mut sum = 0.0;
         for k in 0..windows.len {
@@ -205,7 +99,7 @@ impl PinMap {
         let shrink = self.ratio / (self.ratio + 1.0);
         let pitch = 1.0 / f64::from(self.pins);
         let (open, close) = (0.25 + self.delta, 0.75 - self.delta);
-        let nearest = self.nearest_left_hole() * pitch;
+        let nearest = self.arrangement().nearest_left_hole() * pitch;
         let left = (((0.5 - TIE + nearest) / pitch).floor() as u32 + 1).min(self.pins);
         for m in (0..left).rev() {
             let phi = nearest - f64::from(m) * pitch;
@@ -255,9 +149,11 @@ mod tests {
                 clocking: (u(5) - 0.5) * if k % 2 == 0 { 0.02 } else { 1.0 },
             };
             let walked = map.counts_by_walking();
-            let Some(closed) = map.counts_in_closed_form() else {
+            let (counts, holds) = map.arrangement().published_map();
+            if !holds {
                 continue;
-            };
+            }
+            let closed = ActiveCount::from(counts);
             closed_forms += 1;
             assert_eq!(
                 (closed.min, closed.max),

@@ -6,7 +6,7 @@ const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 /// The nearest whole number, for magnitudes below 2^51.
 #[inline(always)]
-fn nearest(x: f64) -> f64 {
+pub fn nearest(x: f64) -> f64 {
     (x + SHIFT) - SHIFT
 }
 
@@ -39,7 +39,7 @@ pub fn larger(a: f64, b: f64) -> f64 {
 /// True for a whole number from `low` to `high`, themselves below 2^51.
 #[inline(always)]
 pub fn is_whole_within(value: f64, low: f64, high: f64) -> bool {
-    value >= low && value <= high && value == nearest(value)
+    (value >= low) & (value <= high) & (value == nearest(value))
 }
 
 #[cfg(test)]

@@ -27,8 +27,13 @@ pub const fn key(seed: u64, axis: u64) -> u64 {
 #[inline]
 #[must_use]
 pub const fn unit_interval(bits: u64) -> f64 {
-    // Signed: the baseline x86-64 converts no unsigned ones.
-    (bits >> 11) as i64 as f64 * (1.0 / (1_u64 << 53) as f64)
+    // Halves of 32 and 21 bits as the last places of 2^52 and 2^84, for which there are vector
+    // instructions; every step is exact.
+    const ONE: f64 = (1_u64 << 52) as f64;
+    const TWO_TO_THE_32: f64 = (1_u64 << 32) as f64;
+    let low = f64::from_bits((bits >> 11 & 0xFFFF_FFFF) | ONE.to_bits());
+    let high = f64::from_bits((bits >> 43) | (ONE * TWO_TO_THE_32).to_bits());
+    ((high - (ONE * TWO_TO_THE_32 + ONE)) + low) * (0.5 / ONE)
 }
 
 /// Independent uniform number number `index` of an axis.
@@ -44,7 +49,12 @@ pub const fn random(key: u64, index: u64) -> f64 {
 pub struct SobolAxis {
     directions: [u64; 64],
     shift: u64,
+    /// What the last digits of an index change in the bits of its point.
+    steps: [u64; RUN],
 }
+
+/// Consecutive points found from one.
+const RUN: usize = 128;
 
 impl SobolAxis {
     /// The axis number `axis` (from 0); `scramble` is its key, or none for the plain sequence.
@@ -70,10 +80,7 @@ impl SobolAxis {
             }
         }
         let Some(key) = scramble else {
-            return Self {
-                directions,
-                shift: 0,
-            };
+            return Self::of(directions, 0);
         };
         let rows: [u64; 64] = std::array::from_fn(|row| {
             let diagonal = 1_u64 << (63 - row);
@@ -86,10 +93,17 @@ impl SobolAxis {
                 sum | (u64::from((mask & plain).count_ones() & 1) << (63 - row))
             });
         }
-        Self {
+        Self::of(directions, mix(key))
+    }
+
+    fn of(directions: [u64; 64], shift: u64) -> Self {
+        let mut axis = Self {
             directions,
-            shift: mix(key),
-        }
+            shift,
+            steps: [0; RUN],
+        };
+        axis.steps = std::array::from_fn(|index| axis.bits(index as u64) ^ shift);
+        axis
     }
 
     /// The bits of point `index`.
@@ -105,11 +119,22 @@ impl SobolAxis {
         bits
     }
 
-    /// The bits of the point after `index`, from those of `index`.
-    #[inline]
-    #[must_use]
-    pub fn next_bits(&self, bits: u64, index: u64) -> u64 {
-        bits ^ self.directions[(index + 1).trailing_zeros() as usize]
+    /// Numbers in [0, 1) of consecutive points from `start` on.
+    #[inline(always)]
+    pub fn fill_units(&self, start: u64, out: &mut [f64]) {
+        let mut index = start;
+        let mut rest = out;
+        while !rest.is_empty() {
+            // A Gray code's leading digits do not depend on the index's last ones.
+            let within = (index % RUN as u64) as usize;
+            let bits = self.bits(index - within as u64);
+            let (now, later) = rest.split_at_mut(rest.len().min(RUN - within));
+            for (value, step) in now.iter_mut().zip(&self.steps[within..]) {
+                *value = unit_interval(bits ^ step);
+            }
+            index += now.len() as u64;
+            rest = later;
+        }
     }
 }
 
@@ -177,10 +202,26 @@ mod tests {
     }
 
     #[test]
-    fn stepping_equals_jumping_far_out() {
-        let axis = SobolAxis::new(17, Some(key(5, 17)));
-        let far = (1 << 62) + 12_345;
-        assert_eq!(axis.next_bits(axis.bits(far), far), axis.bits(far + 1));
+    fn runs_of_points_are_the_points() {
+        let axis = SobolAxis::new(5, Some(key(2, 5)));
+        for (start, len) in [(0, 300), (127, 2), ((1 << 62) + 77, 400), (5, 0)] {
+            let mut units = vec![0.0; len];
+            axis.fill_units(start, &mut units);
+            for (unit, index) in units.iter().zip(start..) {
+                assert_eq!(*unit, unit_interval(axis.bits(index)));
+            }
+        }
+    }
+
+    #[test]
+    fn a_unit_interval_is_the_leading_bits() {
+        for k in 0..10_000 {
+            let bits = mix(k);
+            let plain = (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64);
+            assert_eq!(unit_interval(bits), plain);
+        }
+        assert_eq!(unit_interval(u64::MAX), 1.0 - f64::EPSILON / 2.0);
+        assert_eq!(unit_interval(0), 0.0);
     }
 
     #[test]

@@ -1,53 +1,82 @@
 //! What of the shaft does not vary in a study, computed once.
 
-use crate::error::{DesignError, non_negative};
 use crate::inputs::{Input, Inputs, SEGMENT_FIELDS, segment_input};
-use crate::shaft::{Segment, SegmentKind, Term, shaft_scale};
+use crate::judge::{Judge, judged};
+use crate::lanes::{BLOCK, InputLanes, Lanes, Mask, Variant, for_each_lane};
+use crate::shaft::{Segment, SegmentKind, shaft_scale, shoulder};
 
-/// A shaft's segments, with the terms of Eq. (4) that are the same for every variant.
+/// A shaft's segments, with what of Eq. (4) is the same for every variant.
 ///
 /// Sums run over the same terms in the same order whatever is known: the bits do not depend on
 /// what varies.
 #[derive(Debug, Clone)]
 pub struct ShaftPlan {
-    segments: Vec<(SegmentKind, Option<Term>)>,
+    segments: Vec<SegmentPlan>,
+    /// The coefficient of the keyways, unless it varies or is refused.
+    coefficient: Option<f64>,
     scale: Option<f64>,
 }
+
+/// What of one segment is the same for every variant that is not refused.
+#[derive(Debug, Clone, Copy)]
+struct SegmentPlan {
+    kind: SegmentKind,
+    factor: Option<f64>,
+    shoulder: Option<f64>,
+}
+
+// Places in [`SEGMENT_FIELDS`].
+const DIAMETER: usize = 0;
+const END_DIAMETER: usize = 1;
 
 impl ShaftPlan {
     /// The plan of a study whose unvaried inputs are `base`.
     #[must_use]
     pub fn new(kinds: &[SegmentKind], base: &Inputs, varies: impl Fn(usize) -> bool) -> Self {
         let scalar_varies = |input: Input| varies(input as usize);
-        let segment_varies = |k| (0..SEGMENT_FIELDS.len()).any(|f| varies(segment_input(k, f)));
+        let known = |open: bool, value: Option<f64>| value.filter(|_| !open);
         let coefficient = base.get(Input::KeywayCoefficient);
-        let mut before = f64::NAN;
+        let coefficient_varies = scalar_varies(Input::KeywayCoefficient);
+        let mut before = (f64::NAN, false);
         let mut segments = Vec::with_capacity(kinds.len());
         for (k, kind) in kinds.iter().enumerate() {
-            let segment = segment(*kind, base, k);
-            let open = segment_varies(k)
-                || (k > 0 && segment_varies(k - 1))
-                || scalar_varies(Input::KeywayCoefficient);
-            let term = Term::of(&segment, before, coefficient).ok();
-            segments.push((*kind, term.filter(|_| !open)));
-            before = segment.flange_diameter();
+            let segment = segment(*kind, base.segments()[k]);
+            let field_varies = |field| varies(segment_input(k, field));
+            let any_varies = (0..SEGMENT_FIELDS.len()).any(field_varies) || coefficient_varies;
+            let factor = judged(|judge| segment.factor(coefficient, judge)).ok();
+            let shoulder = judged(|judge| shoulder(before.0, segment.diameter, judge)).ok();
+            segments.push(SegmentPlan {
+                kind: *kind,
+                factor: known(any_varies, factor),
+                shoulder: known(before.1 || field_varies(DIAMETER), shoulder),
+            });
+            before = (segment.flange_diameter(), field_varies(flange(*kind)));
         }
-        let open = scalar_varies(Input::YoungsModulus) || scalar_varies(Input::PoissonRatio);
-        let scale = shaft_scale(
-            base.get(Input::YoungsModulus),
-            base.get(Input::PoissonRatio),
-        );
+        // Without a diameter before it there is no shoulder.
+        if let Some(first) = segments.first_mut() {
+            first.shoulder = Some(0.0);
+        }
+        let (modulus, poisson) = (Input::YoungsModulus, Input::PoissonRatio);
+        let scale = judged(|judge| shaft_scale(base.get(modulus), base.get(poisson), judge)).ok();
+        let checked = judged(|judge| judge.non_negative("keyway_coefficient", coefficient)).ok();
         Self {
             segments,
-            scale: scale.ok().filter(|_| !open),
+            coefficient: known(coefficient_varies, checked),
+            scale: known(scalar_varies(modulus) || scalar_varies(poisson), scale),
         }
     }
 
     /// A plan in which nothing is known.
     #[must_use]
     pub fn open(kinds: &[SegmentKind]) -> Self {
+        let open = |kind: &SegmentKind| SegmentPlan {
+            kind: *kind,
+            factor: None,
+            shoulder: None,
+        };
         Self {
-            segments: kinds.iter().map(|kind| (*kind, None)).collect(),
+            segments: kinds.iter().map(open).collect(),
+            coefficient: None,
             scale: None,
         }
     }
@@ -58,41 +87,137 @@ impl ShaftPlan {
         self.segments.is_empty()
     }
 
-    /// Compliance C_OS^t (rad/(N m)) of the whole shaft, Eq. (4).
+    /// Compliance C_OS^t (rad/(N m)) of the whole shaft, Eq. (4); NaN without a shaft.
     ///
-    /// # Errors
-    /// The first [`DesignError`] met on the way from the free end to the flange.
-    #[inline(always)]
-    pub fn compliance(&self, inputs: &Inputs) -> Result<f64, DesignError> {
-        let scale = match self.scale {
-            Some(scale) => scale,
-            None => shaft_scale(
-                inputs.get(Input::YoungsModulus),
-                inputs.get(Input::PoissonRatio),
-            )?,
-        };
-        let coefficient = non_negative("keyway_coefficient", inputs.get(Input::KeywayCoefficient))?;
-        let mut sum = 0.0;
-        for (k, (kind, known)) in self.segments.iter().enumerate() {
-            let term = match known {
-                Some(term) => *term,
-                None => {
-                    let before = match k.checked_sub(1) {
-                        Some(k) => segment(self.segments[k].0, inputs, k).flange_diameter(),
-                        None => f64::NAN,
-                    };
-                    Term::of(&segment(*kind, inputs, k), before, coefficient)?
-                }
-            };
-            sum += term.factor + term.shoulder;
+    /// Requires what its segments require, on the way from the free end to the flange.
+    #[inline]
+    pub fn compliance(&self, inputs: &Inputs, judge: &mut impl Judge) -> f64 {
+        let scale = self.scale.unwrap_or_else(|| scale(inputs, judge));
+        let coefficient = self
+            .coefficient
+            .unwrap_or_else(|| coefficient(inputs, judge));
+        let (mut sum, mut before) = (0.0, f64::NAN);
+        for (plan, fields) in self.segments.iter().zip(inputs.segments()) {
+            let segment = segment(plan.kind, *fields);
+            let factor = plan
+                .factor
+                .unwrap_or_else(|| segment.factor(coefficient, judge));
+            let shoulder = plan
+                .shoulder
+                .unwrap_or_else(|| shoulder(before, segment.diameter, judge));
+            sum += factor + shoulder;
+            before = segment.flange_diameter();
         }
-        Ok(scale * sum)
+        self.of_sum(scale, sum)
+    }
+
+    /// [`ShaftPlan::compliance`] of a block of variants.
+    #[inline(always)]
+    pub fn compliances(&self, inputs: &InputLanes, mask: &mut Mask, out: &mut Lanes) {
+        let mut sum = [0.0; BLOCK];
+        if self.coefficient.is_none() {
+            for_each_lane!(inputs, mask, |_row, lane, judge| coefficient(lane, judge));
+        }
+        for (k, plan) in self.segments.iter().enumerate() {
+            // One loop a case, so that none chooses within.
+            if let (Some(factor), Some(shoulder)) = (plan.factor, plan.shoulder) {
+                let term = factor + shoulder;
+                for sum in &mut sum {
+                    *sum += term;
+                }
+                continue;
+            }
+            let fields = &inputs.segments()[k];
+            let mut factors = [plan.factor.unwrap_or_default(); BLOCK];
+            if plan.factor.is_none() {
+                match plan.kind {
+                    SegmentKind::Cylinder => {
+                        find_factors(SegmentKind::Cylinder, fields, inputs, mask, &mut factors);
+                    }
+                    SegmentKind::Frustum => {
+                        find_factors(SegmentKind::Frustum, fields, inputs, mask, &mut factors);
+                    }
+                    SegmentKind::Keyway => {
+                        find_factors(SegmentKind::Keyway, fields, inputs, mask, &mut factors);
+                    }
+                }
+            }
+            match (plan.shoulder, k.checked_sub(1)) {
+                (None, Some(last)) => {
+                    let before = &inputs.segments()[last][flange(self.segments[last].kind)];
+                    for_each_lane!(inputs, mask, |row, _lane, judge| {
+                        sum[row] +=
+                            factors[row] + shoulder(before[row], fields[DIAMETER][row], judge);
+                    });
+                }
+                (known, _) => {
+                    let shoulder = known.unwrap_or_default();
+                    for (sum, factor) in sum.iter_mut().zip(&factors) {
+                        *sum += factor + shoulder;
+                    }
+                }
+            }
+        }
+        if let Some(scale) = self.scale {
+            for (out, sum) in out.iter_mut().zip(&sum) {
+                *out = self.of_sum(scale, *sum);
+            }
+        } else {
+            for_each_lane!(inputs, mask, |row, lane, judge| {
+                out[row] = self.of_sum(scale(lane, judge), sum[row]);
+            });
+        }
+    }
+
+    #[inline(always)]
+    const fn of_sum(&self, scale: f64, sum: f64) -> f64 {
+        if self.is_empty() {
+            f64::NAN
+        } else {
+            scale * sum
+        }
     }
 }
 
 #[inline(always)]
-fn segment(kind: SegmentKind, inputs: &Inputs, k: usize) -> Segment {
-    let [diameter, end_diameter, length, keyway_depth] = inputs.segments()[k];
+fn find_factors(
+    kind: SegmentKind,
+    fields: &[Lanes; SEGMENT_FIELDS.len()],
+    inputs: &InputLanes,
+    mask: &mut Mask,
+    factors: &mut Lanes,
+) {
+    for_each_lane!(inputs, mask, |row, lane, judge| {
+        let [a, b, c, d] = fields;
+        let segment = segment(kind, [a[row], b[row], c[row], d[row]]);
+        factors[row] = segment.factor(lane.get(Input::KeywayCoefficient), judge);
+    });
+}
+
+#[inline(always)]
+fn scale(inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
+    let (modulus, poisson) = (Input::YoungsModulus, Input::PoissonRatio);
+    shaft_scale(inputs.get(modulus), inputs.get(poisson), judge)
+}
+
+#[inline(always)]
+fn coefficient(inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
+    judge.non_negative("keyway_coefficient", inputs.get(Input::KeywayCoefficient))
+}
+
+/// The field that holds the diameter at the flange end.
+#[inline(always)]
+const fn flange(kind: SegmentKind) -> usize {
+    if kind.tapers() {
+        END_DIAMETER
+    } else {
+        DIAMETER
+    }
+}
+
+#[inline(always)]
+fn segment(kind: SegmentKind, fields: [f64; SEGMENT_FIELDS.len()]) -> Segment {
+    let [diameter, end_diameter, length, keyway_depth] = fields;
     Segment {
         kind,
         diameter,

@@ -69,12 +69,17 @@ impl Values {
     }
 
     /// Turns numbers in [0, 1) into the values there.
+    #[inline(always)]
     fn place(&self, units: &mut [f64]) {
         match self {
-            // The same as `at`, with the choice outside the loop.
             Values::Interval { low, high } => {
                 for u in units {
-                    *u = low + *u * (high - low);
+                    *u = in_interval(*low, *high, *u);
+                }
+            }
+            Values::Whole { low, high } => {
+                for u in units {
+                    *u = whole_within(*low, *high, *u);
                 }
             }
             _ => {
@@ -90,12 +95,22 @@ impl Values {
     #[must_use]
     pub fn at(&self, u: f64) -> f64 {
         match self {
-            Values::Interval { low, high } => low + u * (high - low),
-            Values::Whole { low, high } => low + floor(u * (high - low + 1.0)),
+            Values::Interval { low, high } => in_interval(*low, *high, u),
+            Values::Whole { low, high } => whole_within(*low, *high, u),
             Values::List(values) => values[(u * values.len() as f64) as usize],
             Values::Linspace { steps, .. } => self.nth((u * *steps as f64) as u64),
         }
     }
+}
+
+#[inline(always)]
+fn in_interval(low: f64, high: f64, u: f64) -> f64 {
+    low + u * (high - low)
+}
+
+#[inline(always)]
+fn whole_within(low: f64, high: f64, u: f64) -> f64 {
+    low + floor(u * (high - low + 1.0))
 }
 
 /// One axis: which input varies, and over what.
@@ -265,6 +280,7 @@ impl Space {
     }
 
     /// Writes the values of one axis for the asked variants.
+    #[inline(always)]
     pub fn fill(&self, axis: usize, rows: Rows<'_>, out: &mut [f64]) {
         let values = &self.axes[axis].values;
         match (&self.points, rows) {
@@ -293,12 +309,7 @@ impl Space {
                 }
             }
             (Points::Sobol(sequences), Rows::From(start)) => {
-                let sequence = &sequences[axis];
-                let mut bits = sequence.bits(start);
-                for (value, index) in out.iter_mut().zip(start..) {
-                    *value = unit_interval(bits);
-                    bits = sequence.next_bits(bits, index);
-                }
+                sequences[axis].fill_units(start, out);
                 values.place(out);
             }
             (Points::Sobol(sequences), Rows::At(indices)) => {

@@ -35,7 +35,8 @@ def points(space: cs.Space, start: int | None = None, stop: int | None = None) -
     core = space.core()
     first = space.start if start is None else start
     last = space.stop if stop is None else stop
-    return {axis.name: core.axis(axis.name, first, last) for axis in space.axes}
+    names = [axis.name for axis in space.axes]
+    return dict(zip(names, core.axes(names, first, last), strict=True))
 
 
 def unit(space: cs.Space, name: str, low: float, high: float) -> npt.NDArray[np.float64]:
@@ -223,3 +224,10 @@ def test_a_space_is_cut_in_steps_of_one(reference: cs.Drive) -> None:
     with pytest.raises(IndexError):
         space[2]
     assert [drive.output_pin_count for drive in space] == [6, 8]
+
+
+def test_the_one_space_too_large_for_len(reference: cs.Drive) -> None:
+    space = cs.Space.sobol(reference, 2**63, eccentricity_mm=(0.3, 0.8))
+    with pytest.raises(OverflowError, match="one too many for len"):
+        len(space)
+    assert len(space[1:]) == 2**63 - 1

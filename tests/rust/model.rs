@@ -2,6 +2,7 @@
 
 use approx::assert_relative_eq;
 use cyclosweep::compliance::{output_compliance, reflected, slope_deg, twist_deg};
+use cyclosweep::judge::judged;
 use cyclosweep::pin::{Pin, cowper, pin_compliance};
 use cyclosweep::shaft::{
     Segment, SegmentKind, frustum_factor, keyway_factor, shaft_compliance, shaft_factor,
@@ -126,7 +127,7 @@ proptest! {
         modulus in 5e10..4e11_f64, nu in 0.0..0.5_f64, circle in 0.02..0.2_f64,
     ) {
         let pin = Pin { diameter: d, bore: bore * d, length: slender * d };
-        prop_assert!(pin.check().is_ok());
+        prop_assert!(judged(|judge| pin.require(judge)).is_ok());
         let torque = 1e-4; // small deflections
         let of = |modulus: f64, circle: f64| pin_compliance(pin.flexibility(modulus, nu), circle, torque);
         let here = of(modulus, circle);

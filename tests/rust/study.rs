@@ -2,61 +2,15 @@
 
 use cyclosweep::columns::{Limit, Limited, Study};
 use cyclosweep::error::Status;
-use cyclosweep::inputs::{Input, SCALARS, SEGMENT_FIELDS, factor};
+use cyclosweep::inputs::{Input, SCALARS};
 use cyclosweep::outputs::Output;
 use cyclosweep::sampling::{Permutation, SobolAxis, key, random, unit_interval};
-use cyclosweep::shaft::SegmentKind;
 use cyclosweep::space::{Axis, Layout, Rows, Space, Values};
 use proptest::prelude::*;
 
-const KINDS: [SegmentKind; 3] = [
-    SegmentKind::Keyway,
-    SegmentKind::Cylinder,
-    SegmentKind::Frustum,
-];
-const LOADS: [f64; 2] = [1.0, 4.5];
+use drive::{KINDS, LOADS, base, core_units};
 
-/// A drive that can be built, in the user's units.
-fn base() -> Vec<f64> {
-    let mut base = vec![
-        87.0,
-        2.0,
-        0.62,
-        75.0,
-        -1.2,
-        8.0,
-        45.0,
-        16.0,
-        0.0,
-        40.0,
-        2.0,
-        70.0,
-        25.0,
-        206.0,
-        0.3,
-        10.0,
-        1.14,
-        1500.0,
-        585.0,
-        28.0,
-        0.002,
-        f64::NAN,
-        0.0,
-    ];
-    assert_eq!(base.len(), SCALARS);
-    base.extend([50.0, f64::NAN, 100.0, 5.5]);
-    base.extend([55.0, f64::NAN, 60.0, f64::NAN]);
-    base.extend([60.0, 90.0, 15.0, f64::NAN]);
-    assert_eq!(base.len(), SCALARS + KINDS.len() * SEGMENT_FIELDS.len());
-    base
-}
-
-fn core_units(base: &[f64]) -> Vec<f64> {
-    base.iter()
-        .enumerate()
-        .map(|(k, value)| value * factor(k))
-        .collect()
-}
+mod drive;
 
 fn study(axes: Vec<Axis>, layout: Layout, count: u64, seed: u64, limits: Vec<Limit>) -> Study {
     let space = Space::new(axes, layout, count, seed).expect("a space that can be");
@@ -238,11 +192,16 @@ proptest! {
 
 proptest! {
     #[test]
-    fn stepping_along_a_sobol_sequence_equals_jumping(
-        axis in 0..128_usize, scramble in any::<Option<u64>>(), index in 0..(1_u64 << 63) - 1
+    fn a_run_of_sobol_points_is_the_points(
+        axis in 0..128_usize, scramble in any::<Option<u64>>(), start in 0..(1_u64 << 63) - 400,
+        len in 0..400_usize,
     ) {
         let axis = SobolAxis::new(axis, scramble);
-        prop_assert_eq!(axis.next_bits(axis.bits(index), index), axis.bits(index + 1));
+        let mut run = vec![0.0; len];
+        axis.fill_units(start, &mut run);
+        for (unit, index) in run.iter().zip(start..) {
+            prop_assert_eq!(*unit, unit_interval(axis.bits(index)));
+        }
     }
 
     #[test]

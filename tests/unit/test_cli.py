@@ -211,3 +211,29 @@ def test_a_quick_diagnosis_writes_the_same_verdict_without_a_report(tmp_path: Pa
     said = [json.loads((tmp_path / name / "diagnosis.json").read_text()) for name in files]
     for key in ("verdict", "mismatch", "explanation_set"):
         assert said[0][key] == said[1][key]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["sweep"], "STUDY.toml"),
+        (["sweep", "study.toml", "--out", "x", "--rows", "0"], "--rows"),
+        (["sweep", "study.toml", "--out", "x", "--engine", "steam"], "steam"),
+        (["sweep", "study.toml", "--outt", "x"], "--outt"),
+        (["swep"], "swep"),
+    ],
+)
+def test_a_wrong_option_is_one_line(arguments: list[str], word: str) -> None:
+    assert_one_line(run(*arguments), 2, word)
+
+
+def test_without_a_command_there_is_help() -> None:
+    result = run()
+    assert result.returncode == 0
+    assert "sweep" in result.stdout
+
+
+def test_other_rows_of_the_same_study_are_refused_by_name(study: Path, tmp_path: Path) -> None:
+    out = str(tmp_path / "out")
+    assert run("sweep", str(study), "--out", out, "--rows", "20").returncode == 0
+    assert_one_line(run("sweep", str(study), "--out", out), 2, "0 to 20", "0 to 150", "--fresh")

@@ -44,6 +44,7 @@ WRONG_SPACES: list[tuple[Callable[[], Any], tuple[str, ...]]] = [
     (lambda: cs.linspace("0", 1, 2), ("start", "'0'", "number")),  # type: ignore[arg-type]
     (lambda: cs.linspace(0, float("nan"), 2), ("stop", "nan", "finite")),
     (lambda: cs.linspace(0, True, 2), ("stop", "True", "number")),
+    (lambda: cs.Space.sobol(DRIVE, 8), ("sobol", "no axes")),
     (lambda: cs.Space.sobol(DRIVE, 0, **E), ("count", "0", "above zero")),
     (lambda: cs.Space.sobol(DRIVE, 1.5, **E), ("count", "1.5", "whole")),  # type: ignore[arg-type]
     (lambda: cs.Space.sobol(DRIVE, True, **E), ("count", "True", "whole")),

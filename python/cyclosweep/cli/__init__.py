@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
@@ -14,8 +14,10 @@ from cyclosweep.errors import DesignError, InputError, SweepError
 
 __all__ = ["main"]
 
+# What typer raises for wrong options, wherever it keeps its copy of click.
+_UsageError = cast(type[Exception], typer.BadParameter.__bases__[0])
+
 app = typer.Typer(
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -47,7 +49,12 @@ def _root(
 def main() -> None:
     """Run the command line; every error is one line and an exit status."""
     try:
-        app()
+        status = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
+    except _UsageError as error:
+        message = getattr(error, "format_message", error.__str__)()
+        fail(f"{' '.join(message.split()).rstrip('.')}; see --help", 2)
+    except typer.Abort:
+        fail("interrupted", 1)
     except (InputError, DesignError) as error:
         fail(error, 2)
     except SweepError as error:
@@ -59,3 +66,5 @@ def main() -> None:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         fail(f"{where}{error.strerror or error}", 1)
+    else:
+        sys.exit(status if isinstance(status, int) else 0)

@@ -219,17 +219,27 @@ impl PyStudy {
         self.study.evaluated()
     }
 
-    /// Values of one axis for variants start..stop, in the user's unit.
-    fn axis<'py>(
+    /// Values of axes for variants start..stop, in the user's unit, one row an axis.
+    fn axes<'py>(
         &self,
         py: Python<'py>,
-        name: &str,
+        names: Vec<String>,
         start: u64,
         stop: u64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (axis, len) = (self.axis_number(name)?, self.check_range(start, stop)?);
-        let values = py.detach(|| self.study.axis_values(axis, Rows::From(start), len));
-        Ok(values.into_pyarray(py))
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let len = self.check_range(start, stop)?;
+        let axes = names
+            .iter()
+            .map(|name| self.axis_number(name))
+            .collect::<PyResult<Vec<_>>>()?;
+        // One array, as in `evaluate`.
+        let columns = PyArray2::<f64>::zeros(py, [axes.len(), len], false);
+        {
+            let mut columns = columns.readwrite();
+            let columns = columns.as_slice_mut()?.chunks_mut(len.max(1)).collect();
+            py.detach(|| self.study.axes_into(&axes, Rows::From(start), columns));
+        }
+        Ok(columns)
     }
 
     /// Values of one axis for picked variants.

@@ -1,0 +1,283 @@
+//! The stages of a block of variants: looked up where they are known, computed a block at a time
+//! elsewhere, and once more, alone, for the few variants that a block cannot settle.
+
+use crate::error::DesignError;
+use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
+use crate::judge::judged;
+use crate::known::{FiledBlock, Known};
+use crate::lanes::{BLOCK, InputLanes, Mask, for_each_lane};
+use crate::map_stage::{Criteria, Map, MapParts};
+use crate::outputs::{Assembly, AssemblyBlock, Block, Output};
+use crate::shaft::SegmentKind;
+use crate::shaft_plan::ShaftPlan;
+use crate::space::{Rows, Space};
+use crate::stages::{Geometry, PinBending, Rating, Shaft, Stage};
+
+/// What of the stages is needed.
+#[derive(Clone, Copy)]
+pub(crate) struct Wanted {
+    pub map: bool,
+    pub every_criterion: bool,
+    /// Whether every variant is to be looked at alone.
+    pub one_by_one: bool,
+}
+
+/// What of a study's stages is known before any variant.
+pub(crate) struct Stages {
+    geometry: Known<Geometry>,
+    map: Known<Map>,
+    shaft: Known<Shaft>,
+    pin: Known<PinBending>,
+    rating: Known<Rating>,
+    /// What of the shaft is known where the whole is not.
+    plan: ShaftPlan,
+    /// Axes that a stage computed for every variant reads: number and input.
+    open_axes: Vec<(usize, usize)>,
+    /// The criterion's code, unless it varies.
+    criterion: Option<f64>,
+}
+
+/// A thread's working memory for one block.
+pub(crate) struct Scratch {
+    inputs: InputLanes,
+    /// The inputs of a variant looked at alone.
+    alone: Inputs,
+    geometry: FiledBlock<Geometry>,
+    map_parts: MapParts,
+    map: FiledBlock<Map>,
+    shaft: FiledBlock<Shaft>,
+    pin: FiledBlock<PinBending>,
+    rating: FiledBlock<Rating>,
+    assembly: Box<AssemblyBlock>,
+}
+
+impl Stages {
+    /// Computes what can be known before any variant.
+    pub(crate) fn new(space: &Space, base: &Inputs, kinds: &[SegmentKind]) -> Self {
+        let axes = space.axes();
+        let of_inputs = |inputs: &[Input]| inputs.iter().map(|i| *i as usize).collect();
+        let mut shaft_inputs: Vec<usize> = of_inputs(&Shaft::INPUTS);
+        shaft_inputs.extend(SCALARS..SCALARS + SEGMENT_FIELDS.len() * kinds.len());
+        let geometry_inputs: Vec<usize> = of_inputs(&Geometry::INPUTS);
+        let map_inputs: Vec<usize> = of_inputs(&Map::INPUTS);
+        let pin_inputs: Vec<usize> = of_inputs(&PinBending::INPUTS);
+        let rating_inputs: Vec<usize> = of_inputs(&Rating::INPUTS);
+        let varies = |input| axes.iter().any(|axis| axis.input == input);
+        let plan = ShaftPlan::new(kinds, base, varies);
+        let needs_stiffness = plan.is_empty();
+        let mut stages = Stages {
+            geometry: Known::of(space, base, &geometry_inputs, &geometry),
+            map: Known::of(space, base, &map_inputs, &|inputs| {
+                map(inputs, Criteria::ALL)
+            }),
+            shaft: Known::of(space, base, &shaft_inputs, &|inputs| shaft(inputs, &plan)),
+            pin: Known::of(space, base, &pin_inputs, &pin),
+            rating: Known::of(space, base, &rating_inputs, &|inputs| {
+                rating(inputs, needs_stiffness)
+            }),
+            open_axes: Vec::new(),
+            plan,
+            criterion: (!varies(Input::Criterion as usize)).then(|| base.get(Input::Criterion)),
+        };
+        for (number, axis) in axes.iter().enumerate() {
+            let reads = |open: bool, inputs: &[usize]| open && inputs.contains(&axis.input);
+            if reads(stages.geometry.is_open(), &geometry_inputs)
+                || reads(stages.map.is_open(), &map_inputs)
+                || reads(stages.shaft.is_open(), &shaft_inputs)
+                || reads(stages.pin.is_open(), &pin_inputs)
+                || reads(stages.rating.is_open(), &rating_inputs)
+            {
+                stages.open_axes.push((number, axis.input));
+            }
+        }
+        stages
+    }
+
+    /// Working memory for a block of a study with these unvaried inputs.
+    pub(crate) fn scratch(&self, base: &Inputs) -> Scratch {
+        Scratch {
+            inputs: InputLanes::new(base),
+            alone: base.clone(),
+            geometry: self.geometry.block(),
+            map_parts: MapParts::new(),
+            map: self.map.block(),
+            shaft: self.shaft.block(),
+            pin: self.pin.block(),
+            rating: self.rating.block(),
+            assembly: Assembly::NONE.block(),
+        }
+    }
+
+    /// Stages and assembly of one block, and the status that follows from them.
+    #[inline(always)]
+    pub(crate) fn evaluate(
+        &self,
+        space: &Space,
+        rows: Rows<'_>,
+        wanted: Wanted,
+        scratch: &mut Scratch,
+        status: &mut [u8],
+    ) {
+        let len = status.len();
+        self.geometry.look_up(rows, len, &mut scratch.geometry);
+        self.map.look_up(rows, len, &mut scratch.map);
+        self.shaft.look_up(rows, len, &mut scratch.shaft);
+        self.pin.look_up(rows, len, &mut scratch.pin);
+        self.rating.look_up(rows, len, &mut scratch.rating);
+        if !self.open_axes.is_empty() {
+            for (axis, input) in &self.open_axes {
+                let lanes = scratch.inputs.at_mut(*input);
+                space.fill(*axis, rows, &mut lanes[..len]);
+                let factor = factor(*input);
+                if factor != 1.0 {
+                    for value in lanes {
+                        *value *= factor;
+                    }
+                }
+            }
+            self.compute(wanted, scratch, len);
+        }
+        Block {
+            geometry: &scratch.geometry.outcomes,
+            map: &scratch.map.outcomes,
+            shaft: &scratch.shaft.outcomes,
+            pin: &scratch.pin.outcomes,
+            rating: &scratch.rating.outcomes,
+        }
+        .assemble(&mut scratch.assembly);
+        for (row, status) in status.iter_mut().enumerate() {
+            *status = scratch.geometry.statuses[row]
+                .or(scratch.map.statuses[row])
+                .or(scratch.shaft.statuses[row])
+                .or(scratch.pin.statuses[row])
+                .or(scratch.rating.statuses[row]) as u8;
+        }
+    }
+
+    /// Computes the open stages of a block.
+    #[inline(always)]
+    fn compute(&self, wanted: Wanted, scratch: &mut Scratch, len: usize) {
+        let mut mask: Mask = [u64::from(!wanted.one_by_one); BLOCK];
+        let inputs = &mut scratch.inputs;
+        if self.geometry.is_open() {
+            inputs.find_half_pitch_sines();
+            let out = scratch.geometry.open();
+            for_each_lane!(inputs, mask, |row, lane, judge| {
+                Geometry::of(lane, judge).put(out, row);
+            });
+        }
+        if self.map.is_open() {
+            let needed = criteria(wanted, self.criterion);
+            let (parts, out) = (&mut scratch.map_parts, scratch.map.open());
+            Map::compute_block(inputs, needed, parts, out, &mut mask);
+        }
+        if self.shaft.is_open() {
+            let out = scratch.shaft.open();
+            self.plan
+                .compliances(inputs, &mut mask, &mut out.compliance);
+        }
+        if self.pin.is_open() {
+            let out = scratch.pin.open();
+            for_each_lane!(inputs, mask, |row, lane, judge| {
+                PinBending::of(lane, judge).put(out, row);
+            });
+        }
+        if self.rating.is_open() {
+            let out = scratch.rating.open();
+            let needs_stiffness = self.plan.is_empty();
+            for_each_lane!(inputs, mask, |row, lane, judge| {
+                Rating::of(lane, needs_stiffness, judge).put(out, row);
+            });
+        }
+        if mask[..len].iter().fold(1, |all, holds| all & holds) == 0 {
+            for (row, holds) in mask[..len].iter().enumerate() {
+                if *holds == 0 {
+                    self.compute_alone(wanted, scratch, row);
+                }
+            }
+        }
+    }
+
+    /// Computes the open stages of one variant, with the reason where it is refused.
+    #[inline(never)]
+    fn compute_alone(&self, wanted: Wanted, scratch: &mut Scratch, row: usize) {
+        let Scratch { inputs, alone, .. } = scratch;
+        for (_, input) in &self.open_axes {
+            alone.set(*input, inputs.at(*input, row));
+        }
+        if self.geometry.is_open() {
+            scratch.geometry.put(geometry(alone).into(), row);
+        }
+        if self.map.is_open() {
+            let needed = criteria(wanted, Some(alone.get(Input::Criterion)));
+            scratch.map.put(map(alone, needed).into(), row);
+        }
+        if self.shaft.is_open() {
+            scratch.shaft.put(shaft(alone, &self.plan).into(), row);
+        }
+        if self.pin.is_open() {
+            scratch.pin.put(pin(alone).into(), row);
+        }
+        if self.rating.is_open() {
+            let needs_stiffness = self.plan.is_empty();
+            scratch
+                .rating
+                .put(rating(alone, needs_stiffness).into(), row);
+        }
+    }
+}
+
+impl Scratch {
+    /// Writes one column of the block's first variants.
+    #[inline(always)]
+    pub(crate) fn write(&self, output: Output, loads: &[f64], out: &mut [f64]) {
+        Block {
+            geometry: &self.geometry.outcomes,
+            map: &self.map.outcomes,
+            shaft: &self.shaft.outcomes,
+            pin: &self.pin.outcomes,
+            rating: &self.rating.outcomes,
+        }
+        .write(&self.assembly, output, loads, out);
+    }
+}
+
+/// The criteria whose figures are needed where the chosen one has this code, if it is known.
+fn criteria(wanted: Wanted, code: Option<f64>) -> Criteria {
+    match (wanted.map, code) {
+        (false, _) => Criteria::NONE,
+        (true, None) => Criteria::ALL,
+        (true, Some(code)) => Criteria::of(code, wanted.every_criterion),
+    }
+}
+
+fn geometry(inputs: &Inputs) -> Result<Geometry, DesignError> {
+    judged(|judge| Geometry::of(inputs, judge))
+}
+
+fn map(inputs: &Inputs, needed: Criteria) -> Result<Map, DesignError> {
+    judged(|judge| Map::of(inputs, needed, judge))
+}
+
+fn shaft(inputs: &Inputs, plan: &ShaftPlan) -> Result<Shaft, DesignError> {
+    judged(|judge| plan.compliance(inputs, judge)).map(|compliance| Shaft { compliance })
+}
+
+fn pin(inputs: &Inputs) -> Result<PinBending, DesignError> {
+    judged(|judge| PinBending::of(inputs, judge))
+}
+
+fn rating(inputs: &Inputs, needs_stiffness: bool) -> Result<Rating, DesignError> {
+    judged(|judge| Rating::of(inputs, needs_stiffness, judge))
+}
+
+/// Why a design cannot be built: the first reason of its stages, in their order.
+pub(crate) fn explained(inputs: &Inputs, kinds: &[SegmentKind]) -> Option<DesignError> {
+    let plan = ShaftPlan::open(kinds);
+    geometry(inputs)
+        .and_then(|_| map(inputs, Criteria::NONE))
+        .and_then(|_| shaft(inputs, &plan))
+        .and_then(|_| pin(inputs))
+        .and_then(|_| rating(inputs, plan.is_empty()))
+        .err()
+}

@@ -1,0 +1,207 @@
+//! Blocks of variants, one array a quantity, and the widest instructions that the machine has.
+//!
+//! Formulas over lanes are plain loops without branches. The compiler turns them into vector
+//! instructions twice, for every machine and for those with AVX2; neither fuses a product with a
+//! sum, so the bits are the same.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS};
+
+/// Variants computed together: their stages stay in the cache.
+pub const BLOCK: usize = 128;
+
+/// One quantity of every variant of a block.
+pub type Lanes = [f64; BLOCK];
+
+/// For each variant of a block, whether its formulas hold (one) or it has to be looked at alone.
+pub type Mask = [u64; BLOCK];
+
+/// Work to run with the widest instructions there are. Its `run` and all it calls must be
+/// `inline(always)`.
+pub trait Wide {
+    /// What comes of it.
+    type Output;
+    /// Does the work.
+    fn run(self) -> Self::Output;
+}
+
+/// Runs `work` with the widest instructions that this machine has.
+#[inline]
+pub fn with_widest<W: Wide>(work: W) -> W::Output {
+    struct Dispatched<W>(W);
+    impl<W: Wide> WithSimd for Dispatched<W> {
+        type Output = W::Output;
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) -> W::Output {
+            self.0.run()
+        }
+    }
+    Arch::new().dispatch(Dispatched(work))
+}
+
+/// The inputs of one variant, whether it stands alone or in a block.
+pub trait Variant {
+    /// Value of a scalar input, in the core's unit.
+    fn get(&self, input: Input) -> f64;
+    /// sin(pi / N_OP), where the number of pins is one that a design may have.
+    fn half_pitch_sine(&self) -> f64;
+}
+
+/// The inputs of a block of variants.
+pub struct InputLanes {
+    scalars: Box<[Lanes; SCALARS]>,
+    segments: Vec<[Lanes; SEGMENT_FIELDS.len()]>,
+    half_pitch_sines: Lanes,
+}
+
+/// One variant of a block.
+#[derive(Clone, Copy)]
+pub struct Lane<'a> {
+    scalars: &'a [Lanes; SCALARS],
+    half_pitch_sines: &'a Lanes,
+    row: usize,
+}
+
+impl InputLanes {
+    /// A block of variants that are all alike.
+    #[must_use]
+    pub fn new(inputs: &Inputs) -> Self {
+        let mut lanes = Self {
+            scalars: Box::new(Input::ALL.map(|input| [inputs.get(input); BLOCK])),
+            segments: inputs
+                .segments()
+                .iter()
+                .map(|fields| fields.map(|value| [value; BLOCK]))
+                .collect(),
+            half_pitch_sines: [0.0; BLOCK],
+        };
+        lanes.find_half_pitch_sines();
+        lanes
+    }
+
+    /// The lanes of the input at this position among all inputs.
+    #[inline(always)]
+    pub fn at_mut(&mut self, input: usize) -> &mut Lanes {
+        match input.checked_sub(SCALARS) {
+            None => &mut self.scalars[input],
+            Some(k) => &mut self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()],
+        }
+    }
+
+    /// The value of one variant's input at this position among all inputs.
+    #[must_use]
+    pub fn at(&self, input: usize, row: usize) -> f64 {
+        match input.checked_sub(SCALARS) {
+            None => self.scalars[input][row],
+            Some(k) => self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()][row],
+        }
+    }
+
+    /// To be called after the numbers of pins have changed.
+    #[inline(always)]
+    pub fn find_half_pitch_sines(&mut self) {
+        let sines = &half_pitch::SINES.0;
+        let pins = &self.scalars[Input::OutputPinCount as usize];
+        for (sine, pins) in self.half_pitch_sines.iter_mut().zip(pins) {
+            *sine = sines[half_pitch::place(*pins)];
+        }
+    }
+
+    /// The fields of every segment of the shaft.
+    #[inline(always)]
+    #[must_use]
+    pub fn segments(&self) -> &[[Lanes; SEGMENT_FIELDS.len()]] {
+        &self.segments
+    }
+
+    /// The lanes of one scalar input.
+    #[inline(always)]
+    #[must_use]
+    pub const fn get(&self, input: Input) -> &Lanes {
+        &self.scalars[input as usize]
+    }
+
+    /// The first variant of the block.
+    #[inline(always)]
+    #[must_use]
+    pub fn first(&self) -> Lane<'_> {
+        Lane {
+            scalars: &self.scalars,
+            half_pitch_sines: &self.half_pitch_sines,
+            row: 0,
+        }
+    }
+}
+
+/// A formula for every variant of a block; clears the mask where not all it requires holds.
+///
+/// A macro, not a function of a closure: a closure cannot be forced into the loop, and a call
+/// there keeps the loop from becoming vector instructions.
+macro_rules! for_each_lane {
+    ($inputs:expr, $mask:expr, |$row:ident, $lane:ident, $judge:ident| $formula:expr) => {
+        // Where the inputs lie is found once, not in every turn.
+        let first = $inputs.first();
+        for (row, holds) in $mask.iter_mut().enumerate() {
+            let ($row, $lane) = (row, &first.at(row));
+            let mut judge = $crate::judge::AllHold(true);
+            let $judge = &mut judge;
+            $formula;
+            *holds &= u64::from(judge.0);
+        }
+    };
+}
+pub(crate) use for_each_lane;
+
+impl<'a> Lane<'a> {
+    /// The variant at another place of the block.
+    #[inline(always)]
+    #[must_use]
+    pub const fn at(&self, row: usize) -> Lane<'a> {
+        Lane { row, ..*self }
+    }
+}
+
+impl Variant for Lane<'_> {
+    #[inline(always)]
+    fn get(&self, input: Input) -> f64 {
+        self.scalars[input as usize][self.row]
+    }
+
+    #[inline(always)]
+    fn half_pitch_sine(&self) -> f64 {
+        self.half_pitch_sines[self.row]
+    }
+}
+
+impl Variant for Inputs {
+    #[inline(always)]
+    fn get(&self, input: Input) -> f64 {
+        Self::get(self, input)
+    }
+
+    fn half_pitch_sine(&self) -> f64 {
+        half_pitch::SINES.0[half_pitch::place(Self::get(self, Input::OutputPinCount))]
+    }
+}
+
+/// sin(pi / N) for every allowed number of pins.
+mod half_pitch {
+    use std::sync::LazyLock;
+
+    const PLACES: usize = 128;
+
+    pub(super) struct Sines(pub [f64; PLACES]);
+    pub(super) static SINES: LazyLock<Sines> = LazyLock::new(|| {
+        Sines(std::array::from_fn(|n| {
+            (std::f64::consts::PI / n.max(1) as f64).sin()
+        }))
+    });
+
+    /// A whole number from 0 to 127 as a place in the table; any other number as some place.
+    #[inline(always)]
+    pub(super) fn place(pins: f64) -> usize {
+        // 2^52 shifts the units to the last bit.
+        (pins + 4_503_599_627_370_496.0).to_bits() as usize % PLACES
+    }
+}
