@@ -185,7 +185,7 @@ def _conclude(
         decision = decide_structured(search, repeats.is_physics)
     node = decision.best if decision.best is not None else search.root
     accepted = _named_part(search, node)
-    remaining = testability(search, accepted, p_of)
+    remaining = bounds if accepted is search.root else testability(search, accepted, p_of)
     regions = find_regions(search, search.root) if search.root.left >= search.threshold else []
     if decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
         regions = find_regions(search, accepted) or regions

@@ -40,7 +40,11 @@ def rich_basis(problem: Problem, library: Library, extra: Floats | None = None) 
     index = np.concatenate([np.arange(b.first, b.stop) for b in wanted])
     rest = library.columns[:, index] / np.sqrt(len(inner))
     rest = rest - inner @ (inner.T @ rest)
-    left, singular, _ = np.linalg.svd(rest, full_matrices=False)
+    # Directions by the small matrix of inner products: what is kept lies far above its rounding.
+    size, mix = np.linalg.eigh(rest.T @ rest)
+    strongest = np.argsort(-size)
+    strongest = strongest[size[strongest] > (2e-3) ** 2 * max(size[-1], 1e-300)]
     most = max(len(inner) // 4 - inner.shape[1], 0)
-    kept = left[:, singular > 2e-3 * max(singular[0], 1e-300)][:, :most]
+    strongest = strongest[:most]
+    kept = rest @ (mix[:, strongest] / np.sqrt(size[strongest]))
     return np.column_stack([inner, kept])
