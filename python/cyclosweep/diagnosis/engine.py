@@ -319,7 +319,7 @@ def _named_part(search: Search, node: Node) -> Node:
     """Return the structure without its nameless terms, for sizes, repair and prediction."""
     if node.named_only:
         return node
-    named = [t for t in node.fit.terms if t.effect is not None]
+    named = [t for t, own in zip(node.fit.terms, node.carries, strict=True) if own]
     if not named:
         return search.root
     known = search.nodes.get(frozenset(t.name for t in named))
@@ -492,8 +492,12 @@ def _model(fitted: Fit, drive: Drive) -> Model:
 
 def _explanation(node: Node, probability: float) -> dict[str, Any]:
     return {
-        "effects": [t.name for t in node.fit.terms if t.effect is not None],
-        "without_name": [t.name for t in node.fit.terms if t.effect is None],
+        "effects": [t.name for t, own in zip(node.fit.terms, node.carries, strict=True) if own],
+        "without_name": [
+            t.name if t.effect is None else t.effect.family
+            for t, own in zip(node.fit.terms, node.carries, strict=True)
+            if not own
+        ],
         "probability": probability,
     }
 
@@ -514,6 +518,12 @@ def _unknown(
             "place": term.free.place,
             "size_deg": float(np.max(np.abs(shape))),
         }
+    lost = [k for k, own in enumerate(node.carries) if not own]
+    if lost:
+        effect = node.fit.terms[lost[0]].effect
+        assert effect is not None
+        largest = float(np.max(np.abs(size_of(node, lost[0]))))
+        return {"shape": effect.family, "place": "all along", "size_deg": largest}
     values = node.excesses
     wave = node.rest_hum[1]
     name = max(values, key=lambda key: values[key])

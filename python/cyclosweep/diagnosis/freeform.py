@@ -32,6 +32,35 @@ class FreeForm:
     positive: bool = False
 
 
+_OFFSETS = frozenset({"run offsets"})
+_LOOPS = frozenset({"hysteresis"})
+_PLACES = frozenset({"position"})
+_CURVES = frozenset({"smooth odd curve", "dial"})
+CLASSES = {
+    "step of the angle": _OFFSETS,
+    "slip within a run": _OFFSETS,
+    "change of play": _OFFSETS,
+    "one run apart": _OFFSETS,
+    "drift in time": _OFFSETS,
+    "drift within runs": _OFFSETS,
+    "wandering of the zero": _OFFSETS,
+    "position offsets": _OFFSETS,
+    "compliance by run": _PLACES,
+    "compliance by position": _PLACES,
+    "change of compliance": _PLACES,
+    "bump at a load": _CURVES,
+    "saturation at the end of the range": _CURVES,
+    "smooth odd curve": _CURVES,
+    "even curve": frozenset({"even curve", "dial"}),
+    "hysteresis": _LOOPS,
+    "loop by rate": _LOOPS,
+    "torque and direction": _LOOPS,
+    "relaxation": frozenset({"relaxation"}),
+}
+"""Families of effects from which a shape without a name cannot be told: beside it they are not
+named, for part of what they explain is its."""
+
+
 def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
     """All shapes without a name that this recording can show."""
     yield from _steps(history, fitted)

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from cyclosweep.diagnosis import hum
 from cyclosweep.diagnosis.alarm import Alarm
 from cyclosweep.diagnosis.fit import Fit, Term, fit
-from cyclosweep.diagnosis.freeform import FreeForm
+from cyclosweep.diagnosis.freeform import CLASSES, FreeForm
 from cyclosweep.diagnosis.library import Block, Library
 from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
@@ -16,12 +17,15 @@ from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
 from cyclosweep.effects import Shape
 from cyclosweep.effects.history import Floats
 
-EXTRA_TERM = 3.0
+EXTRA_TERM = 5.0
 """Log prior odds against every further effect."""
 WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
-CAUTION = {"saturation at the end of the range": 1.0}
-"""The same for shapes as common as the named effects."""
+CAUTION = {"saturation at the end of the range": 1.0} | dict.fromkeys(
+    ("relaxation", "loop by rate", "position offsets", "compliance by position"), 6.0
+)
+"""The same for shapes as common as the named effects, and for those that hold a named effect whole:
+creep, drag, transmission error and phase-dependent compliance need not be exact to be named."""
 SHAPE_ERROR = 0.05
 """Share of an effect's own visibility below which a remainder is taken for error of its shape:
 no model of an effect is exact, and large effects show it."""
@@ -71,10 +75,30 @@ class Node:
         """Log posterior odds over the baseline."""
         return self.gain + self.prior
 
+    @cached_property
+    def carries(self) -> tuple[bool, ...]:
+        """Which terms carry their name: a shape without one takes it from others of its class."""
+        fitted = self.fit
+        own, nameless = [], set[str]()
+        for k, term in enumerate(fitted.terms):
+            effect = term.effect
+            if effect is None:
+                nameless |= CLASSES.get(term.name, frozenset())
+            elif not term.slips and not effect.telling(
+                fitted.history, term.shape, fitted.beta[fitted.column_range(k)]
+            ):
+                nameless.add(effect.family)
+            else:
+                own.append(k)
+        return tuple(
+            k in own and term.effect is not None and term.effect.family not in nameless
+            for k, term in enumerate(fitted.terms)
+        )
+
     @property
     def named_only(self) -> bool:
         """Whether every term has a name."""
-        return all(term.effect is not None for term in self.fit.terms)
+        return all(self.carries)
 
     @property
     def excesses(self) -> dict[str, float]:

@@ -95,6 +95,10 @@ class Effect:
         """Shape in which what follows from the amplitudes agrees with them."""
         return shape
 
+    def telling(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
+        """Whether what was found is this effect's own, and not just any shape of its class."""
+        return True
+
     def richer(self, shape: Shape, found: Shape) -> Shape | None:
         """Shape with what a search found besides it; None where the effect cannot hold both."""
         return None
