@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
 from cyclosweep.effects import Shape
 from cyclosweep.effects.history import Floats
 
-EXTRA_TERM = 5.0
+EXTRA_TERM = 6.0
 """Log prior odds against every further effect."""
 WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
