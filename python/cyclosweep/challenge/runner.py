@@ -70,7 +70,7 @@ class Options:
     """
 
     workers: int = 1
-    batch: int = 20
+    batch: int = 50
     limit_s: float = 60.0
     diagnose_flags: tuple[str, ...] = ()
     removal_flag: str = "--without"
