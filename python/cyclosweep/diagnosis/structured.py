@@ -84,7 +84,7 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
     found: Forecast | None = None
     for limit, slip in STARTS:
         sliding = {
-            "slip_deg": slip * twist, "scatter": 1.0, "slack": 0.0,
+            "slip_deg": slip * twist, "scatter": 1.0, "skew": 0.0, "slack": 0.0,
             "growth": 0.7, "reference_nm": 0.3 * top,
         }  # fmt: skip
         terms, values = [], []
