@@ -35,35 +35,51 @@ class Loops:
         Clock [s], output torque [N m] and output angle [deg].
     run : array of int
         Number of the ramp.
+    beyond : array of bool, optional
+        Readings that do not count, because the motor stood at its current limit; the drive
+        remembers them all the same. None where all count.
     """
 
     time_s: Array
     torque_nm: Array
     angle_deg: Array
     run: NDArray[np.int64]
+    beyond: NDArray[np.bool_] | None = None
+
+    @property
+    def counts(self) -> NDArray[np.bool_]:
+        """Readings that count."""
+        return np.ones(self.run.size, dtype=bool) if self.beyond is None else ~self.beyond
 
     def frame(self) -> pl.DataFrame:
-        """Return the loops in the canonical columns."""
+        """Return the loops in the canonical columns, and whether a reading is beyond."""
         return pl.DataFrame(
             {
                 "time_s": self.time_s.round(4),
                 "torque_nm": self.torque_nm.round(5),
                 "angle_deg": self.angle_deg.round(6),
                 "run": self.run,
+                "beyond": (~self.counts).astype(np.int8),
             }
         )
 
     def only(self, *runs: int) -> Loops:
         """Return some of the ramps."""
         keep = np.isin(self.run, runs)
-        return Loops(self.time_s[keep], self.torque_nm[keep], self.angle_deg[keep], self.run[keep])
+        return Loops(
+            self.time_s[keep],
+            self.torque_nm[keep],
+            self.angle_deg[keep],
+            self.run[keep],
+            ~self.counts[keep],
+        )
 
 
 def read_loops(path: Path, *, large: bool = True) -> Loops:
     """Read the large torque ramps of one measured file, or its small ones.
 
-    Rows that share a clock tick are averaged in file order, commands beyond the current limit
-    are left out, and revolutions become degrees.
+    Rows that share a clock tick are averaged in file order, readings at commands beyond the
+    current limit are marked, and revolutions become degrees.
     """
     table = pl.read_csv(path)
     table = table.rename({name: name.strip().lstrip("\ufeff") for name in table.columns})
@@ -71,13 +87,13 @@ def read_loops(path: Path, *, large: bool = True) -> Loops:
         table.filter((pl.col("test_nr") >= CONDITIONING) == large)
         .group_by("test_nr", "TIME", maintain_order=True)
         .mean()
-        .filter(pl.col("CONTROL_TORQUE").abs() <= LARGEST_COMMAND_NM)
     )
     return Loops(
         ticks["TIME"].to_numpy(),
         ticks["TORQUE"].to_numpy(),
         ticks["POSITION"].to_numpy() * 360.0,
         ticks["test_nr"].cast(pl.Int64).to_numpy(),
+        ticks["CONTROL_TORQUE"].abs().to_numpy() > LARGEST_COMMAND_NM,
     )
 
 
@@ -104,7 +120,7 @@ def repeated_null(
     flank : float
         Sign of the torque to keep; zero for both.
     """
-    one, two = (np.flatnonzero(loops.run == number) for number in pair)
+    one, two = (np.flatnonzero((loops.run == number) & loops.counts) for number in pair)
     count = min(one.size, two.size)
     one, two = one[:count], two[:count]
     torque = loops.torque_nm[one]
@@ -224,7 +240,7 @@ def injected(loops: Loops, name: str, size_deg: float, rng: np.random.Generator)
 
 def with_angle(loops: Loops, angle_deg: Array) -> Loops:
     """Return the same loops with another angle."""
-    return Loops(loops.time_s, loops.torque_nm, angle_deg, loops.run)
+    return Loops(loops.time_s, loops.torque_nm, angle_deg, loops.run, loops.beyond)
 
 
 def one_after_the_other(first: Loops, second: Loops, shift: int = 100) -> Loops:
@@ -236,6 +252,7 @@ def one_after_the_other(first: Loops, second: Loops, shift: int = 100) -> Loops:
         np.concatenate([first.torque_nm, second.torque_nm]),
         np.concatenate([first.angle_deg - middle[0], second.angle_deg - middle[1]]),
         np.concatenate([first.run, second.run + shift]),
+        ~np.concatenate([first.counts, second.counts]),
     )
 
 
@@ -270,4 +287,6 @@ def write_loops(
     (folder / "program.toml").write_text("\n".join(said) + "\n")
     if holdout:
         lines.append(f"holdout_runs = {list(holdout)}")
+    if not loops.counts.all():
+        lines += ["[score]", "abs_max = { beyond = 0.5 }"]
     (folder / "recording.toml").write_text("\n".join(lines) + "\n")

@@ -370,7 +370,8 @@ def doubts(said: dict[str, Any]) -> bool:
 
 def _rms(error: Array, loops: Loops, ramp: int, *, free_datum: bool) -> float:
     """Error on the loaded readings of a ramp, with the datum free or not [deg]."""
-    here = (loops.run == ramp) & (np.abs(loops.torque_nm) >= LOADED_NM) & np.isfinite(error)
+    here = (loops.run == ramp) & loops.counts & np.isfinite(error)
+    here &= np.abs(loops.torque_nm) >= LOADED_NM
     if not here.any():
         return math.nan
     part = error[here] - (error[here].mean() if free_datum else 0.0)
