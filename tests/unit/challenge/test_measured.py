@@ -49,10 +49,10 @@ def file(tmp_path: Path) -> Path:
     return target
 
 
-def test_reads_ticks_of_large_ramps_below_the_current_limit(file: Path) -> None:
+def test_reads_ticks_of_large_ramps_and_marks_those_beyond_the_current_limit(file: Path) -> None:
     loops = read_loops(file)
     assert set(loops.run) == {100, 101, 102}
-    assert np.abs(loops.torque_nm).max() <= 24.0
+    assert np.abs(loops.torque_nm[loops.counts]).max() <= 24.0 < np.abs(loops.torque_nm).max()
     assert np.all(np.diff(loops.time_s) > 0.0)
     assert np.abs(loops.angle_deg).max() == pytest.approx(3.4, abs=0.05)
 
