@@ -147,7 +147,7 @@ def test_measured_ramp_is_predicted_after_fitting_another(stem, limit, shared_re
     assert block["told_after_deg"] <= limit
     # The free forecast has to find the crossings of the dead zone too.
     assert block["after_deg"] <= 1.005 * limit
-    assert block["after_deg"] == found.content["repaired"]["holdout_rmse_deg"]
+    assert block["after_deg"] == pytest.approx(found.content["repaired"]["holdout_rmse_deg"])
     names = {e["name"] for e in found.effects}
     assert "load_dependent_friction" in names
 
