@@ -81,12 +81,12 @@ class Size:
 
 FULL = Size()
 SUBSET = Size(
-    null=640,
-    opened=144,
-    concealed=92,
-    tuning=140,
+    null=480,
+    opened=108,
+    concealed=69,
+    tuning=105,
     costly_nulls=24,
     costly_open=3,
-    steps=8,
+    steps=6,
 )
 """A quarter of an hour on two cores."""
