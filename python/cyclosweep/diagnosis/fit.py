@@ -348,23 +348,20 @@ class _Model:
         angle, friction = solve_slip(history, shape, offset, (float(limit), float(load)), 0.0)
         return history.with_state(elastic_nm=history.applied_nm - friction, angle_deg=angle)
 
-    def _design(self, terms: tuple[Term, ...], history: History) -> Floats:
+    def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats]:
+        """Columns of the linear parameters, and the precision with which each is known before."""
         parts = [np.ones((len(history), 1)), history.elastic_nm[:, None]]
         if not self.problem.one_sided:
             parts.append(history.side[:, None])
-        parts += [term.columns(history) for term in terms if not term.slips]
-        return np.column_stack(parts)
-
-    def _hold(self, terms: tuple[Term, ...], history: History) -> Floats:
-        """Precision with which each linear parameter is known beforehand."""
-        parts = [np.zeros(2 if self.problem.one_sided else 3)]
+        hold = [np.zeros(len(parts))]
         for term in terms:
             if term.slips:
                 continue
+            columns = term.columns(history)
+            parts.append(columns)
             size = None if term.effect is None else term.effect.expected(history, term.shape)
-            width = term.columns(history).shape[1] if size is None else len(size)
-            parts.append(np.zeros(width) if size is None else 1.0 / size**2)
-        return np.concatenate(parts)
+            hold.append(np.zeros(columns.shape[1]) if size is None else 1.0 / size**2)
+        return np.column_stack(parts), np.concatenate(hold)
 
     def _evaluate(self, values: Floats, inner: int) -> tuple[Floats, History, Floats, Floats]:
         """Settle path and linear parameters at these shapes; return the working residual."""
@@ -374,12 +371,12 @@ class _Model:
         for _ in range(inner if self.slides else 1):
             if self.slides:
                 history = self._slide(terms, history, mean)
-            design = self._design(terms, history)
+            design, hold = self._design(terms, history)
             inside = design[self.use]
             # The working data are fixed during one refinement: target = residual at self.mean.
             white = self.noise.design(inside, self.weight)
             shifted = self.target + self.noise.design(here, self.weight)
-            beta = _solve(white, shifted, self._hold(terms, history))
+            beta = _solve(white, shifted, hold)
             mean = design @ beta
             history = self._calibrated(history, beta, mean)
         self._last = (terms, design, white, beta)

@@ -167,12 +167,16 @@ def start(problem: Problem) -> Model:
 
 def run(problem: Problem, model: Model, rounds: int = ROUNDS) -> History:
     """Path of the shaft by a model along all rows of a problem."""
-    return settle(model, _initial(problem.history, model), rounds)
+    return settle(model, at_start(problem.history, model), rounds)
 
 
-def _initial(history: History, model: Model) -> History:
+def at_start(history: History, model: Model, side: Floats | None = None) -> History:
+    """Load history with the torque's zero taken out, in the state of the model's line alone.
+
+    ``side`` is the flank in contact, where a recording tells it.
+    """
     applied = history.applied_nm - model.torque_zero_nm
-    side = np.where(applied >= 0, 1.0, -1.0)
+    side = np.where(applied >= 0, 1.0, -1.0) if side is None else side
     return history.with_state(
         applied_nm=applied,
         elastic_nm=applied,

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 import cyclosweep._core as _core
+from cyclosweep.effects.creep import FEWEST_STEPS
 from cyclosweep.effects.history import Flags, Floats, History
 
 
@@ -201,7 +202,7 @@ def _curves(history: History) -> Iterator[FreeForm]:
     if history.time_s is not None and history.usual_step_s > 0:
         yield FreeForm("loop by rate", "where the rate is high", _rates)
         longest = float(np.bincount(history.run, _lapse(history)).max())
-        delays = np.geomspace(3.0 * history.usual_step_s, max(longest, 1e-9), 5)[:4]
+        delays = np.geomspace(FEWEST_STEPS * history.usual_step_s, max(longest, 1e-9), 5)[:4]
         yield FreeForm(
             "relaxation", "at holds and after reversals", partial(_relaxing, delays=delays)
         )

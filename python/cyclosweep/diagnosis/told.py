@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from cyclosweep.diagnosis.fit import Fit, slots_of
-from cyclosweep.diagnosis.forecast import Forecast
+from cyclosweep.diagnosis.forecast import Forecast, at_start
 from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
 from cyclosweep.effects.history import Floats, History
@@ -66,19 +66,8 @@ class ForecastFit(Fit):
 
 def told_path(problem: Problem, model: Model) -> History:
     """Path by a model on all rows when the flank is told by the recording."""
-    history = problem.history
-    applied = history.applied_nm - model.torque_zero_nm
-    told = history.with_state(
-        applied_nm=applied,
-        elastic_nm=applied,
-        angle_deg=model.datum_deg
-        + history.side * model.free_play_deg
-        + model.compliance_deg_per_nm * applied,
-        compliance_deg_per_nm=model.compliance_deg_per_nm,
-        free_play_deg=model.free_play_deg,
-        datum_deg=model.datum_deg,
-    )
-    return settle(model, told, told_side=history.side)
+    side = problem.history.side
+    return settle(model, at_start(problem.history, model, side), told_side=side)
 
 
 def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:

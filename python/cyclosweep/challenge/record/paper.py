@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import shutil
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from cyclosweep.challenge.board.svg import PALETTE, Series, chart
 from cyclosweep.challenge.noise import NOISES
+from cyclosweep.challenge.record.markdown import table
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.scoring.intervals import share
 from cyclosweep.challenge.specimen import VOCABULARY
@@ -67,13 +68,6 @@ def write_paper(record: Path, docs: Path) -> Path:
     content = score | {"record": about, "tables": tables, "measured": measured}
     (docs / "proof.json").write_text(json.dumps(content, indent=1) + "\n")
     return page
-
-
-def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Markdown table."""
-    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
-    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
-    return "\n".join(lines)
 
 
 def text(e: Plain | None, digits: int = 3) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from cyclosweep.challenge.record.markdown import table
 from cyclosweep.challenge.scoring.intervals import share
 
 Plain = Mapping[str, Any]
@@ -44,12 +45,6 @@ def real_drive(rows: Sequence[Plain]) -> str:
     )
 
 
-def _table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
-    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
-    return "\n".join(lines)
-
-
 def _number(value: object) -> str:
     return f"{value:.3g}" if isinstance(value, (int, float)) else "–"
 
@@ -65,7 +60,7 @@ def _unseen(rows: Sequence[Plain]) -> str:
         "of the same file, or of the file taken at another locking position with the datum free. "
         "Before: the published model, calibrated alone. Floor: ramp 101 itself as the prediction "
         "of that ramp.\n\n"
-        + _table(
+        + table(
             ("file", "predicted", "before [deg]", "after [deg]", "floor [deg]", "named"),
             (
                 (
@@ -92,7 +87,7 @@ def _nulls(rows: Sequence[Plain]) -> str:
         f"missing but noise as it really is. {alarms} false alarms in {len(rows)} recordings "
         f"(upper bound {100 * bound:.0f} % if they were independent; those of one file share "
         "their noise and are not).\n\n"
-        + _table(
+        + table(
             ("file", "nulls", "false alarms", "what was said"),
             (
                 (
@@ -118,7 +113,7 @@ def _terms(single: Sequence[Plain], none: Sequence[Plain], both: Sequence[Plain]
         "that the recording lacks that term alone and keeps everything the model does not "
         f"explain. {back} of {len(single)} terms were named again. With no term left in, whatever "
         "is still named is named on what the model does not explain.\n\n"
-        + _table(
+        + table(
             ("file", "missing", "said", "named", "restored"),
             (
                 (
@@ -132,7 +127,7 @@ def _terms(single: Sequence[Plain], none: Sequence[Plain], both: Sequence[Plain]
             ),
         )
         + "\n\nBoth ramps as measured:\n\n"
-        + _table(
+        + table(
             ("file", "said", "named", "left over [deg]"),
             ((r["file"], r["verdict"], _names(r), _number(r["rmse_deg"])) for r in both),
         )
@@ -143,7 +138,7 @@ def _library(rows: Sequence[Plain]) -> str:
     return (
         "### A term taken out of the library\n\n"
         "The ramps as measured, diagnosed without one of the effects it had accepted.\n\n"
-        + _table(
+        + table(
             (
                 "file",
                 "may not be used",
@@ -194,7 +189,7 @@ def _injected(rows: Sequence[Plain]) -> str:
         "The size is the rms after re-calibration. Named counts the files whose ramps as measured "
         "do not show the effect already; taken up is the part of the injected signature by which "
         "the repaired model's prediction changed.\n\n"
-        + _table(("effect", "size [deg]", "named", "taken up, median", "taken up, each file"), body)
+        + table(("effect", "size [deg]", "named", "taken up, median", "taken up, each file"), body)
     )
 
 
@@ -205,7 +200,7 @@ def _confounded(rows: Sequence[Plain]) -> str:
         "locking position, as one recording: temperature, run-in, reaming and position differ "
         "together and none was recorded. Right is AMBIGUOUS or UNKNOWN_PHYSICS without a "
         "name that these files cannot show.\n\n"
-        + _table(
+        + table(
             ("recording", "said", "named", "right"),
             (
                 (
