@@ -40,8 +40,8 @@ def test_alarm_keeps_its_level_on_white_noise():
             Recording.from_arrays(torque, angle, run=run), Drive.reference_87(), full=False
         )
         alarms += found.verdict not in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
-    # Sixty recordings at the internal level: three or more have a chance of 0.3 %.
-    assert LEVEL <= 0.005
+    # Sixty recordings at the nominal level: three or more have a chance of 2 %.
+    assert LEVEL <= 0.01
     assert alarms <= 2
 
 

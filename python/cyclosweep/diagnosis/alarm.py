@@ -15,13 +15,13 @@ from cyclosweep.diagnosis.scan import Scan
 from cyclosweep.effects.history import Floats
 
 DRAWS = 1000
-LEVEL = 0.005
-"""Internal level of the global test; half of the nominal one, for what a bootstrap cannot know."""
+LEVEL = 0.01
+"""Nominal level of the global test."""
 OWN = 0.02
 """Null probability at which the excess of a hypothesis begins."""
 WITHOUT_NAME = 1.5
 """What a shape without a name pays: the logarithm by which its share of the level is smaller."""
-FLOOR = 3.0
+FLOOR = 2.5
 """Smallest threshold of the excess."""
 
 

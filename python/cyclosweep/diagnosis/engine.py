@@ -22,7 +22,13 @@ from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.rich import rich_basis
 from cyclosweep.diagnosis.search import Node, Search
 from cyclosweep.diagnosis.self_check import self_check
-from cyclosweep.diagnosis.testability import Testability, hidden_effects, size_of, testability
+from cyclosweep.diagnosis.testability import (
+    Testability,
+    hidden_effects,
+    size_of,
+    spread_of_size,
+    testability,
+)
 from cyclosweep.diagnosis.told import ForecastFit
 from cyclosweep.diagnosis.verdict import Decision, decide, decide_structured
 from cyclosweep.diagnosis.words import statement
@@ -190,8 +196,8 @@ def _conclude(
     if decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
         regions = find_regions(search, accepted) or regions
     held = judge(problem, noise, accepted.fit) if full else HeldOutResult((), 0.0, 0.0, 1.0, "")
-    unsteady = noise.structured and _unsteady(problem, accepted.fit, held)
-    if unsteady:
+    drift = _drift(problem, accepted.fit, held) if noise.structured else None
+    if drift is not None:
         decision = Decision("UNKNOWN_PHYSICS", decision.best, decision.explanations, True)
     effects = [_effect(search, accepted, k, held) for k in range(len(accepted.fit.terms))]
     sufficiency = probability(search.null(node), node.left)
@@ -253,8 +259,8 @@ def _conclude(
         }
     if decision.unexplained and decision.best is not None:
         content["unknown"] = _unknown(search, decision, accepted, regions)
-        if unsteady:
-            size = {"shape": "drift", "place": "from run to run", "size_deg": held.after_deg}
+        if drift is not None:
+            size = {"shape": "drift", "place": "from run to run", "size_deg": drift.other_deg}
             content["unknown"] |= size
         elif repeats is not None:
             content["unknown"] |= _staircase(accepted, repeats)
@@ -264,11 +270,11 @@ def _conclude(
         content["self_check"] = self_check(search, decision.best, rivals)
         say("choosing the next experiment")
         content["next_experiment"] = _experiment(search, decision, bounds, tolerance)
-    content["stationary"] = not unsteady
-    content["statement"] = _statement(search, decision, content, regions, bounds, tolerance)
+    content["stationary"] = drift is None
+    content["statement"] = _statement(search, decision, content, regions, bounds, tolerance, drift)
     content["statement"] += words.forecast(content["repaired"]["blocks"])
     repeated = None if repeats is None else repeats.correlation
-    content["findings"] = findings(problem, accepted.fit, repeated, unsteady=unsteady)
+    content["findings"] = findings(problem, accepted.fit, repeated, unsteady=drift is not None)
     if noise.structured:
         content["not_testable"] += limits_of(problem, drive)
         if accepted.fit is not base and _has_zero(accepted.fit):
@@ -303,11 +309,13 @@ def _conclude(
     )
 
 
-def _unsteady(problem: Problem, fitted: Fit, held: HeldOutResult) -> bool:
-    """Whether a model of some runs fails on others by far more than it fails on its own."""
+def _drift(problem: Problem, fitted: Fit, held: HeldOutResult) -> structured.Steadiness | None:
+    """How far a model of some runs fails on others, where that is far more than on its own."""
     span = float(np.ptp(problem.angle_deg))
-    own = _error_of(fitted) or fitted.rmse_deg
-    return held.after_deg > 1.8 * own and held.after_deg > 0.05 * span
+    found = [structured.Steadiness(_error_of(fitted) or fitted.rmse_deg, held.after_deg)]
+    if isinstance(fitted, ForecastFit):
+        found += structured.steadiness(fitted.forecast)
+    return next((each for each in found if each.is_drift(span)), None)
 
 
 def _rated(drive: Drive, recording: Recording) -> float:
@@ -335,7 +343,11 @@ def _effect(search: Search, node: Node, index: int, held: HeldOutResult) -> dict
     shape = size_of(node, index)
     size = float(np.max(np.abs(shape), initial=0.0))
     strength = _strength(search, node, index)
-    spread = size / max(strength, 1e-9)
+    if term.slips or isinstance(fitted, ForecastFit):
+        # Friction moves the path it is solved on: its size is what it is seen by.
+        spread = size / max(strength, 1e-9)
+    else:
+        spread = spread_of_size(node, index)
     parent = search.nodes.get(node.names - {term.name})
     if parent is None and len(node.fit.terms) == 1:
         parent = search.root
@@ -553,7 +565,7 @@ def _experiment(
     search: Search, decision: Decision, bounds: list[Testability], tolerance: float
 ) -> dict[str, object]:
     rivals = [node for node, _ in decision.explanations]
-    if decision.verdict != "AMBIGUOUS":
+    if decision.verdict not in ("AMBIGUOUS", "IDENTIFIED"):
         rivals = []
     weakest = None
     if decision.verdict == "INSUFFICIENT_DATA" and bounds:
@@ -570,16 +582,17 @@ def _statement(
     regions: list[Region],
     bounds: list[Testability],
     tolerance: float,
+    drift: structured.Steadiness | None,
 ) -> str:
     unknown = content.get("unknown")
     remains = ""
     if unknown:
         remains = f"a {unknown['shape']} of {unknown['size_deg']:.2g} deg, {unknown['place']}"
     repaired = content["repaired"]
-    if not content["stationary"]:
+    if drift is not None:
         remains = "a drift from run to run"
     numbers = {
-        "stationary": content["stationary"],
+        "drift": None if drift is None else (drift.own_deg, drift.other_deg),
         "sigma": search.noise.spread_deg,
         "tolerance": tolerance,
         "largest_bound": max((b.upper95_deg for b in bounds), default=0.0),

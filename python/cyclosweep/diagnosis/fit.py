@@ -144,6 +144,36 @@ class Fit:
         part = self.column_range(index)
         return term.columns(self.history) @ self.beta[part]
 
+    def parameters_of(self, index: int) -> list[int]:
+        """Places, within the covariance, of the parameters that a term's twist depends on."""
+        term = self.terms[index]
+        chosen = [] if term.slips else list(range(len(self.beta)))[self.column_range(index)]
+        for k, slot in enumerate(self.slots):
+            if slot.term == index or self._shared(slot, term):
+                chosen.append(len(self.beta) + k)
+        return chosen
+
+    def moved(self, place: int, step: float) -> "Fit":
+        """Same fit with one parameter moved, and nothing else settled on it."""
+        if place < len(self.beta):
+            beta = self.beta.copy()
+            beta[place] += step
+            return replace(self, beta=beta)
+        slot = self.slots[place - len(self.beta)]
+        terms = list(self.terms)
+        for k, term in enumerate(terms):
+            if slot.name == "amplitude" and k == slot.term:
+                value = slot.inward(term.amplitude) + step
+                terms[k] = replace(term, amplitude=slot.outward(value))
+            elif slot.name in term.shape and (k == slot.term or self._shared(slot, term)):
+                value = slot.inward(float(term.shape[slot.name])) + step
+                terms[k] = replace(term, shape={**term.shape, slot.name: slot.outward(value)})
+        return replace(self, terms=tuple(terms))
+
+    def _shared(self, slot: "Slot", term: Term) -> bool:
+        """Whether a parameter of another term is this term's too: friction slips as one."""
+        return slot.name != "amplitude" and term.slips and self.terms[slot.term].slips
+
     @property
     def rmse_deg(self) -> float:
         """Root mean square of the angle residual on the fitted rows [deg]."""

@@ -25,6 +25,22 @@ def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
     return np.where((chi2 > rank) & (rank > 0), value, 0.0)
 
 
+def price_of_vector(size: Floats, covariance: Floats) -> float:
+    """Log evidence that a vector of amplitudes costs, every direction as likely as any other.
+
+    The components are independent and normal beforehand, of the spread that suits them best. A
+    direction that must be met within a hair, as where one component shows a hundred times more
+    than the other, costs the odds against meeting it.
+    """
+    inner = np.linalg.inv(covariance)
+    prices = []
+    for spread2 in float(size @ size) * np.geomspace(1e-2, 1e1, 31):
+        held = covariance + spread2 * np.eye(len(size))
+        volume = np.linalg.slogdet(np.eye(len(size)) + spread2 * inner)[1]
+        prices.append(0.5 * (volume + size @ np.linalg.solve(held, size)))
+    return float(min(prices))
+
+
 def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
     """Twice the log-likelihood gained by taking chi2 away from an excess over pure noise.
 

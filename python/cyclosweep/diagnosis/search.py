@@ -13,7 +13,13 @@ from cyclosweep.diagnosis.freeform import CLASSES, FreeForm
 from cyclosweep.diagnosis.library import Block, Library
 from cyclosweep.diagnosis.noise import Noise, orthonormal
 from cyclosweep.diagnosis.problem import Problem
-from cyclosweep.diagnosis.scan import Scan, evidence, likelihood_gain, scan
+from cyclosweep.diagnosis.scan import (
+    Scan,
+    evidence,
+    likelihood_gain,
+    price_of_vector,
+    scan,
+)
 from cyclosweep.effects import Shape
 from cyclosweep.effects.history import Floats
 
@@ -211,10 +217,12 @@ class Search:
             joint = self._pruned(fit(self.problem, self.noise, (*node.fit.terms, term), node.fit))
             if joint is None:
                 continue
-            added = float(evidence(self._gain(node.fit, joint), rank)) - cost
+            added = self._added(node, joint, rank, cost)
             prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
             if term.effect is None:
                 prior -= CAUTION.get(term.name, WITHOUT_NAME)
+            else:
+                prior -= term.effect.caution(term.shape)
             if best is None or node.gain + added > best.gain:
                 best = self._node(joint, node.gain + added, prior)
         for _ in range(ENRICHED):
@@ -227,6 +235,40 @@ class Search:
             if known is None or best.score > known.score:
                 self.nodes[best.names] = best
         return best
+
+    def _added(self, node: Node, joint: Fit, rank: float, cost: float) -> float:
+        """Log evidence that the last term of a joint fit adds to a structure."""
+        gain = self._gain(node.fit, joint)
+        effect = joint.terms[-1].effect
+        if effect is not None and effect.vector:
+            part = joint.column_range(len(joint.terms) - 1)
+            size, spread = joint.beta[part], joint.covariance[part, part]
+            return 0.5 * gain - price_of_vector(size, spread)
+        return float(evidence(gain, rank)) - max(cost, self._price_of_shape(joint, node.rest))
+
+    def _price_of_shape(self, joint: Fit, rest: Scan) -> float:
+        """Log of how many shapes the recording tells apart among those of the last term's library.
+
+        Laplace's approximation: the range of each refined shape parameter over its error.
+        """
+        last = len(joint.terms) - 1
+        places, ranges = [], []
+        for k, slot in enumerate(joint.slots):
+            if slot.term != last or slot.name == "amplitude":
+                continue
+            each = [
+                slot.inward(rest.library.blocks[m].shape[slot.name])
+                for m in rest.groups.get(joint.terms[last].name, ())
+                if slot.name in rest.library.blocks[m].shape
+            ]
+            if len(each) and max(each) > min(each):
+                places.append(len(joint.beta) + k)
+                ranges.append(max(each) - min(each))
+        if not places:
+            return 0.0
+        covariance = joint.covariance[np.ix_(places, places)] / np.outer(ranges, ranges)
+        spread = np.linalg.eigvalsh(covariance)
+        return float(0.5 * np.sum(np.log1p(1.0 / (2.0 * np.pi * np.maximum(spread, 1e-12)))))
 
     def _excess(self, fitted: Fit) -> float:
         return max(fitted.chi2 - self.noise.freedom, 0.0)
@@ -258,7 +300,7 @@ class Search:
         members = rest.groups[hypothesis]
         each = evidence(rest.observed[members], rest.ranks[members])
         average = rest.by_hypothesis[hypothesis]
-        order = members[np.argsort(-each)]
+        order = members[np.argsort(_cautions(rest, members) - each)]
         price = float(np.clip(each.max() - average, 0.0, 1.5))
         first = rest.library.blocks[order[0]]
         slips = first.effect is not None and first.effect.slips
@@ -381,6 +423,12 @@ class Search:
             if not any(e.names < n.names and n.score < e.score + self._slack(e) for e in enough)
         ]
         return sorted(kept, key=lambda n: -n.score)
+
+
+def _cautions(rest: Scan, members: np.ndarray) -> Floats:
+    """Log prior odds against the shapes of some blocks."""
+    blocks = [rest.library.blocks[index] for index in members]
+    return np.array([0.0 if b.effect is None else b.effect.caution(b.shape) for b in blocks])
 
 
 def _differs(block: Block, other: Block) -> bool:

@@ -38,6 +38,14 @@ TRIED = 2
 """Effects that are fitted on a rung, those whose shape is most alike to what is left."""
 PRICE = 2.0
 """What a parameter must gain: twice the log likelihood of independent pieces."""
+FAR = 1.8
+"""Error on another run over that on its own beyond which the two are not the same drive."""
+FAR_OF_SPAN = 0.05
+"""The same as a share of the whole range of the angle."""
+FEWEST = 40
+"""Rows of a run from which it can be compared with another."""
+MOST_RUNS = 6
+"""Runs that are fitted alone to see whether they differ."""
 REPEATS = 0.5
 """Correlation between runs above which a residual is a property of the drive."""
 
@@ -223,6 +231,41 @@ def _alike(search: Search, best: Forecast) -> list[tuple[str, dict[str, float]]]
     return [(name, gains[name][1]) for name in order]
 
 
+@dataclass(frozen=True)
+class Steadiness:
+    """How a model of one run fares on itself and on the run it fits worst.
+
+    Attributes
+    ----------
+    own_deg, other_deg : float
+        Errors of the pair of runs that differ most [deg].
+    """
+
+    own_deg: float
+    other_deg: float
+
+    def is_drift(self, span_deg: float) -> bool:
+        """Whether the model fails on the other run by far more than on its own."""
+        return self.other_deg > FAR * self.own_deg and self.other_deg > FAR_OF_SPAN * span_deg
+
+
+def steadiness(known: Forecast) -> list[Steadiness]:
+    """Fit every run alone and see how far each model errs on itself and on the others."""
+    problem = known.problem
+    parts = [
+        rows
+        for r in np.unique(problem.history.run[problem.whole_fitted])
+        if np.count_nonzero(rows := problem.whole_fitted & (problem.history.run == r)) > FEWEST
+    ]
+    found = []
+    for rows in parts[:MOST_RUNS] if len(parts) > 1 else ():
+        alone = refit(known, rows=rows, most=4)
+        own = rms(problem, alone.angle_deg, rows)
+        errors = [rms(problem, alone.angle_deg, other) for other in parts if other is not rows]
+        found.append(Steadiness(own, max(errors)))
+    return found
+
+
 def repetition(problem: Problem, fitted: Fit) -> Repetition:
     """Compare the residuals of runs over the same torque, flank and direction."""
     history = fitted.history
@@ -231,7 +274,9 @@ def repetition(problem: Problem, fitted: Fit) -> Repetition:
     band = np.floor(np.abs(history.applied_nm) / history.largest_torque_nm * 19.99)
     cell = band * 4 + (history.side > 0) * 2 + (history.sense > 0)
     runs = [
-        r for r in np.unique(history.run[rows]) if np.count_nonzero(rows & (history.run == r)) > 40
+        r
+        for r in np.unique(history.run[rows])
+        if np.count_nonzero(rows & (history.run == r)) > FEWEST
     ]
     best = Repetition(0.0, 0)
     found: list[Repetition] = []

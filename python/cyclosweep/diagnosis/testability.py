@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cyclosweep.diagnosis.fit import Fit
 from cyclosweep.diagnosis.noise import orthonormal
 from cyclosweep.diagnosis.search import Node, Search
 from cyclosweep.effects.history import Floats
@@ -110,6 +111,29 @@ def size_of(node: Node, index: int) -> Floats:
     basis = orthonormal(design, 1e-9)
     part = fitted.contribution(index)[use]
     return np.asarray(part - basis @ (basis.T @ part))
+
+
+def spread_of_size(node: Node, index: int) -> float:
+    """Standard error of the largest twist of a term: of its amplitudes and its shape [deg]."""
+    fitted = node.fit
+    use = fitted.problem.fitted
+    basis = orthonormal(_raw_base(node), 1e-9)
+
+    def twist(changed: Fit) -> Floats:
+        part = changed.contribution(index)[use]
+        return np.asarray(part - basis @ (basis.T @ part))
+
+    here = twist(fitted)
+    place = int(np.argmax(np.abs(here)))
+    spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    chosen = fitted.parameters_of(index)
+    slope = np.zeros(len(chosen))
+    for j, k in enumerate(chosen):
+        step = 0.1 * spread[k]
+        if step > 0 and np.isfinite(step):
+            slope[j] = (twist(fitted.moved(k, step))[place] - here[place]) / step
+    variance = float(slope @ fitted.covariance[np.ix_(chosen, chosen)] @ slope)
+    return float(np.sqrt(max(variance, 0.0)))
 
 
 def _raw_base(node: Node) -> Floats:

@@ -17,8 +17,9 @@ Verdict = Literal[
     "DATA_FAULT",
 ]
 
-SURE = 0.75
-"""Posterior probability from which the best explanation is named as the one."""
+SURE = 0.5
+"""Posterior probability from which the best explanation is named as the one: more probable than
+all others together. What else is possible stands beside it."""
 COVERAGE = 0.95
 """Probability that the explanation set holds together."""
 

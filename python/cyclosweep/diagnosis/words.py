@@ -85,30 +85,32 @@ def statement(
         for e in effects
     )
     repaired = (
-        f" With it the error falls from {degrees(numbers['before'])} to "
-        f"{degrees(numbers['after'])}, on data not used from {degrees(numbers['held_before'])} to "
-        f"{degrees(numbers['held_after'])}."
+        f" With it the error falls from {degrees(numbers['before'])} to {degrees(numbers['after'])}"
     )
+    if numbers["held_before"] > 0.0:
+        repaired += (
+            f", on data not used from {degrees(numbers['held_before'])} to "
+            f"{degrees(numbers['held_after'])}"
+        )
+    repaired += "."
     if verdict == "IDENTIFIED":
         return (
-            f"Missing physics: {listed([e['name'] for e in effects])}. Size after "
+            f"Missing physics: {listed([e['name'] for e in effects])}{_others(explanation_set)}. "
+            "Size after "
             f"re-calibration: {sizes}. It shows most at {where}.{repaired} {calibration}"
         )
     if verdict == "AMBIGUOUS":
-        options = " or ".join(
-            f"{' + '.join(readable(n) for n in e['effects'] + e['without_name'])} "
-            f"({100 * e['probability']:.0f} %)"
-            for e in explanation_set
-        )
+        options = " or ".join(_option(e) for e in explanation_set)
         return (
             f"Something is missing, and this recording cannot say which: {options}. It shows most "
             f"at {where}.{repaired} {calibration}"
         )
     remains = numbers["remains"]
-    if not numbers["stationary"]:
+    if numbers["drift"] is not None:
+        own, other = numbers["drift"]
         calibration = (
-            "The recording is not stationary: a model of the fitted runs misses the others by "
-            f"{degrees(numbers['held_after'])} against {degrees(numbers['after'])} on its own. "
+            "The recording is not stationary: a model of some runs misses others by "
+            f"{degrees(other)} against {degrees(own)} on its own. "
             "It is unfit for a stiffness; warm-up, wear or creep have to settle first."
         )
     known = ""
@@ -117,6 +119,23 @@ def statement(
     return (
         f"Unknown physics:{known} something without a name in the vocabulary remains"
         f"{': ' + remains if remains else ''}. It shows most at {where}. {calibration}"
+    )
+
+
+def _option(explanation: dict[str, Any]) -> str:
+    """One explanation with its probability."""
+    names = explanation["effects"] + explanation["without_name"]
+    return f"{' + '.join(map(readable, names))} ({100 * explanation['probability']:.0f} %)"
+
+
+def _others(explanation_set: Sequence[dict[str, Any]]) -> str:
+    """What else it may be, beside the explanation that is named."""
+    if len(explanation_set) < 2:
+        return ""
+    first, *rest = explanation_set
+    return (
+        f", with a probability of {100 * first['probability']:.0f} %; not ruled out: "
+        + " or ".join(_option(e) for e in rest)
     )
 
 

@@ -45,6 +45,8 @@ class Effect:
         The effect is a friction torque on slip elements, solved in the angle.
     elastic : bool
         The twist is a function of the elastic torque alone: part of the drive's elastic law.
+    vector : bool
+        The amplitudes are the components of one vector of unknown direction.
     """
 
     name: ClassVar[str]
@@ -56,6 +58,7 @@ class Effect:
     shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
     slips: ClassVar[bool] = False
     elastic: ClassVar[bool] = False
+    vector: ClassVar[bool] = False
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Grid of shapes over which the effect is looked for in this recording."""
@@ -77,6 +80,10 @@ class Effect:
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Shapes alike at first sight, between which only a joint fit decides."""
         return [shape]
+
+    def caution(self, shape: Shape) -> float:
+        """Log prior odds against a shape so free that it holds other effects whole [nat]."""
+        return 0.0
 
     def expected(self, history: History, shape: Shape) -> Floats | None:
         """Size that amplitudes are expected to have, which holds those that nothing else holds.

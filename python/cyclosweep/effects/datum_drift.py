@@ -115,6 +115,10 @@ class DatumDrift(Effect):
             [np.repeat(_shifts(history, push, memory), length) for push, memory in _pushes(shape)]
         )
 
+    def caution(self, shape: Shape) -> float:
+        """Free offsets hold whatever differs from run to run."""
+        return 6.0 if "free" in shape else 0.0
+
     def telling(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
         """Free offsets are memory only if what the runs before did explains them."""
         if "free" not in shape:
