@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.scan import evidence, likelihood_gain
+from cyclosweep.diagnosis.scan import evidence, likelihood_gain, price_of_vector
 from cyclosweep.diagnosis.verdict import unit_slip
 
 
@@ -18,6 +18,25 @@ def test_gains_add_up_over_nested_models():
     first = likelihood_gain(np.array(30.0), 60.0, 100.0)
     second = likelihood_gain(np.array(20.0), 30.0, 100.0)
     assert whole == pytest.approx(first + second)
+
+
+def test_vector_of_equal_parts_costs_what_two_amplitudes_cost():
+    size = np.array([3.0, 4.0])
+    gain = float(size @ size) / 0.2**2
+    found = 0.5 * gain - price_of_vector(size, 0.2**2 * np.eye(2))
+    assert found == pytest.approx(evidence(gain, 2), abs=0.05)
+
+
+def test_vector_in_a_direction_that_is_seldom_met_costs_more():
+    # The second component is seen a hundred times worse, as the sine of a small angle is.
+    spread = np.diag([0.01, 1.0]) ** 2
+    usual = np.array([0.2, 0.0])
+    seldom = np.array([0.0, 20.0])
+    gain = usual @ np.linalg.solve(spread, usual)
+    assert gain == pytest.approx(seldom @ np.linalg.solve(spread, seldom))
+    assert price_of_vector(seldom, spread) > price_of_vector(usual, spread) + 3.0
+    # Where the second one cannot show at all it is free.
+    assert price_of_vector(usual, spread) == pytest.approx(0.5 * (1 + np.log(gain)), abs=0.1)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Forecasts of loops whose residual is error of the model: crossings, elastic law, findings."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -27,7 +29,7 @@ def truth(zero_nm=0.6, coulomb_nm=2.0):
     )
 
 
-def ramps(top=24.0, runs=3, per_run=500):
+def ramps(top=24.0, runs=3, per_run=500, kept=True):
     one = top * np.concatenate(
         [np.linspace(0, 1, per_run // 4), np.linspace(1, -1, per_run // 2),
          np.linspace(-1, 0, per_run // 4)]
@@ -36,7 +38,7 @@ def ramps(top=24.0, runs=3, per_run=500):
     run = np.repeat(np.arange(100, 100 + runs), len(one))
     return Recording.from_arrays(
         torque, time_s=np.arange(len(torque)) * 0.04, run=run, side="output", history="continuous",
-        conditioning_runs=(100,), holdout_runs=(99 + runs,),
+        conditioning_runs=(100,), holdout_runs=(99 + runs,) if kept else (),
     )  # fmt: skip
 
 
@@ -155,6 +157,18 @@ def test_distance_forgives_a_late_crossing():
     rows = problem.whole_held_out
     rms = float(np.sqrt(np.mean((late - recording.angle_deg)[rows] ** 2)))
     assert distance_to_curve(problem, late, rows) < 0.5 * rms
+
+
+@pytest.mark.parametrize("changes", [False, True])
+def test_drift_between_fitted_runs_is_seen(changes):
+    first = measured(truth(), runs=4, kept=False)
+    later = replace(truth(), compliance_deg_per_nm=0.16, free_play_deg=2.0, datum_deg=2.5)
+    second = measured(later if changes else truth(), runs=4, kept=False)
+    half = first.run >= 102
+    loops = first.with_angle(np.where(half, second.angle_deg, first.angle_deg))
+    found = cs.diagnose(loops, drive(), full=False)
+    assert found.content["stationary"] is not changes
+    assert ("unfit for a stiffness" in found.statement) is changes
 
 
 def test_floor_needs_a_replicate():

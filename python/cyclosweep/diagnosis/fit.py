@@ -469,7 +469,9 @@ class _Model:
             step = 1e-3 * max(abs(values[k]), _scale(self.slots[k], values[k]))
             ahead = values.copy()
             ahead[k] += step
-            slopes.append((residual - self.residual(ahead)) / step)
+            change = residual - self.residual(ahead)
+            # The linear parameters have followed; the derivative is at theirs held.
+            slopes.append((change - white @ (self._last[3] - beta)) / step)
         self.residual(values)
         sensitivity = np.column_stack([white, *slopes]) if slopes else white
         tangent = orthonormal(sensitivity, 1e-6)

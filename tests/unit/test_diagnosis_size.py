@@ -1,0 +1,96 @@
+"""Sizes of effects, their intervals, and what the statement says about the alternatives."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from tests.support.bench_rig import record
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.fit import Term, fit
+from cyclosweep.diagnosis.library import build_library
+from cyclosweep.diagnosis.noise import estimate_noise
+from cyclosweep.diagnosis.problem import prepare
+from cyclosweep.diagnosis.rich import rich_basis
+from cyclosweep.diagnosis.testability import size_of, spread_of_size
+from cyclosweep.diagnosis.words import statement
+from cyclosweep.effects import effects
+from cyclosweep.recording import Recording
+
+KNOWN = {effect.name: effect for effect in effects()}
+
+
+def fitted(name, shape, angle, torque, run):
+    recording = Recording.from_arrays(torque, angle, run=run)
+    drive = cs.Drive.reference_87()
+    problem = prepare(recording, drive.nominal_line("input"), int(drive.output_pin_count))
+    library = build_library(problem.history, problem.fitted, tuple(KNOWN.values()))
+    use = problem.fitted
+    rich = rich_basis(problem, library, None)
+    noise = estimate_noise(problem.angle_deg[use], rich, problem.gap[use], 0.0, problem.weight[use])
+    return SimpleNamespace(fit=fit(problem, noise, (Term(KNOWN[name], shape),)))
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "made"),
+    [
+        ("dial_eccentricity", {"order": 1.0}, lambda t, a: 1.2 * np.cos(np.radians(a) - 0.4)),
+        (
+            "overload_softening",
+            {"onset_nm": 15.0, "power": 2.0},
+            lambda t, a: 0.008 * np.sign(t) * np.maximum(np.abs(t) - 15.0, 0.0) ** 2,
+        ),
+    ],
+)
+def test_standard_error_of_a_size_is_its_spread(name, shape, made):
+    torque = np.tile(np.r_[np.linspace(1, 25, 80), np.linspace(25, 1, 80)], 4)
+    torque[320:] *= -1
+    run = np.repeat(np.arange(4), 160)
+    rng = np.random.default_rng(5)
+    plain = 30 * np.sign(torque) + 2.7 * torque
+    sizes, errors = [], []
+    for _ in range(40):
+        angle = plain + made(torque, plain) + 0.2 * rng.normal(size=len(torque))
+        node = fitted(name, shape, angle, torque, run)
+        sizes.append(np.max(np.abs(size_of(node, 0))))
+        errors.append(spread_of_size(node, 0))
+    # Forty draws tell a spread within a quarter, nineteen times in twenty.
+    assert np.median(errors) == pytest.approx(np.std(sizes), rel=0.35)
+
+
+def test_two_causes_are_not_put_down_to_free_offsets_of_the_runs():
+    found = cs.diagnose(
+        record(11, ("transmission_error", "thermal_drift"), d=20.0),
+        cs.Drive.reference_87(),
+        full=False,
+    )
+    assert {effect["name"] for effect in found.effects} == {"transmission_error", "thermal_drift"}
+
+
+def said(explanations, held=(0.0, 0.0)):
+    size = {"estimate": 0.5, "ci95": [0.4, 0.6]}
+    effects = [{"name": "creep", "size_deg": size}]
+    numbers = {"before": 0.3, "after": 0.2, "held_before": held[0], "held_after": held[1]}
+    parameters = {
+        "compliance_scale": {"estimate": 1.0},
+        "free_play_deg": {"estimate": 1.0, "nominal": 1.0},
+        "datum_deg": {"estimate": 0.0},
+    }
+    return statement("IDENTIFIED", effects, explanations, [], parameters, numbers)
+
+
+def test_what_is_not_ruled_out_stands_beside_the_name():
+    one = {"effects": ["creep"], "without_name": [], "probability": 1.0}
+    assert "Missing physics: creep. Size" in said([one])
+    two = [
+        {"effects": ["creep"], "without_name": [], "probability": 0.6},
+        {"effects": ["viscous_drag"], "without_name": [], "probability": 0.38},
+    ]
+    text = said(two)
+    assert "creep, with a probability of 60 %; not ruled out: viscous drag (38 %)" in text
+
+
+def test_error_on_data_not_used_is_said_only_where_it_was_computed():
+    one = [{"effects": ["creep"], "without_name": [], "probability": 1.0}]
+    assert "data not used" not in said(one)
+    assert "data not used from 0.3 deg" in said(one, (0.3, 0.2))
