@@ -16,6 +16,7 @@ from cyclosweep.diagnosis.testability import size_of, spread_of_size
 from cyclosweep.diagnosis.words import statement
 from cyclosweep.effects import effects
 from cyclosweep.recording import Recording
+from cyclosweep.report.wording import verdict_words
 
 KNOWN = {effect.name: effect for effect in effects()}
 
@@ -88,6 +89,13 @@ def test_what_is_not_ruled_out_stands_beside_the_name():
     ]
     text = said(two)
     assert "creep, with a probability of 60 %; not ruled out: viscous drag (38 %)" in text
+
+
+def test_a_verdict_with_rivals_is_headed_by_its_probability():
+    fits = [{"probability": 0.6}, {"probability": 0.38}]
+    alone = {"verdict": "IDENTIFIED", "explanation_set": fits[:1]}
+    assert verdict_words(alone)[1] == "Cause identified"
+    assert verdict_words(alone | {"explanation_set": fits})[1] == "Most probable cause (60 %)"
 
 
 def test_error_on_data_not_used_is_said_only_where_it_was_computed():

@@ -23,6 +23,9 @@ def verdict_words(result: Mapping[str, Any]) -> tuple[str, str, str]:
     words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
     if code == "UNKNOWN_PHYSICS" and result.get("effects"):
         words = "Known effects found, and something without a name"
+    fitting = result.get("explanation_set") or []
+    if code == "IDENTIFIED" and len(fitting) > 1:
+        words = f"Most probable cause ({100 * fitting[0]['probability']:.0f} %)"
     return code, words, tone
 
 
