@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.scan import evidence, likelihood_gain, price_of_vector
+from cyclosweep.diagnosis.scan import (
+    evidence,
+    likelihood_gain,
+    price_of_choice,
+    price_of_vector,
+)
 from cyclosweep.diagnosis.verdict import unit_slip
 
 
@@ -23,20 +28,38 @@ def test_gains_add_up_over_nested_models():
 def test_vector_of_equal_parts_costs_what_two_amplitudes_cost():
     size = np.array([3.0, 4.0])
     gain = float(size @ size) / 0.2**2
-    found = 0.5 * gain - price_of_vector(size, 0.2**2 * np.eye(2))
+    found = 0.5 * gain - price_of_vector(size, np.eye(2) / 0.2**2)
     assert found == pytest.approx(evidence(gain, 2), abs=0.05)
 
 
 def test_vector_in_a_direction_that_is_seldom_met_costs_more():
     # The second component is seen a hundred times worse, as the sine of a small angle is.
-    spread = np.diag([0.01, 1.0]) ** 2
-    usual = np.array([0.2, 0.0])
-    seldom = np.array([0.0, 20.0])
-    gain = usual @ np.linalg.solve(spread, usual)
-    assert gain == pytest.approx(seldom @ np.linalg.solve(spread, seldom))
-    assert price_of_vector(seldom, spread) > price_of_vector(usual, spread) + 3.0
-    # Where the second one cannot show at all it is free.
-    assert price_of_vector(usual, spread) == pytest.approx(0.5 * (1 + np.log(gain)), abs=0.1)
+    information = np.diag([1e4, 1.0])
+    usual, seldom = np.array([0.2, 0.0]), np.array([0.0, 20.0])
+    gain = usual @ information @ usual
+    assert gain == pytest.approx(seldom @ information @ seldom)
+    assert price_of_vector(seldom, information) > price_of_vector(usual, information) + 3.0
+
+
+@pytest.mark.parametrize("noise", [0.0, 15.0, 700.0])
+def test_component_that_does_not_show_costs_nothing(noise):
+    # Whatever noise put into it: the price is that of the other component alone.
+    information = np.diag([1e4, 1e-12])
+    price = price_of_vector(np.array([0.2, noise]), information)
+    assert price == pytest.approx(0.5 * (1 + np.log(400.0)), abs=0.02)
+    assert price_of_vector(np.array([0.2, noise]), np.zeros((2, 2))) == 0.0
+
+
+def test_choice_costs_the_range_over_the_error_and_nothing_where_it_is_not_told():
+    assert price_of_choice(np.array([[100.0**2]]), np.array([1.0])) == pytest.approx(
+        np.log(100.0 / np.sqrt(2 * np.pi)), abs=1e-3
+    )
+    assert price_of_choice(np.zeros((2, 2)), np.array([1.0, 5.0])) == 0.0
+    # Two parameters of which only the sum is told are one.
+    both = np.full((2, 2), 100.0**2)
+    assert price_of_choice(both, np.ones(2)) == pytest.approx(
+        price_of_choice(np.array([[2e4]]), np.ones(1)), abs=1e-3
+    )
 
 
 @pytest.mark.parametrize(

@@ -171,6 +171,19 @@ def test_drift_between_fitted_runs_is_seen(changes):
     assert ("unfit for a stiffness" in found.statement) is changes
 
 
+def test_loops_of_another_size_are_no_drift():
+    # Small loops hide in presliding: their model does not hold for large ones, on any drive.
+    large = ramps(runs=4, kept=False)
+    torque = np.where(large.run == 101, 4.0 / 24.0, 1.0) * large.torque_nm
+    loops = Recording.from_arrays(
+        torque, time_s=large.time_s, run=large.run, side="output", history="continuous",
+        conditioning_runs=(100,),
+    )  # fmt: skip
+    angle = cs.simulate(truth(), loops).angle_deg
+    angle = angle + 0.1 * np.sin(2 * np.pi * angle / 0.7)
+    assert cs.diagnose(loops.with_angle(angle), drive(), full=False).content["stationary"]
+
+
 def test_floor_needs_a_replicate():
     recording = measured(truth())
     problem = prepare(recording, drive().nominal_line("output"), 8)

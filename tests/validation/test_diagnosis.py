@@ -1,6 +1,7 @@
 """The diagnosis on rigs whose answer is known."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tests.support.bench_rig import record
 import cyclosweep as cs
 from cyclosweep.recording import Recording
 
+EXAMPLES = Path(__file__).parents[2] / "examples" / "measured-13-to-1"
 PRACTICE = {
     0: None,
     1: {"friction_hysteresis"},
@@ -136,6 +138,39 @@ def test_a_dozen_hand_read_points():
     assert {"creep", "viscous_drag", "rig_compliance", "torque_offset"} <= hidden
 
 
+def few_loads(loads, cycles, sigma, missing, seed=0):
+    """Weights and a dial: the same few loads, up and down, on either flank."""
+    rng = np.random.default_rng(seed)
+    one = np.r_[loads, loads[::-1]]
+    torque = np.tile(np.r_[one, -one], cycles).astype(float)
+    run = np.repeat(np.arange(cycles), 2 * len(one))
+    plain = 28 * np.sign(torque) + 2.73 * torque
+    angle = plain + missing(torque, plain) + sigma * rng.normal(size=len(torque))
+    return diagnose(Recording.from_arrays(torque, angle, run=run), full=False)
+
+
+def test_shape_that_few_loads_cannot_tell_costs_nothing():
+    # Between two loads no kink can be placed: onset and range are one parameter.
+    def takeup(torque, _):
+        return -0.15 * np.sign(torque) * np.maximum(np.abs(torque) - 7.0, 0.0)
+
+    found = few_loads(np.arange(2.0, 24.0, 3.0), 6, 0.1, takeup)
+    assert found.verdict == "IDENTIFIED"
+    assert [e["name"] for e in found.effects] == ["clearance_takeup"]
+
+
+def test_direction_of_a_dial_that_two_loads_cannot_tell_costs_nothing():
+    def dial(_, angle):
+        return 1.5 * np.cos(np.radians(angle))
+
+    found = few_loads(np.array([5.0, 20.0]), 10, 0.1, dial)
+    sets = [set(e["effects"]) for e in found.content["explanation_set"]]
+    assert {"dial_eccentricity"} in sets
+    # What may still be the cause is not among what was ruled out.
+    ruled_out = {entry["name"] for entry in found.content["ruled_out"]}
+    assert not ruled_out & set().union(*sets)
+
+
 @pytest.mark.shared
 @pytest.mark.parametrize(
     ("stem", "limit"),
@@ -162,6 +197,17 @@ def test_warm_drive_gives_no_stiffness(shared_recordings):
 
 
 @pytest.mark.shared
+@pytest.mark.parametrize(("stem", "steady"), [("base_runin1", True), ("910_unr_runin1", False)])
+def test_drift_shows_without_a_run_to_hold_out(stem, steady, shared_recordings, tmp_path):
+    meta = (EXAMPLES / "recording.toml").read_text().replace("holdout_runs = [102]", "")
+    (tmp_path / "recording.toml").write_text(meta)
+    (tmp_path / "drive.toml").write_text((EXAMPLES / "drive.toml").read_text())
+    (path,) = (shared_recordings / "cycloidal-13-to-1").glob(f"*{stem}.csv.gz")
+    found = cs.diagnose(Recording.read(path, tmp_path / "recording.toml"), full=False)
+    assert found.content["stationary"] is steady
+
+
+@pytest.mark.shared
 def test_measured_loop_is_described_as_an_expert_would(shared_recordings):
     found = measured("base_runin5", shared_recordings)
     rows = {row["topic"]: row["text"] for row in found.content["findings"]}
@@ -185,10 +231,7 @@ def test_measured_loop_is_described_as_an_expert_would(shared_recordings):
 
 
 def measured(stem, shared_recordings):
-    import pathlib
-
-    examples = pathlib.Path(__file__).parents[2] / "examples" / "measured-13-to-1"
     folder = shared_recordings / "cycloidal-13-to-1"
     (path,) = folder.glob(f"*{stem}.csv.gz")
-    recording = Recording.read(path, examples / "recording.toml")
-    return cs.diagnose(recording, cs.Drive.from_toml(examples / "drive.toml"))
+    recording = Recording.read(path, EXAMPLES / "recording.toml")
+    return cs.diagnose(recording, cs.Drive.from_toml(EXAMPLES / "drive.toml"))

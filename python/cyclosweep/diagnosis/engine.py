@@ -192,6 +192,8 @@ def _conclude(
     node = decision.best if decision.best is not None else search.root
     accepted = _named_part(search, node)
     remaining = bounds if accepted is search.root else testability(search, accepted, p_of)
+    possible = {t.name for n, _ in decision.explanations for t in n.fit.terms}
+    excluded = {b.name for b in remaining if b.upper95_deg < tolerance} - possible
     regions = find_regions(search, search.root) if search.root.left >= search.threshold else []
     if decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
         regions = find_regions(search, accepted) or regions
@@ -228,14 +230,12 @@ def _conclude(
         "effects": effects,
         "explanation_set": [_explanation(n, p) for n, p in decision.explanations],
         "ruled_out": [
-            {"name": b.name, "upper95_deg": b.upper95_deg}
-            for b in remaining
-            if b.upper95_deg < tolerance
+            {"name": b.name, "upper95_deg": b.upper95_deg} for b in remaining if b.name in excluded
         ],
         "undecided": [
             {"name": b.name, "upper95_deg": b.upper95_deg}
             for b in remaining
-            if b.upper95_deg >= tolerance
+            if b.name not in excluded
         ],
         "not_testable": hidden_effects(search),
         "sufficiency": {"p_value": sufficiency},
@@ -292,7 +292,7 @@ def _conclude(
         model=model,
         before_deg=before,
         after_deg=after,
-        hypotheses=_hypotheses(effects, remaining, content["not_testable"], tolerance, bounds),
+        hypotheses=_hypotheses(effects, remaining, content["not_testable"], excluded, bounds),
         held_out=tuple(
             HeldOut(
                 block=b.label,
@@ -315,7 +315,8 @@ def _drift(problem: Problem, fitted: Fit, held: HeldOutResult) -> structured.Ste
     found = [structured.Steadiness(_error_of(fitted) or fitted.rmse_deg, held.after_deg)]
     if isinstance(fitted, ForecastFit):
         found += structured.steadiness(fitted.forecast)
-    return next((each for each in found if each.is_drift(span)), None)
+    drifts = [each for each in found if each.is_drift(span)]
+    return max(drifts, key=lambda each: each.other_deg / each.own_deg, default=None)
 
 
 def _rated(drive: Drive, recording: Recording) -> float:
@@ -641,7 +642,7 @@ def _hypotheses(
     effects: list[dict[str, Any]],
     remaining: list[Testability],
     hidden: list[dict[str, str]],
-    tolerance: float,
+    excluded: Collection[str],
     bounds: list[Testability],
 ) -> tuple[Hypothesis, ...]:
     known = {b.name: b for b in bounds}
@@ -666,7 +667,7 @@ def _hypotheses(
         rows.append(
             Hypothesis(
                 name=bound.name,
-                outcome="ruled out" if bound.upper95_deg < tolerance else "undecided",
+                outcome="ruled out" if bound.name in excluded else "undecided",
                 absorbed_share=bound.absorbed_share,
                 size_deg=bound.estimate_deg,
                 ci95_deg=(0.0, bound.upper95_deg),

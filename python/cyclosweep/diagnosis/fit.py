@@ -144,35 +144,36 @@ class Fit:
         part = self.column_range(index)
         return term.columns(self.history) @ self.beta[part]
 
+    def information(self, places: Sequence[int]) -> Floats:
+        """Information on some parameters, all others known only by this recording.
+
+        What the recording does not determine has none, where `covariance` would have to be
+        without bound.
+        """
+        others = [k for k in range(self.sensitivity.shape[1]) if k not in places]
+        basis = orthonormal(self.sensitivity[:, others], 1e-8)
+        part = self.sensitivity[:, list(places)]
+        left = part - basis @ (basis.T @ part)
+        return np.asarray(left.T @ left)
+
     def parameters_of(self, index: int) -> list[int]:
-        """Places, within the covariance, of the parameters that a term's twist depends on."""
-        term = self.terms[index]
-        chosen = [] if term.slips else list(range(len(self.beta)))[self.column_range(index)]
-        for k, slot in enumerate(self.slots):
-            if slot.term == index or self._shared(slot, term):
-                chosen.append(len(self.beta) + k)
-        return chosen
+        """Places of a linear term's amplitudes and shape parameters among all parameters."""
+        chosen = list(range(*self.column_range(index).indices(len(self.beta))))
+        slots = [len(self.beta) + k for k, slot in enumerate(self.slots) if slot.term == index]
+        return chosen + slots
 
     def moved(self, place: int, step: float) -> "Fit":
-        """Same fit with one parameter moved, and nothing else settled on it."""
+        """Same fit with one parameter of a linear term moved, and nothing else settled on it."""
         if place < len(self.beta):
             beta = self.beta.copy()
             beta[place] += step
             return replace(self, beta=beta)
         slot = self.slots[place - len(self.beta)]
         terms = list(self.terms)
-        for k, term in enumerate(terms):
-            if slot.name == "amplitude" and k == slot.term:
-                value = slot.inward(term.amplitude) + step
-                terms[k] = replace(term, amplitude=slot.outward(value))
-            elif slot.name in term.shape and (k == slot.term or self._shared(slot, term)):
-                value = slot.inward(float(term.shape[slot.name])) + step
-                terms[k] = replace(term, shape={**term.shape, slot.name: slot.outward(value)})
+        shape = terms[slot.term].shape
+        value = slot.outward(slot.inward(float(shape[slot.name])) + step)
+        terms[slot.term] = replace(terms[slot.term], shape={**shape, slot.name: value})
         return replace(self, terms=tuple(terms))
-
-    def _shared(self, slot: "Slot", term: Term) -> bool:
-        """Whether a parameter of another term is this term's too: friction slips as one."""
-        return slot.name != "amplitude" and term.slips and self.terms[slot.term].slips
 
     @property
     def rmse_deg(self) -> float:

@@ -25,20 +25,33 @@ def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
     return np.where((chi2 > rank) & (rank > 0), value, 0.0)
 
 
-def price_of_vector(size: Floats, covariance: Floats) -> float:
+def price_of_vector(size: Floats, information: Floats) -> float:
     """Log evidence that a vector of amplitudes costs, every direction as likely as any other.
 
     The components are independent and normal beforehand, of the spread that suits them best. A
     direction that must be met within a hair, as where one component shows a hundred times more
-    than the other, costs the odds against meeting it.
+    than the other, costs the odds against meeting it; a component that does not show at all costs
+    nothing.
     """
-    inner = np.linalg.inv(covariance)
-    prices = []
-    for spread2 in float(size @ size) * np.geomspace(1e-2, 1e1, 31):
-        held = covariance + spread2 * np.eye(len(size))
-        volume = np.linalg.slogdet(np.eye(len(size)) + spread2 * inner)[1]
-        prices.append(0.5 * (volume + size @ np.linalg.solve(held, size)))
-    return float(min(prices))
+    strength, axes = np.linalg.eigh(information)
+    strength = np.maximum(strength, 0.0)
+    gain = strength * (axes.T @ size) ** 2
+    top = float(strength.max(initial=0.0))
+    if top == 0.0:
+        return 0.0
+    least = 1e-2 / top
+    spread2 = np.geomspace(least, max(10.0 * float(size @ size), 1e2 * least), 81)[:, None]
+    seen = 1.0 + spread2 * strength
+    return float(np.min(0.5 * np.sum(np.log(seen) + gain / seen, axis=1)))
+
+
+def price_of_choice(information: Floats, ranges: Floats) -> float:
+    """Log of how many values of some parameters a recording tells apart within their ranges.
+
+    Laplace's approximation: the range over the error; nothing for what it does not determine.
+    """
+    told = np.maximum(np.linalg.eigvalsh(information * np.outer(ranges, ranges)), 0.0)
+    return float(0.5 * np.sum(np.log1p(told / (2.0 * np.pi))))
 
 
 def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:

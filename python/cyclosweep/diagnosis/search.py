@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.scan import (
     Scan,
     evidence,
     likelihood_gain,
+    price_of_choice,
     price_of_vector,
     scan,
 )
@@ -242,15 +243,12 @@ class Search:
         effect = joint.terms[-1].effect
         if effect is not None and effect.vector:
             part = joint.column_range(len(joint.terms) - 1)
-            size, spread = joint.beta[part], joint.covariance[part, part]
-            return 0.5 * gain - price_of_vector(size, spread)
+            places = range(*part.indices(len(joint.beta)))
+            return 0.5 * gain - price_of_vector(joint.beta[part], joint.information(places))
         return float(evidence(gain, rank)) - max(cost, self._price_of_shape(joint, node.rest))
 
     def _price_of_shape(self, joint: Fit, rest: Scan) -> float:
-        """Log of how many shapes the recording tells apart among those of the last term's library.
-
-        Laplace's approximation: the range of each refined shape parameter over its error.
-        """
+        """Log of how many of its library's shapes of the last term a recording tells apart."""
         last = len(joint.terms) - 1
         places, ranges = [], []
         for k, slot in enumerate(joint.slots):
@@ -264,11 +262,7 @@ class Search:
             if len(each) and max(each) > min(each):
                 places.append(len(joint.beta) + k)
                 ranges.append(max(each) - min(each))
-        if not places:
-            return 0.0
-        covariance = joint.covariance[np.ix_(places, places)] / np.outer(ranges, ranges)
-        spread = np.linalg.eigvalsh(covariance)
-        return float(0.5 * np.sum(np.log1p(1.0 / (2.0 * np.pi * np.maximum(spread, 1e-12)))))
+        return price_of_choice(joint.information(places), np.array(ranges)) if places else 0.0
 
     def _excess(self, fitted: Fit) -> float:
         return max(fitted.chi2 - self.noise.freedom, 0.0)
@@ -300,8 +294,9 @@ class Search:
         members = rest.groups[hypothesis]
         each = evidence(rest.observed[members], rest.ranks[members])
         average = rest.by_hypothesis[hypothesis]
-        order = members[np.argsort(_cautions(rest, members) - each)]
-        price = float(np.clip(each.max() - average, 0.0, 1.5))
+        rank = np.argsort(_cautions(rest, members) - each)
+        order = members[rank]
+        price = float(np.clip(each[rank[0]] - average, 0.0, 1.5))
         first = rest.library.blocks[order[0]]
         slips = first.effect is not None and first.effect.slips
         tried = 0

@@ -42,6 +42,8 @@ FAR = 1.8
 """Error on another run over that on its own beyond which the two are not the same drive."""
 FAR_OF_SPAN = 0.05
 """The same as a share of the whole range of the angle."""
+SAME_RANGE = 0.15
+"""Share of the range of torque within which the ends of two replicates agree."""
 FEWEST = 40
 """Rows of a run from which it can be compared with another."""
 MOST_RUNS = 6
@@ -233,12 +235,12 @@ def _alike(search: Search, best: Forecast) -> list[tuple[str, dict[str, float]]]
 
 @dataclass(frozen=True)
 class Steadiness:
-    """How a model of one run fares on itself and on the run it fits worst.
+    """How a model of one run fares on itself and on the replicate that it fits worst.
 
     Attributes
     ----------
     own_deg, other_deg : float
-        Errors of the pair of runs that differ most [deg].
+        Errors on the run it was fitted to, and on the other [deg].
     """
 
     own_deg: float
@@ -250,20 +252,34 @@ class Steadiness:
 
 
 def steadiness(known: Forecast) -> list[Steadiness]:
-    """Fit every run alone and see how far each model errs on itself and on the others."""
+    """Fit runs alone and see how far each model errs on itself and on the run's replicates.
+
+    Runs over another range of torque are left out: a model of small loops does not hold for large
+    ones, nor the reverse, on the steadiest drive.
+    """
     problem = known.problem
+    torque = problem.history.applied_nm
     parts = [
         rows
         for r in np.unique(problem.history.run[problem.whole_fitted])
         if np.count_nonzero(rows := problem.whole_fitted & (problem.history.run == r)) > FEWEST
     ]
     found = []
-    for rows in parts[:MOST_RUNS] if len(parts) > 1 else ():
+    for rows in parts[:MOST_RUNS]:
+        replicates = [p for p in parts if p is not rows and _same_range(torque[p], torque[rows])]
+        if not replicates:
+            continue
         alone = refit(known, rows=rows, most=4)
         own = rms(problem, alone.angle_deg, rows)
-        errors = [rms(problem, alone.angle_deg, other) for other in parts if other is not rows]
-        found.append(Steadiness(own, max(errors)))
+        found.append(Steadiness(own, max(rms(problem, alone.angle_deg, p) for p in replicates)))
     return found
+
+
+def _same_range(first: Floats, second: Floats) -> bool:
+    """Whether two runs load the drive from about as far to about as far."""
+    room = SAME_RANGE * max(float(np.ptp(first)), float(np.ptp(second)))
+    ends = (first.min() - second.min(), first.max() - second.max())
+    return bool(np.max(np.abs(ends)) <= room)
 
 
 def repetition(problem: Problem, fitted: Fit) -> Repetition:
