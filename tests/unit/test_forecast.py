@@ -45,10 +45,13 @@ def ramps(top=24.0, runs=3, per_run=500, kept=True):
 def measured(model, steps_deg=0.1, **programme):
     """Loops of a model with steps tied to the position, as a mesh makes them."""
     load = ramps(**programme)
-    angle = cs.simulate(model, load).angle_deg
+    return load.with_angle(with_steps(cs.simulate(model, load).angle_deg, steps_deg))
+
+
+def with_steps(angle, steps_deg):
     rng = np.random.default_rng(1)
-    angle = angle + steps_deg * np.sin(2 * np.pi * angle / 0.7) + 0.002 * rng.normal(size=len(load))
-    return load.with_angle(angle)
+    steps = steps_deg * np.sin(2 * np.pi * angle / 0.7)
+    return angle + steps + 0.002 * rng.normal(size=len(angle))
 
 
 def drive():
@@ -173,14 +176,13 @@ def test_drift_between_fitted_runs_is_seen(changes):
 
 def test_loops_of_another_size_are_no_drift():
     # Small loops hide in presliding: their model does not hold for large ones, on any drive.
-    large = ramps(runs=4, kept=False)
+    large = ramps(kept=False)
     torque = np.where(large.run == 101, 4.0 / 24.0, 1.0) * large.torque_nm
     loops = Recording.from_arrays(
         torque, time_s=large.time_s, run=large.run, side="output", history="continuous",
         conditioning_runs=(100,),
     )  # fmt: skip
-    angle = cs.simulate(truth(), loops).angle_deg
-    angle = angle + 0.1 * np.sin(2 * np.pi * angle / 0.7)
+    angle = with_steps(cs.simulate(truth(), loops).angle_deg, 0.1)
     assert cs.diagnose(loops.with_angle(angle), drive(), full=False).content["stationary"]
 
 
