@@ -103,6 +103,17 @@ def test_datum_remembers_the_run_before():
     np.testing.assert_allclose(per_run, [0, 1, 1.5, 1.75, 1.875])
 
 
+def test_balanced_loops_push_the_datum_by_no_rounding():
+    loop = 20.0 * np.r_[np.linspace(0, 1, 31), np.linspace(1, -1, 60), np.linspace(-1, 0, 31)]
+    h = history(applied_nm=np.tile(loop, 5), elastic_nm=np.tile(loop, 5))
+    mean, balance = 5.0, 3.0
+    for shape in effects.find("datum_drift").shapes(h):
+        assert not {mean, balance} & {shape.get("push"), shape.get("push_2")}
+    # The pushes of the same loops, a little more to one side, are looked at again.
+    biased = history(applied_nm=np.tile(loop + 2.0, 5), elastic_nm=np.tile(loop + 2.0, 5))
+    assert {mean, balance} <= {s.get("push") for s in effects.find("datum_drift").shapes(biased)}
+
+
 def test_one_direction_hides_asymmetry():
     h = history(side=np.ones(610))
     assert "one direction" in effects.find("load_asymmetry").untestable(h)

@@ -56,6 +56,11 @@ MEMORIES = (0.0, 0.4, 0.7, 0.9, 1.0)
 """Parts of a shift kept from run to run that are looked at."""
 
 
+LEAST_PUSH = 0.01
+"""Share of the largest torque that a push must reach to be one: balanced loops have a mean torque
+of nothing but rounding."""
+
+
 UNTOLD = 0.25
 """Share of free offsets up to which the pushes that explain the rest are believed."""
 
@@ -92,14 +97,14 @@ class DatumDrift(Effect):
         """Every push with several memories, every two of them, and free offsets."""
         grid: list[Shape] = [
             {"push": float(push), "memory": memory}
-            for push in range(len(PUSHES))
+            for push in _given(history)
             for memory in MEMORIES
             if not (push == 0 and memory in (0.4, 0.9))
         ]
         if 4 <= history.run_count <= 60:
             grid += [
                 {"push": float(first), "memory": memory, "push_2": float(second)}
-                for first, second in combinations(range(1, len(PUSHES)), 2)
+                for first, second in combinations(_given(history)[1:], 2)
                 for memory in (0.0, 0.4, 0.7)
             ]
             grid.append({"free": 1.0})
@@ -166,7 +171,7 @@ def _explained(
     Offsets drawn at random leave more than `UNTOLD` nineteen times in twenty.
     """
     found = np.r_[0.0, amplitudes]
-    single = [(push, memory) for push in range(len(PUSHES)) for memory in MEMORIES]
+    single = [(push, memory) for push in _given(history) for memory in MEMORIES]
     shifts = {one: _shifts(history, *one) for one in single}
     best: tuple[float, tuple[tuple[int, float], ...], Floats] | None = None
     for pushes in [*((one,) for one in single), *combinations(single, 2)]:
@@ -184,6 +189,25 @@ def _explained(
     return best[0] / max(float(np.mean(found**2)), 1e-300), best[1], best[2]
 
 
+def _given(history: History) -> list[int]:
+    """Pushes that the runs of a recording give, the number of runs first."""
+    least = LEAST_PUSH * history.largest_torque_nm / 10.0
+    return [0] + [
+        push
+        for push in range(1, len(PUSHES))
+        if np.max(np.abs(_pushed(history, push)), initial=0.0) > least
+    ]
+
+
+def _pushed(history: History, push: int) -> Floats:
+    """Push by each run."""
+    starts = history.run_starts
+    stops = np.r_[starts[1:], len(history)]
+    return np.array(
+        [PUSHES[push](history, int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
+    )
+
+
 def _pushes(shape: Shape) -> list[tuple[int, float]]:
     """What moves the datum, and the part of it that is kept."""
     first = [(int(shape["push"]), float(shape["memory"]))]
@@ -194,7 +218,4 @@ def _pushes(shape: Shape) -> list[tuple[int, float]]:
 
 def _shifts(history: History, push: int, memory: float) -> Floats:
     """Shift of the datum in each run for a unit push [deg]."""
-    starts = history.run_starts
-    stops = np.r_[starts[1:], len(history)]
-    pushed = [PUSHES[push](history, int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
-    return _core.remembered_datum(np.array(pushed), memory)
+    return _core.remembered_datum(_pushed(history, push), memory)
