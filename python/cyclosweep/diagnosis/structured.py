@@ -42,7 +42,7 @@ FAR = 1.8
 """Error on another run over that on its own beyond which the two are not the same drive."""
 FAR_OF_SPAN = 0.05
 """The same as a share of the whole range of the angle."""
-SAME_RANGE = 0.15
+SAME_RANGE = 0.2
 """Share of the range of torque within which the ends of two replicates agree."""
 FEWEST = 40
 """Rows of a run from which it can be compared with another."""
