@@ -383,7 +383,7 @@ def _strength(search: Search, node: Node, index: int) -> float:
     keep = list(range(first))
     for k, term in enumerate(fitted.terms):
         if k != index and not term.slips:
-            keep += list(range(*fitted.column_range(k).indices(len(fitted.beta))))
+            keep += fitted.amplitude_places(k)
     for k, slot in enumerate(fitted.slots):
         if slot.term != index:
             keep.append(len(fitted.beta) + k)
@@ -404,10 +404,7 @@ def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
     out: dict[str, dict[str, Any]] = {}
     amplitudes = term.effect.amplitudes(term.shape)
     if not term.slips:
-        part = fitted.column_range(index)
-        for parameter, place in zip(
-            amplitudes, range(*part.indices(len(fitted.beta))), strict=False
-        ):
+        for parameter, place in zip(amplitudes, fitted.amplitude_places(index), strict=False):
             out[parameter.name] = {
                 "estimate": fitted.beta[place],
                 "std_error": spread[place],

@@ -156,11 +156,15 @@ class Fit:
         left = part - basis @ (basis.T @ part)
         return np.asarray(left.T @ left)
 
-    def parameters_of(self, index: int) -> list[int]:
+    def amplitude_places(self, index: int) -> list[int]:
+        """Places of a linear term's amplitudes among all parameters."""
+        part = self.column_range(index)
+        return list(range(part.start, part.stop))
+
+    def places_of(self, index: int) -> list[int]:
         """Places of a linear term's amplitudes and shape parameters among all parameters."""
-        chosen = list(range(*self.column_range(index).indices(len(self.beta))))
         slots = [len(self.beta) + k for k, slot in enumerate(self.slots) if slot.term == index]
-        return chosen + slots
+        return self.amplitude_places(index) + slots
 
     def moved(self, place: int, step: float) -> "Fit":
         """Same fit with one parameter of a linear term moved, and nothing else settled on it."""

@@ -21,7 +21,7 @@ from cyclosweep.diagnosis.scan import (
     price_of_vector,
     scan,
 )
-from cyclosweep.effects import Shape
+from cyclosweep.effects import Effect, Shape
 from cyclosweep.effects.history import Floats
 
 EXTRA_TERM = 6.0
@@ -220,10 +220,7 @@ class Search:
                 continue
             added = self._added(node, joint, rank, cost)
             prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
-            if term.effect is None:
-                prior -= CAUTION.get(term.name, WITHOUT_NAME)
-            else:
-                prior -= term.effect.caution(term.shape)
+            prior -= _caution(term.name, term.effect, term.shape)
             if best is None or node.gain + added > best.gain:
                 best = self._node(joint, node.gain + added, prior)
         for _ in range(ENRICHED):
@@ -242,9 +239,8 @@ class Search:
         gain = self._gain(node.fit, joint)
         effect = joint.terms[-1].effect
         if effect is not None and effect.vector:
-            part = joint.column_range(len(joint.terms) - 1)
-            places = range(*part.indices(len(joint.beta)))
-            return 0.5 * gain - price_of_vector(joint.beta[part], joint.information(places))
+            places = joint.amplitude_places(len(joint.terms) - 1)
+            return 0.5 * gain - price_of_vector(joint.beta[places], joint.information(places))
         return float(evidence(gain, rank)) - max(cost, self._price_of_shape(joint, node.rest))
 
     def _price_of_shape(self, joint: Fit, rest: Scan) -> float:
@@ -294,7 +290,9 @@ class Search:
         members = rest.groups[hypothesis]
         each = evidence(rest.observed[members], rest.ranks[members])
         average = rest.by_hypothesis[hypothesis]
-        rank = np.argsort(_cautions(rest, members) - each)
+        blocks = [rest.library.blocks[index] for index in members]
+        caution = np.array([_caution(hypothesis, b.effect, b.shape) for b in blocks])
+        rank = np.argsort(caution - each)
         order = members[rank]
         price = float(np.clip(each[rank[0]] - average, 0.0, 1.5))
         first = rest.library.blocks[order[0]]
@@ -420,10 +418,9 @@ class Search:
         return sorted(kept, key=lambda n: -n.score)
 
 
-def _cautions(rest: Scan, members: np.ndarray) -> Floats:
-    """Log prior odds against the shapes of some blocks."""
-    blocks = [rest.library.blocks[index] for index in members]
-    return np.array([0.0 if b.effect is None else b.effect.caution(b.shape) for b in blocks])
+def _caution(name: str, effect: Effect | None, shape: Shape) -> float:
+    """Log prior odds against a shape, with a name or without."""
+    return CAUTION.get(name, WITHOUT_NAME) if effect is None else effect.caution(shape)
 
 
 def _differs(block: Block, other: Block) -> bool:

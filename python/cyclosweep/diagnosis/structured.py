@@ -259,11 +259,7 @@ def steadiness(known: Forecast) -> list[Steadiness]:
     """
     problem = known.problem
     torque = problem.history.applied_nm
-    parts = [
-        rows
-        for r in np.unique(problem.history.run[problem.whole_fitted])
-        if np.count_nonzero(rows := problem.whole_fitted & (problem.history.run == r)) > FEWEST
-    ]
+    parts = _by_run(problem, problem.whole_fitted)
     found = []
     for rows in parts[:MOST_RUNS]:
         replicates = [p for p in parts if p is not rows and _same_range(torque[p], torque[rows])]
@@ -273,6 +269,13 @@ def steadiness(known: Forecast) -> list[Steadiness]:
         own = rms(problem, alone.angle_deg, rows)
         found.append(Steadiness(own, max(rms(problem, alone.angle_deg, p) for p in replicates)))
     return found
+
+
+def _by_run(problem: Problem, rows: Flags) -> list[Flags]:
+    """Rows of each run that has enough of them to be compared."""
+    run = problem.history.run
+    parts = [rows & (run == r) for r in np.unique(run[rows])]
+    return [part for part in parts if np.count_nonzero(part) > FEWEST]
 
 
 def _same_range(first: Floats, second: Floats) -> bool:
@@ -289,16 +292,12 @@ def repetition(problem: Problem, fitted: Fit) -> Repetition:
     residual = problem.angle_deg - fitted.mean_deg
     band = np.floor(np.abs(history.applied_nm) / history.largest_torque_nm * 19.99)
     cell = band * 4 + (history.side > 0) * 2 + (history.sense > 0)
-    runs = [
-        r
-        for r in np.unique(history.run[rows])
-        if np.count_nonzero(rows & (history.run == r)) > FEWEST
-    ]
+    runs = _by_run(problem, rows)
     best = Repetition(0.0, 0)
     found: list[Repetition] = []
     for i, first in enumerate(runs):
         for second in runs[i + 1 :]:
-            a, b = _means(residual, cell, rows, history.run == first, history.run == second)
+            a, b = _means(residual, cell, first, second)
             if len(a) >= 12 and np.std(a) > 0 and np.std(b) > 0:
                 found.append(Repetition(float(np.corrcoef(a, b)[0, 1]), len(a)))
     if found:
@@ -307,13 +306,11 @@ def repetition(problem: Problem, fitted: Fit) -> Repetition:
     return best
 
 
-def _means(
-    residual: Floats, cell: Floats, rows: Flags, first: Flags, second: Flags
-) -> tuple[Floats, Floats]:
+def _means(residual: Floats, cell: Floats, first: Flags, second: Flags) -> tuple[Floats, Floats]:
+    """Mean residuals of two runs in every cell that both have visited."""
     a, b = [], []
-    for value in np.unique(cell[rows]):
-        here = rows & (cell == value)
-        one, two = here & first, here & second
+    for value in np.unique(cell[first]):
+        one, two = first & (cell == value), second & (cell == value)
         if np.any(one) and np.any(two):
             a.append(float(residual[one].mean()))
             b.append(float(residual[two].mean()))

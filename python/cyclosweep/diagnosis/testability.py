@@ -1,5 +1,6 @@
 """What a recording can show: absorbed share, smallest detectable size, and upper bounds."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,10 +64,7 @@ ALWAYS_HIDDEN = (
 def testability(search: Search, node: Node, p_of: "dict[str, float]") -> list[Testability]:
     """Judge every testable named effect against the residual of a node."""
     fitted = node.fit
-    design = _raw_base(node)
-    basis = orthonormal(design, 1e-9)
-    columns = search.library.columns
-    raw = columns - basis @ (basis.T @ columns)
+    raw = _recalibration(node)(search.library.columns)
     rest = node.rest
     out: list[Testability] = []
     accepted = set(fitted.names)
@@ -105,28 +103,22 @@ def testability(search: Search, node: Node, p_of: "dict[str, float]") -> list[Te
 
 def size_of(node: Node, index: int) -> Floats:
     """Twist of a term after re-calibration, on the fitted rows [deg]."""
-    fitted = node.fit
-    use = fitted.problem.fitted
-    design = _raw_base(node)
-    basis = orthonormal(design, 1e-9)
-    part = fitted.contribution(index)[use]
-    return np.asarray(part - basis @ (basis.T @ part))
+    return _recalibration(node)(node.fit.contribution(index)[node.fit.problem.fitted])
 
 
 def spread_of_size(node: Node, index: int) -> float:
     """Standard error of the largest twist of a term: of its amplitudes and its shape [deg]."""
     fitted = node.fit
     use = fitted.problem.fitted
-    basis = orthonormal(_raw_base(node), 1e-9)
+    recalibrated = _recalibration(node)
 
     def twist(changed: Fit) -> Floats:
-        part = changed.contribution(index)[use]
-        return np.asarray(part - basis @ (basis.T @ part))
+        return recalibrated(changed.contribution(index)[use])
 
     here = twist(fitted)
     place = int(np.argmax(np.abs(here)))
     spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
-    chosen = fitted.parameters_of(index)
+    chosen = fitted.places_of(index)
     slope = np.zeros(len(chosen))
     for j, k in enumerate(chosen):
         step = 0.1 * spread[k]
@@ -134,6 +126,12 @@ def spread_of_size(node: Node, index: int) -> float:
             slope[j] = (twist(fitted.moved(k, step))[place] - here[place]) / step
     variance = float(slope @ fitted.covariance[np.ix_(chosen, chosen)] @ slope)
     return float(np.sqrt(max(variance, 0.0)))
+
+
+def _recalibration(node: Node) -> Callable[[Floats], Floats]:
+    """What takes out of signatures on the fitted rows all that a calibration takes up."""
+    basis = orthonormal(_raw_base(node))
+    return lambda part: np.asarray(part - basis @ (basis.T @ part))
 
 
 def _raw_base(node: Node) -> Floats:

@@ -95,16 +95,17 @@ class DatumDrift(Effect):
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Every push with several memories, every two of them, and free offsets."""
+        given = _given(history)
         grid: list[Shape] = [
             {"push": float(push), "memory": memory}
-            for push in _given(history)
+            for push in given
             for memory in MEMORIES
             if not (push == 0 and memory in (0.4, 0.9))
         ]
         if 4 <= history.run_count <= 60:
             grid += [
                 {"push": float(first), "memory": memory, "push_2": float(second)}
-                for first, second in combinations(_given(history)[1:], 2)
+                for first, second in combinations(given[1:], 2)
                 for memory in (0.0, 0.4, 0.7)
             ]
             grid.append({"free": 1.0})
