@@ -296,8 +296,8 @@ def _power(score: Plain) -> str:
         "## Detection beside its opponents\n\n"
         "Share of recordings with a single effect in which something was found, on identical "
         "files. Opponents stand at the threshold that one in a hundred of the white recordings "
-        "with nothing missing exceeds; the diagnosis stands as it is, where it raises fewer "
-        "false alarms, and once more with its own evidence tuned in the same way. `ahead` is the "
+        "with nothing missing exceeds; the diagnosis stands as it is, at the false alarms of the "
+        "table above, and once more with its own evidence tuned in the same way. `ahead` is the "
         "share found by the diagnosis minus that found by the opponent over d = 3 to 10, with "
         "the uncertainty of the threshold in its interval; `ahead alike` the same with both tuned."
     ]
@@ -555,6 +555,6 @@ For someone who distrusts all of it:
    (`{about["diagnosis"][:16]}…`), and a record whose code has changed is refused, so that no
    record mixes versions. `git log` shows what came after.
 5. **The opponents got a fair chance.** `python/cyclosweep/challenge/opponents/`: the baseline is
-   taken out of their columns, and their thresholds are set on the same nulls. To see the
-   diagnosis without its advantage of a stricter level, read the column `ahead alike`.
+   taken out of their columns, and their thresholds are set on the same nulls. To see both
+   with thresholds set in the same way, read the column `ahead alike`.
 """
