@@ -50,7 +50,8 @@ class Options:
     workers : int
         Processes at a time.
     batch : int
-        Recordings shown to one process of the diagnosis.
+        Most recordings shown to one process of the diagnosis; fewer where that keeps every
+        worker busy to the end.
     limit_s : float
         Time allowed for one recording [s].
     diagnose_flags : tuple of str
@@ -79,6 +80,11 @@ class Options:
     costly_limit: int = 300
     passphrase: str = ""
     until: float = math.inf
+
+    def batches(self, items: Sequence[T]) -> Iterator[Sequence[T]]:
+        """Share work out in batches, at least two for every worker."""
+        size = max(1, min(self.batch, -(-len(items) // (2 * self.workers))))
+        return (items[k : k + size] for k in range(0, len(items), size))
 
 
 class OutOfTimeError(Exception):
@@ -259,8 +265,8 @@ def diagnose(plan: Sequence[Entry], folders: Folders, options: Options, console:
     jobs: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
     program = program_of(options)
     for flags, keys in waiting.items():
-        for k in range(0, len(keys), options.batch):
-            some = {key: folders.recordings / key for key in keys[k : k + options.batch]}
+        for batch in options.batches(keys):
+            some = {key: folders.recordings / key for key in batch}
             every = (*options.diagnose_flags, *flags)
             jobs.append(
                 (diagnose_batch, (some, folders.diagnoses, every, options.limit_s, program))
@@ -282,8 +288,8 @@ def predict_all(
             if said.get("verdict") == "IDENTIFIED":
                 waiting.append((model, later, done))
     jobs = [
-        (predict_batch, (waiting[k : k + options.batch], options.limit_s, options.program))
-        for k in range(0, len(waiting), options.batch)
+        (predict_batch, (batch, options.limit_s, options.program))
+        for batch in options.batches(waiting)
     ]
     work("predictions", options.workers, jobs, console, until=options.until, processes=False)
 

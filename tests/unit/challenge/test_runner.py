@@ -64,3 +64,11 @@ def test_a_diagnosis_that_breaks_is_counted_not_hidden(tmp_path: Path) -> None:
     score, _ = run(2, tmp_path, broken)
     failures = [f for f in score["figures"] if f["name"] == "no answer at all"]
     assert failures[0]["estimate"]["value"] == 1.0
+
+
+def test_batches_keep_every_worker_busy_and_lose_nothing() -> None:
+    options = Options(workers=2, batch=50)
+    for count, largest in ((0, 0), (1, 1), (38, 10), (144, 36), (400, 50)):
+        batches = list(options.batches(range(count)))
+        assert [k for batch in batches for k in batch] == list(range(count))
+        assert max(map(len, batches), default=0) == largest
