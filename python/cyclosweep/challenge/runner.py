@@ -8,14 +8,16 @@ import math
 import multiprocessing
 import os
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 import polars as pl
+from filelock import FileLock, Timeout
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -29,6 +31,7 @@ from cyclosweep.challenge.diagnosing import (
     predict_batch,
     read_diagnosis,
 )
+from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.opponents.contest import absent, meet_opponents
 from cyclosweep.challenge.plan import Entry, make_entry, make_plan
 from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
@@ -37,6 +40,8 @@ from cyclosweep.challenge.seal import new_passphrase, root_hash, seal, unseal
 
 T = TypeVar("T")
 
+LOCK = ".lock"
+"""File by which a process has a run's folder to itself."""
 RECORD_SEED = 100_000
 """Records use seeds from here on; development uses seeds below ten thousand."""
 
@@ -89,6 +94,23 @@ class Options:
 
 class OutOfTimeError(Exception):
     """The time given is over; what is done is kept."""
+
+
+@contextmanager
+def alone(out: Path) -> Iterator[None]:
+    """Have a run's folder to oneself; the lock dies with its process.
+
+    Raises
+    ------
+    ValueError
+        If another process is at work there.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    try:
+        with FileLock(out / LOCK, timeout=0):
+            yield
+    except Timeout:
+        raise ValueError(f"{out}: another process is at work there; let it finish") from None
 
 
 class Folders:
@@ -354,6 +376,27 @@ def gallery(
     return items
 
 
+def plan_of(about: Mapping[str, Any], cases: int) -> list[Entry]:
+    """Lay out the first cases of a challenge as its folder describes it.
+
+    Parameters
+    ----------
+    about : mapping
+        Seed, mix and samples, as ``plan.make_plan`` takes them; with ``noise``, a family of
+        noise that takes the place of white noise.
+    cases : int
+        Number of cases.
+    """
+    plan = make_plan(cases, about["seed"], about["mix"], about["samples"])
+    noise = about.get("noise", "white")
+    return [
+        replace(entry, stratum=replace(entry.stratum, noise=noise))
+        if entry.stratum.noise == "white"
+        else entry
+        for entry in plan
+    ]
+
+
 def run_challenge(
     cases: int,
     seed: int,
@@ -361,6 +404,7 @@ def run_challenge(
     workers: int = 1,
     *,
     mix: str = "all",
+    noise: str = "white",
     samples: int = 3000,
     options: Options | None = None,
     console: Console | None = None,
@@ -377,8 +421,10 @@ def run_challenge(
         Folder of the run.
     workers : int
         Processes at a time.
-    mix : {"all", "null", "open", "concealed", "contest"}
+    mix : {"all", "null", "open", "concealed", "contest", "tuning"}
         Which strata take part.
+    noise : str
+        Family of noise that takes the place of white noise, of ``noise.NOISES``.
     samples : int
         Readings of each recording.
     options : Options, optional
@@ -395,30 +441,47 @@ def run_challenge(
     ------
     SealError
         If an answer was changed after it was sealed.
+    OutOfTimeError
+        If ``options.until`` is over before the last case; what is done is kept.
     ValueError
-        If the folder holds a challenge of another seed, mix or size.
+        If the folder holds a challenge of another seed, mix, noise or size, or another process
+        is at work there.
     """
+    if noise not in NOISES:
+        raise ValueError(f"noise: found {noise!r}, expected one of {', '.join(NOISES)}")
     chosen = Options(**(vars(options or Options()) | {"workers": max(1, workers)}))
-    screen = console or Console(stderr=True)
-    folders = Folders(Path(out))
     about = {"seed": seed, "mix": mix, "samples": samples}
+    if noise != "white":
+        about["noise"] = noise
+    plan = plan_of(about, cases)
+    with alone(Path(out)):
+        return _run(plan, about, Folders(Path(out)), chosen, console or Console(stderr=True))
+
+
+def _run(
+    plan: Sequence[Entry],
+    about: dict[str, Any],
+    folders: Folders,
+    options: Options,
+    screen: Console,
+) -> Score:
+    """Run a challenge whose folder nobody else uses."""
     _claim(folders.out, about)
-    plan = make_plan(cases, seed, mix, samples)
-    root = prepare(plan, folders, chosen, screen)
+    root = prepare(plan, folders, options, screen)
     screen.print(f"answers sealed: SHA-256 {root} over {len(folders.hashes())} answers")
-    diagnose(plan, folders, chosen, screen)
-    predict_all(plan, folders, chosen, screen)
-    if chosen.opponents != "none" and absent():
+    diagnose(plan, folders, options, screen)
+    predict_all(plan, folders, options, screen)
+    if options.opponents != "none" and absent():
         screen.print(f"without their libraries (extra: challenge): {', '.join(absent())}")
     meetings = meet_opponents(
-        plan, folders.recordings, folders.opponents, chosen.opponents, chosen.costly_limit
+        plan, folders.recordings, folders.opponents, options.opponents, options.costly_limit
     )
-    work("opponents", chosen.workers, meetings, screen, until=chosen.until)
-    outcomes = open_answers(plan, folders, chosen)
+    work("opponents", options.workers, meetings, screen, until=options.until)
+    outcomes = open_answers(plan, folders, options)
     score = make_score(outcomes, opponents_said(folders), about | {"root": root})
     (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
     (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))
-    exhibits = gallery(outcomes, folders, chosen)
+    exhibits = gallery(outcomes, folders, options)
     write_page(score, exhibits, folders.out / "score.html")
     print_board(score, screen)
     return score

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from cyclosweep.challenge.plan import Entry, make_entry, make_plan
+from cyclosweep.challenge.plan import Entry, make_entry
+from cyclosweep.challenge.runner import plan_of
 from cyclosweep.challenge.seal import SealError, root_hash, unseal
 
 
@@ -39,7 +40,7 @@ def verify_run(out: str | Path, every: int = 1) -> list[str]:
     complaints = []
     if root_hash(hashes.items()) != published:
         complaints.append("ROOT.txt: not the hash of HASHES.txt")
-    for entry in make_plan(len(hashes), about["seed"], about["mix"], about["samples"])[::every]:
+    for entry in plan_of(about, len(hashes))[::every]:
         complaints += verify_entry(entry, folder, passphrase, hashes)
     return complaints
 

@@ -24,6 +24,9 @@ def challenge(
         Literal["all", "null", "open", "concealed", "contest"],
         typer.Option(help="Which kinds of case take part."),
     ] = "all",
+    noise: Annotated[
+        str, typer.Option(metavar="FAMILY", help="Noise in place of white noise, as ar0.6.")
+    ] = "white",
     opponents: Annotated[
         Literal["all", "cheap", "none"], typer.Option(help="Who else sees the recordings.")
     ] = "all",
@@ -39,7 +42,13 @@ def challenge(
     try:
         with interruptible(f"the same command goes on from {out}"):
             score = run_challenge(
-                cases, seed, out, workers, mix=mix, options=Options(opponents=opponents)
+                cases,
+                seed,
+                out,
+                workers,
+                mix=mix,
+                noise=noise,
+                options=Options(opponents=opponents),
             )
     except SealError as error:
         raise InputError(f"{out}: {error}") from error

@@ -12,7 +12,7 @@ from cyclosweep.challenge.opponents.contest import CHEAP, CHEAPEST, COSTLY, NEED
 from cyclosweep.challenge.opponents.seen import Seen
 from cyclosweep.challenge.opponents.subset import best_subset, bic_subset
 from cyclosweep.challenge.plan import make_plan
-from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves
+from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves, tuned
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -89,7 +89,18 @@ def test_tuned_threshold_lets_one_in_a_hundred_through() -> None:
         words[f"s{k}"] = {"x": {"score": rng.normal() + 5.0, "flagged": True, "named": None}}
     curve, own = opponent_curves([*nulls, *singles], words)
     assert (curve.who, own.who) == ("x", OURS)
-    assert curve.tuned_alarms.value <= 0.01
+    assert curve.own.alarms.value <= 0.01
     assert curve.default_alarms.value == 1.0
-    assert curve.tuned_power[0][1].value > 0.97
-    assert curve.tuned_naming == ()
+    assert curve.own.power[0][1].value > 0.97
+    assert curve.own.naming == ()
+    assert curve.every is None
+
+
+def test_every_family_counts_the_same_whatever_its_size() -> None:
+    statistics = np.concatenate([np.zeros(9900), np.ones(99), [2.0]])
+    assert tuned(statistics) == 0.0
+    weights = np.concatenate([np.full(9900, 0.5 / 9900), np.full(100, 0.5 / 100)])
+    # One in a hundred of both alike is two in a hundred of the hundred.
+    assert tuned(statistics, weights) == 1.0
+    counts = np.repeat([1.0, 4.0], [50, 50])
+    assert tuned(np.arange(100.0), counts) == 99.0

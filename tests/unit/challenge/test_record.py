@@ -15,10 +15,10 @@ from cyclosweep.challenge.record import run as record_run
 from cyclosweep.challenge.record.compare import fits, pairs
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.paper import write_paper
-from cyclosweep.challenge.record.parts import FULL, SUBSET, Size
+from cyclosweep.challenge.record.parts import COLOURED, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
-from cyclosweep.challenge.runner import Options
+from cyclosweep.challenge.runner import Options, run_challenge
 from cyclosweep.challenge.seal import SealError
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
@@ -189,8 +189,34 @@ def test_page_of_record_holds_every_figure_and_the_notes(whole: Path, tmp_path: 
     assert "What we learnt." in page
     assert record["record"]["diagnosis"] in page
     assert (tmp_path / "proof-power-rich.svg").read_text().startswith("<svg xmlns=")
+    assert "Not run yet." in page
     log = (tmp_path / "proof-published.jsonl").read_text()
     assert log == (whole / "PUBLISHED.jsonl").read_text()
+
+
+def test_page_of_record_shows_the_contest_under_correlated_noise(
+    whole: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
+    run_challenge(
+        40,
+        44,
+        tmp_path / COLOURED,
+        mix="contest",
+        noise="ar0.6",
+        samples=500,
+        options=replace(OPTIONS, opponents="cheap"),
+        console=quiet(),
+    )
+    page = write_paper(tmp_path, tmp_path / "docs").read_text()
+    coloured = json.loads((tmp_path / "docs" / "proof.json").read_text())["coloured"]
+    shown = [o for o in coloured["opponents"] if o["programme"] == "rich"]
+    assert {o["who"] for o in shown} >= {"aic_subset", "runs_test"}
+    section = page.split("### Rich programme, noise ar0.6")[1].split("### Poor")[0]
+    for opponent in shown:
+        assert f"| {opponent['who']} |" in section
+    assert coloured["about"]["root"] in page
+    assert (tmp_path / "docs" / "proof-power-rich-ar0.6.svg").exists()
 
 
 def test_figures_of_two_runs_agree_within_their_intervals(whole: Path) -> None:

@@ -6,9 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 from rich.console import Console
 
-from cyclosweep.challenge.runner import Options, run_challenge
+from cyclosweep.challenge.runner import LOCK, Options, run_challenge
 from cyclosweep.challenge.seal import SealError
 from cyclosweep.challenge.verify import verify_run
 
@@ -72,3 +73,32 @@ def test_batches_keep_every_worker_busy_and_lose_nothing() -> None:
         batches = list(options.batches(range(count)))
         assert [k for batch in batches for k in batch] == list(range(count))
         assert max(map(len, batches), default=0) == largest
+
+
+def test_another_noise_takes_the_place_of_white_noise(tmp_path: Path) -> None:
+    options = Options(program=(sys.executable, str(STAND_IN)), opponents="cheap")
+    quiet = Console(file=io.StringIO())
+
+    def contest(noise: str) -> None:
+        run_challenge(
+            9, 17, tmp_path, mix="contest", noise=noise, samples=500, options=options, console=quiet
+        )
+
+    contest("ar0.6")
+    outcomes = json.loads((tmp_path / "outcomes.json").read_text())
+    assert {o["noise"] for o in outcomes} == {"ar0.6"}
+    assert {o["tier"] for o in outcomes} == {"C0", "C6"}
+    score = json.loads((tmp_path / "score.json").read_text())
+    assert score["about"]["noise"] == "ar0.6"
+    assert {o["noise"] for o in score["opponents"]} == {"ar0.6"}
+    assert verify_run(tmp_path, 3) == []
+    with pytest.raises(ValueError, match="another folder"):
+        contest("white")
+    with pytest.raises(ValueError, match="noise: found 'pink'"):
+        contest("pink")
+
+
+def test_a_folder_belongs_to_one_process(tmp_path: Path) -> None:
+    with FileLock(tmp_path / LOCK), pytest.raises(ValueError, match="another process"):
+        run(2, tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} <= {LOCK}

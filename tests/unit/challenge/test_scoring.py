@@ -152,15 +152,24 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
     curves = {c.who: c for c in opponent_curves(outcomes, words)}
     assert set(curves) == {"who", OURS}
     # Ours is stricter than one in a hundred as it is, and finds more when tuned alike.
-    assert curves["who"].ahead.low > 0.0
-    assert curves["who"].tuned_ahead.value > curves["who"].ahead.value
-    assert curves[OURS].ahead.value < 0.0 < curves["who"].needed.value
-    assert curves[OURS].tuned_ahead.value == 0.0
+    own = {who: curve.own for who, curve in curves.items()}
+    assert own["who"].ahead.low > 0.0
+    assert own["who"].tuned_ahead.value > own["who"].ahead.value
+    assert own[OURS].ahead.value < 0.0 < own["who"].needed.value
+    assert own[OURS].tuned_ahead.value == 0.0
     assert dict(curves["who"].elsewhere)["ar0.6"].value == 1.0
     assert dict(curves[OURS].elsewhere)["ar0.6"].value == 0.0
-    assert curves["who"].needed.low < curves["who"].needed.value < curves["who"].needed.high
+    assert own["who"].needed.low < own["who"].needed.value < own["who"].needed.high
+    # Tuned on both families, the opponent must let nothing of the other noise through.
+    every = curves["who"].every
+    assert every is not None
+    assert every.threshold == 9.0
+    assert every.alarms.value == 0.0
+    assert max(e.value for _, e in every.power) == 0.0
+    assert curves[OURS].every.needed.value == pytest.approx(own[OURS].needed.value, abs=0.6)
     reached = {f.name: f for f in contest(list(curves.values()))}
-    assert reached["opponents at 1 % behind the diagnosis as it is, rich"].met is True
+    for where in ("on white noise", "over every family of noise"):
+        assert reached[f"opponents at 1 % {where} behind the diagnosis as it is, rich"].met is True
 
 
 def test_confusion_counts_every_single_cause_once() -> None:

@@ -65,7 +65,7 @@ def _power(score: Score, programme: str) -> str:
     curves = [c for c in score.curves if c.programme == programme]
     rivals = [o for o in score.opponents if o.programme == programme]
     named = [(c.who, c.points) for c in curves]
-    named += [(f"{o.who} at 1 %", o.tuned_power) for o in rivals]
+    named += [(f"{o.who} at 1 %", o.own.power) for o in rivals]
     for k, (who, points) in enumerate(named):
         if points:
             series.append(
@@ -100,7 +100,7 @@ def _opponents(score: Score) -> str:
     rows += "".join(
         f"<tr><td>{escape(o.who)}</td><td>{o.programme}</td>"
         f"<td class=n>{as_text(o.default_alarms)}</td>"
-        f"<td class=n>{within_reach(o.needed)}</td></tr>"
+        f"<td class=n>{within_reach(o.own.needed)}</td></tr>"
         for o in score.opponents
     )
     head = "<th>who<th>programme<th>false alarms at defaults<th>d for 90 % power at 1 %"

@@ -69,7 +69,7 @@ def print_board(score: Score, console: Console) -> None:
 
 def _opponents(score: Score) -> Table:
     """Opponents' false alarms at defaults, and power at one false alarm in a hundred."""
-    levels = sorted({d for o in score.opponents for d, _ in o.tuned_power})
+    levels = sorted({d for o in score.opponents for d, _ in o.own.power})
     table = Table(title="Opponents on the same recordings: power at 1 % false alarms, by d")
     table.add_column("who")
     table.add_column("programme")
@@ -82,13 +82,13 @@ def _opponents(score: Score) -> Table:
         cells = [f"{shares[d].value:.2f}" if d in shares else "" for d in levels]
         table.add_row(curve.who, curve.programme, "", needed_by(score, curve), *cells)
     for opponent in score.opponents:
-        shares = dict(opponent.tuned_power)
+        shares = dict(opponent.own.power)
         cells = [f"{shares[d].value:.2f}" if d in shares else "" for d in levels]
         table.add_row(
             opponent.who,
             opponent.programme,
             as_text(opponent.default_alarms),
-            within_reach(opponent.needed),
+            within_reach(opponent.own.needed),
             *cells,
         )
     return table

@@ -5,23 +5,23 @@ from __future__ import annotations
 import json
 import shutil
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from cyclosweep.challenge.board.svg import PALETTE, Series, chart
 from cyclosweep.challenge.noise import NOISES
-from cyclosweep.challenge.record.markdown import table
+from cyclosweep.challenge.record.contest import coloured_section, contest_section, write_pictures
+from cyclosweep.challenge.record.markdown import Plain, table, text
+from cyclosweep.challenge.record.parts import COLOURED
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.scoring.intervals import share
 from cyclosweep.challenge.specimen import VOCABULARY
 
-Plain = Mapping[str, Any]
 NOTES = "proof-notes.md"
 
 
 def write_paper(record: Path, docs: Path) -> Path:
-    """Write ``proof.md``, ``proof.json``, ``proof-published.jsonl`` and two pictures.
+    """Write ``proof.md``, ``proof.json``, ``proof-published.jsonl`` and the pictures.
 
     What ``proof-notes.md`` in the same folder says is taken over word for word.
 
@@ -47,15 +47,19 @@ def write_paper(record: Path, docs: Path) -> Path:
         "removed": _unknown_rows(outcomes, "C5-removed"),
     }
     shutil.copy(record / "PUBLISHED.jsonl", docs / "proof-published.jsonl")
-    for programme in ("rich", "poor"):
-        (docs / f"proof-power-{programme}.svg").write_text(_power_picture(score, programme))
+    coloured_file = record / COLOURED / "score.json"
+    coloured = json.loads(coloured_file.read_text()) if coloured_file.exists() else None
+    for said in (score, coloured):
+        if said is not None:
+            write_pictures(said, docs)
     notes = docs / NOTES
     words = notes.read_text().strip() if notes.exists() else "Nothing has been written yet."
     sections = (
         _head(score, about, log),
         _targets(score),
         _alarms(tables["false_alarms"]),
-        _power(score),
+        contest_section(score),
+        coloured_section(coloured),
         _naming(score, tables),
         _calibration(score),
         _unknowns(tables),
@@ -66,17 +70,9 @@ def write_paper(record: Path, docs: Path) -> Path:
     page = docs / "proof.md"
     page.write_text("\n\n".join(sections) + "\n", encoding="utf-8")
     content = score | {"record": about, "tables": tables, "measured": measured}
+    content["coloured"] = coloured
     (docs / "proof.json").write_text(json.dumps(content, indent=1) + "\n")
     return page
-
-
-def text(e: Plain | None, digits: int = 3) -> str:
-    """Estimate with its interval, or a dash."""
-    if not e or not e["count"] or e["value"] is None:
-        return "–"
-    if e["low"] is None or e["high"] is None:
-        return f"{e['value']:.{digits}g}"
-    return f"{e['value']:.{digits}g} [{e['low']:.{digits}g}, {e['high']:.{digits}g}]"
 
 
 def _part(hits: int, count: int) -> dict[str, Any]:
@@ -235,135 +231,6 @@ def _alarms(rows: Sequence[Plain]) -> str:
             body,
         )
     )
-
-
-def _power_picture(score: Plain, programme: str) -> str:
-    """Curves of the diagnosis, the knowing test and all opponents, with intervals."""
-    named = [(c["who"], c["points"]) for c in score["curves"] if c["programme"] == programme]
-    named += [
-        (f"{o['who']} at 1 %", o["tuned_power"])
-        for o in score["opponents"]
-        if o["programme"] == programme
-    ]
-    series = [
-        Series(
-            who,
-            [p["d"] + 0.05 * k for p in points],
-            [p["value"] for p in points],
-            [p["low"] for p in points],
-            [p["high"] for p in points],
-            colour=PALETTE[k % len(PALETTE)],
-        )
-        for k, (who, points) in enumerate(named)
-        if points
-    ]
-    drawn = chart(
-        f"Power against visibility, {programme} programme",
-        "projected signal-to-noise d",
-        "share of recordings",
-        series,
-        x_range=(2.0, 21.0),
-        y_range=(0.0, 1.0),
-    )
-    element = drawn[: drawn.index("</svg>")]
-    legend = "".join(
-        f'<rect x="480" y="{26 + 18 * k}" width="9" height="9" fill="{s.colour}"/>'
-        f'<text x="494" y="{34 + 18 * k}">{s.name}</text>'
-        for k, s in enumerate(series)
-    )
-    opening = element.index(">") + 1
-    style = (
-        "<style>text{font:10px sans-serif;fill:#1a1a1a}.title{font-weight:600}"
-        ".grid{stroke:#e6e6e6}</style>"
-        '<rect width="100%" height="100%" fill="#fff"/>'
-    )
-    return (
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 700 300">'
-        + style
-        + element[opening:]
-        + legend
-        + "</svg>\n"
-    )
-
-
-def _power(score: Plain) -> str:
-    needed = {
-        "detected": "d for 90 % power, ",
-        "test that knows the effect": "the same of the test that knows the effect, ",
-    }
-    figures = {f["name"]: f["estimate"] for f in score["figures"]}
-    parts = [
-        "## Detection beside its opponents\n\n"
-        "Share of recordings with a single effect in which something was found, on identical "
-        "files. Opponents stand at the threshold that one in a hundred of the white recordings "
-        "with nothing missing exceeds; the diagnosis stands as it is, at the false alarms of the "
-        "table above, and once more with its own evidence tuned in the same way. `ahead` is the "
-        "share found by the diagnosis minus that found by the opponent over d = 3 to 10, with "
-        "the uncertainty of the threshold in its interval; `ahead alike` the same with both tuned."
-    ]
-    for programme in ("rich", "poor"):
-        curves = [c for c in score["curves"] if c["programme"] == programme]
-        rivals = [o for o in score["opponents"] if o["programme"] == programme]
-        levels = sorted({p["d"] for c in curves for p in c["points"]})
-        rows: list[Sequence[object]] = []
-        for c in curves:
-            at = {p["d"]: p for p in c["points"]}
-            estimate = figures.get(needed.get(c["who"], "") + programme)
-            rows.append((c["who"], "", _needed(estimate), "", "", *(_at(at, d) for d in levels)))
-        for o in rivals:
-            at = {p["d"]: p for p in o["tuned_power"]}
-            rows.append(
-                (
-                    o["who"],
-                    text(o["default_alarms"], 2),
-                    _needed(o["needed"]),
-                    text(o["ahead"], 2),
-                    text(o["tuned_ahead"], 2),
-                    *(_at(at, d) for d in levels),
-                )
-            )
-        heads = (
-            "who",
-            "false alarms at defaults",
-            "d for 90 %",
-            "ahead",
-            "ahead alike",
-            *(f"d = {d:g}" for d in levels),
-        )
-        parts.append(
-            f"### {programme.capitalize()} programme\n\n"
-            f"![Power against visibility](proof-power-{programme}.svg)\n\n"
-            + table(heads, rows)
-            + _elsewhere(rivals)
-        )
-    return "\n\n".join(parts)
-
-
-def _elsewhere(rivals: Sequence[Plain]) -> str:
-    """False alarms of thresholds that were set on white noise, under every other family."""
-    families = [f for f in NOISES if any(f in o["elsewhere"] for o in rivals)]
-    if not families:
-        return ""
-    rows = (
-        (o["who"], *(text(o["elsewhere"].get(f), 2) for f in families))
-        for o in rivals
-        if o["elsewhere"]
-    )
-    return (
-        "\n\nFalse alarms at those thresholds under other noise. A threshold that holds on white "
-        "noise alone is no use to a test engineer, whose noise is not; the diagnosis as it is "
-        "stands in the table of false alarms above.\n\n" + table(("who", *families), rows)
-    )
-
-
-def _needed(e: Plain | None) -> str:
-    if e and e["value"] is not None and e["value"] > 20.0:
-        return "> 20"
-    return text(e)
-
-
-def _at(points: Mapping[float, Plain], d: float) -> str:
-    return text(points.get(d), 2)
 
 
 def _right(o: Plain) -> bool:

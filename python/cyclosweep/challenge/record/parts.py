@@ -6,6 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 STEPS = 25
+COLOURED = "coloured"
+"""Folder of the contest under correlated noise: a challenge of its own beside the parts."""
+COLOURED_NOISE = "ar0.6"
+COLOURED_OFFSET = 4
+"""What is added to the record's seed for it."""
+COLOURED_CASES = 900
 
 
 @dataclass(frozen=True)

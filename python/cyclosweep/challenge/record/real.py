@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.challenge.record.markdown import table
+from cyclosweep.challenge.record.markdown import Plain, table
 from cyclosweep.challenge.scoring.intervals import share
-
-Plain = Mapping[str, Any]
 
 
 def real_drive(rows: Sequence[Plain]) -> str:

@@ -23,6 +23,7 @@ from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.machine import machine
 from cyclosweep.challenge.record.parts import FULL, Part, Size
 from cyclosweep.challenge.runner import (
+    LOCK,
     Folders,
     Options,
     OutOfTimeError,
@@ -320,8 +321,11 @@ def run_record(record: Record, console: Console | None = None) -> Score:
 
 def _discard(folder: Path) -> None:
     """Delete a record, and only a record."""
-    if not folder.exists():
-        return
-    if any(folder.iterdir()) and not (folder / "record.json").exists():
+    held = [path for path in folder.glob("*") if path.name != LOCK]
+    if held and not (folder / "record.json").exists():
         raise ValueError(f"{folder}: found something that is no record, not deleted")
-    shutil.rmtree(folder)
+    for path in held:
+        if path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink()

@@ -19,7 +19,7 @@ from cyclosweep.challenge.scoring.calibration import (
 from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
-from cyclosweep.challenge.scoring.rivals import OURS, OpponentCurve
+from cyclosweep.challenge.scoring.rivals import OURS, OpponentCurve, Setting
 
 LEVEL = 0.01
 
@@ -359,20 +359,30 @@ def contest(curves: Sequence[OpponentCurve]) -> list[Figure]:
     """Count the opponents that the diagnosis leaves behind on identical files."""
     figures = []
     for programme in ("rich", "poor"):
-        there = [c for c in curves if c.programme == programme and c.who != OURS]
-        for words, ahead in (
-            ("as it is", [c.ahead.low > 0.0 for c in there]),
-            ("at its own 1 %", [c.tuned_ahead.low > 0.0 for c in there]),
-        ):
-            figures.append(
-                _figure(
-                    f"opponents at 1 % behind the diagnosis {words}, {programme}",
-                    share_of(ahead),
-                    at_least=1.0,
-                    must=1.0 if words == "as it is" else None,
-                )
-            )
+        for noise in dict.fromkeys(c.noise for c in curves):
+            there = [c for c in curves if (c.programme, c.noise) == (programme, noise)]
+            rivals = [c for c in there if c.who != OURS]
+            figures += _behind(f"on {noise} noise", programme, [c.own for c in rivals])
+            every = [c.every for c in rivals if c.every is not None]
+            if every:
+                figures += _behind("over every family of noise", programme, every)
     return figures
+
+
+def _behind(where: str, programme: str, settings: Sequence[Setting]) -> list[Figure]:
+    """Share of opponents that are behind, threshold and recordings drawn again."""
+    return [
+        _figure(
+            f"opponents at 1 % {where} behind the diagnosis {words}, {programme}",
+            share_of(behind),
+            at_least=1.0,
+            must=1.0 if words == "as it is" else None,
+        )
+        for words, behind in (
+            ("as it is", [s.ahead.low > 0.0 for s in settings]),
+            ("at its own 1 %", [s.tuned_ahead.low > 0.0 for s in settings]),
+        )
+    ]
 
 
 def timing(

@@ -15,6 +15,7 @@ from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.power import d_for_power
 
 Array = NDArray[np.float64]
+Points = tuple[tuple[float, Estimate], ...]
 
 LEVEL = 0.01
 OURS = "the diagnosis, tuned alike"
@@ -24,161 +25,253 @@ MIDDLE = (2.5, 10.5)
 
 
 @dataclass(frozen=True)
+class Setting:
+    """A detector at the threshold that one in a hundred recordings with nothing missing exceeds.
+
+    Attributes
+    ----------
+    threshold : float
+        In the detector's units.
+    alarms : Estimate
+        False alarms at that threshold, on the recordings it was set on.
+    needed : Estimate
+        Visibility for 90 % power; beyond 20, none is to be read from it [-]. Its interval holds
+        the uncertainty of the threshold.
+    ahead, tuned_ahead : Estimate
+        Share found by the diagnosis as it is, or with its evidence tuned alike, minus the share
+        found by this detector, on the same recordings of d = 3 to 10 [-]. The intervals draw
+        recordings with nothing missing, and so thresholds, again as well.
+    power, naming : tuple of (float, Estimate)
+        Visibility and share found, or named right; naming is empty for who names nothing.
+    """
+
+    threshold: float
+    alarms: Estimate
+    needed: Estimate
+    ahead: Estimate
+    tuned_ahead: Estimate
+    power: Points
+    naming: Points
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return {
+            "threshold": self.threshold,
+            "alarms": vars(self.alarms),
+            "needed": vars(self.needed),
+            "ahead": vars(self.ahead),
+            "tuned_ahead": vars(self.tuned_ahead),
+            "power": _listed(self.power),
+            "naming": _listed(self.naming),
+        }
+
+
+@dataclass(frozen=True)
 class OpponentCurve:
     """One opponent on one programme.
 
     Attributes
     ----------
-    who, programme : str
-        The opponent and the programme.
+    who, programme, noise : str
+        The opponent, the programme, and the noise of the recordings with an effect.
     default_alarms : Estimate
-        False alarms at its defaults, on recordings with nothing missing and white noise.
-    threshold : float
-        Statistic exceeded by one in a hundred of those recordings, in the opponent's units.
-    tuned_alarms : Estimate
-        False alarms at that threshold, on the same recordings.
-    needed : Estimate
-        Visibility for 90 % power at that threshold; beyond 20, none is to be read from it [-].
-        Its interval holds the uncertainty of the threshold.
-    ahead, tuned_ahead : Estimate
-        Share found by the diagnosis as it is, or with its evidence tuned alike, minus the share
-        found by the opponent at that threshold, on the same recordings of d = 3 to 10 [-]. The
-        intervals draw recordings with nothing missing, and so thresholds, again as well.
+        False alarms at its defaults, on recordings with nothing missing and that noise.
+    default_power : tuple of (float, Estimate)
+        Visibility and share found at its defaults.
+    own : Setting
+        Tuned on recordings with nothing missing and that noise: it knows the family beforehand.
+    every : Setting or None
+        Tuned on recordings with nothing missing under every family alike; nothing where it has
+        not seen them all.
     elsewhere : tuple of (str, Estimate)
-        Family of noise, and false alarms at that threshold under it: it was set on white noise.
-    default_power, tuned_power, tuned_naming : tuple of (float, Estimate)
-        Visibility and share found, or named right, at defaults and at that threshold; naming
-        is empty for opponents that name nothing.
+        Other families of noise, and false alarms under them at the setting ``own``.
     """
 
     who: str
     programme: str
+    noise: str
     default_alarms: Estimate
-    threshold: float
-    tuned_alarms: Estimate
-    needed: Estimate
-    ahead: Estimate
-    tuned_ahead: Estimate
+    default_power: Points
+    own: Setting
+    every: Setting | None
     elsewhere: tuple[tuple[str, Estimate], ...]
-    default_power: tuple[tuple[float, Estimate], ...]
-    tuned_power: tuple[tuple[float, Estimate], ...]
-    tuned_naming: tuple[tuple[float, Estimate], ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
-
-        def listed(points: tuple[tuple[float, Estimate], ...]) -> list[dict[str, Any]]:
-            return [{"d": d, **vars(e)} for d, e in points]
-
         return {
             "who": self.who,
             "programme": self.programme,
+            "noise": self.noise,
             "default_alarms": vars(self.default_alarms),
-            "threshold": self.threshold,
-            "tuned_alarms": vars(self.tuned_alarms),
-            "needed": vars(self.needed),
-            "ahead": vars(self.ahead),
-            "tuned_ahead": vars(self.tuned_ahead),
+            "default_power": _listed(self.default_power),
+            "own": self.own.as_dict(),
+            "every": self.every and self.every.as_dict(),
             "elsewhere": {family: vars(e) for family, e in self.elsewhere},
-            "default_power": listed(self.default_power),
-            "tuned_power": listed(self.tuned_power),
-            "tuned_naming": listed(self.tuned_naming),
         }
 
 
-def tuned(statistics: Array) -> float:
+def _listed(points: Points) -> list[dict[str, Any]]:
+    return [{"d": d, **vars(e)} for d, e in points]
+
+
+def tuned(statistics: Array, weights: Array | None = None) -> float:
     """Return the threshold that one in a hundred null statistics exceeds.
 
     It is itself one of them, so that no more than one in a hundred of these is above; of others,
     slightly more than one in a hundred are, which favours whoever is tuned so.
+
+    Parameters
+    ----------
+    statistics : ndarray, shape (n,)
+        Statistics of recordings with nothing missing.
+    weights : ndarray, shape (n,), optional
+        What each counts; all the same if absent.
     """
-    allowed = int(np.floor(LEVEL * statistics.size))
-    return float(np.sort(statistics)[::-1][allowed])
+    counted = np.ones(statistics.size) if weights is None else weights
+    order = np.argsort(-statistics, kind="stable")
+    share = np.cumsum(counted[order]) / counted.sum()
+    return float(statistics[order[np.argmax(share > LEVEL * (1.0 + 1e-9))]])
 
 
-def _needed(d: Sequence[float], scores: Sequence[float], nulls: Array, draws: int = 60) -> Estimate:
+@dataclass(frozen=True, eq=False)
+class _Nulls:
+    """Recordings with nothing missing on which thresholds are set.
+
+    Attributes
+    ----------
+    theirs, ours : ndarray, shape (n,)
+        Statistic of the opponent, and excess of the diagnosis.
+    weights : ndarray, shape (n,)
+        What each recording counts: every family of noise the same.
+    """
+
+    theirs: Array
+    ours: Array
+    weights: Array
+
+    @classmethod
+    def of(cls, who: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]) -> _Nulls:
+        """Collect what was said about some recordings."""
+        families = [o.noise for o in outcomes]
+        return cls(
+            np.array([said[o.key][who]["score"] for o in outcomes]),
+            np.array([o.excess for o in outcomes]),
+            np.array([1.0 / families.count(family) for family in families]),
+        )
+
+    def again(self, rng: np.random.Generator) -> _Nulls:
+        """Draw as many of them again."""
+        pick = rng.integers(0, self.theirs.size, self.theirs.size)
+        return _Nulls(self.theirs[pick], self.ours[pick], self.weights[pick])
+
+    @property
+    def threshold(self) -> float:
+        """Of the opponent."""
+        return tuned(self.theirs, self.weights)
+
+    @property
+    def own_threshold(self) -> float:
+        """Of the diagnosis, tuned alike."""
+        return tuned(self.ours, self.weights)
+
+
+def _needed(d: Sequence[float], scores: Array, nulls: _Nulls, draws: int = 60) -> Estimate:
     """Visibility for 90 % power, with threshold and recordings drawn again for its interval."""
-    x, y = np.array(d), np.array(scores)
-    value = d_for_power(list(x), list(y > tuned(nulls)), LEVEL, draws=0)
+    x = np.array(d)
+    value = d_for_power(list(x), list(scores > nulls.threshold), LEVEL, draws=0)
     if value.count == 0:
         return value
     rng = np.random.default_rng(2468)
     drawn = []
     for _ in range(draws):
         pick = rng.integers(0, x.size, x.size)
-        limit = tuned(nulls[rng.integers(0, nulls.size, nulls.size)])
-        again = d_for_power(list(x[pick]), list(y[pick] > limit), LEVEL, draws=0)
+        limit = nulls.again(rng).threshold
+        again = d_for_power(list(x[pick]), list(scores[pick] > limit), LEVEL, draws=0)
         drawn.append(again.value if again.count else np.inf)
     low, high = np.quantile(drawn, [0.025, 0.975], method="nearest")
     return Estimate(value.value, float(low), float(high), value.count)
 
 
-def _ahead(
-    middle: Sequence[Outcome], theirs: Array, nulls: Array, own_nulls: Array | None
-) -> Estimate:
+def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, alike: bool) -> Estimate:
     """Share that the diagnosis finds beyond an opponent's, on the same recordings."""
     if not middle:
         return NOTHING
     alarm = np.array([o.alarm for o in middle])
     excess = np.array([o.excess for o in middle])
 
-    def difference(pick: NDArray[np.int64], drawn: NDArray[np.int64]) -> float:
-        ours = alarm[pick] if own_nulls is None else excess[pick] > tuned(own_nulls[drawn])
-        return float(np.mean(ours) - np.mean(theirs[pick] > tuned(nulls[drawn])))
+    def difference(pick: NDArray[np.int64], drawn: _Nulls) -> float:
+        ours = excess[pick] > drawn.own_threshold if alike else alarm[pick]
+        return float(np.mean(ours) - np.mean(theirs[pick] > drawn.threshold))
 
-    every, all_nulls = np.arange(len(middle)), np.arange(nulls.size)
+    every = np.arange(len(middle))
     rng = np.random.default_rng(1357)
-    drawn = [
-        difference(rng.choice(every, every.size), rng.choice(all_nulls, all_nulls.size))
-        for _ in range(400)
-    ]
+    drawn = [difference(rng.choice(every, every.size), nulls.again(rng)) for _ in range(400)]
     low, high = np.quantile(drawn, [0.025, 0.975])
-    return Estimate(difference(every, all_nulls), float(low), float(high), len(middle))
+    return Estimate(difference(every, nulls), float(low), float(high), len(middle))
+
+
+def _by_d(single: Sequence[Outcome], hits: Sequence[bool] | NDArray[np.bool_]) -> Points:
+    """Share of hits at every visibility."""
+    levels = sorted({round(o.d) for o in single})
+    return tuple(
+        (float(d), share_of([h for o, h in zip(single, hits, strict=True) if round(o.d) == d]))
+        for d in levels
+    )
+
+
+def _setting(
+    who: str, single: Sequence[Outcome], nulls: Sequence[Outcome], said: Mapping[str, Any]
+) -> Setting:
+    """Tune one detector on some recordings with nothing missing."""
+    tuning = _Nulls.of(who, nulls, said)
+    limit = tuning.threshold
+    scores = np.array([said[o.key][who]["score"] for o in single])
+    found = scores > limit
+    inside = [MIDDLE[0] < o.d < MIDDLE[1] for o in single]
+    middle = [o for o, there in zip(single, inside, strict=True) if there]
+    names = [said[o.key][who]["named"] for o in single]
+    right = [
+        bool(hit) and set(named or ()) == set(o.causes)
+        for o, hit, named in zip(single, found, names, strict=True)
+    ]
+    return Setting(
+        threshold=limit,
+        alarms=share_of(tuning.theirs > limit),
+        needed=_needed([o.d for o in single], scores, tuning),
+        ahead=_ahead(middle, scores[inside], tuning, alike=False),
+        tuned_ahead=_ahead(middle, scores[inside], tuning, alike=True),
+        power=_by_d(single, found),
+        naming=() if any(named is None for named in names) else _by_d(single, right),
+    )
 
 
 def _curve(
-    who: str, programme: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]
+    who: str, programme: str, noise: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]
 ) -> OpponentCurve | None:
     """Curve of one opponent, or nothing where it saw no recording."""
-    there = [o for o in outcomes if o.programme == programme and who in said.get(o.key, {})]
-    nulls = [said[o.key][who] for o in there if o.tier == "C6" and o.noise == "white"]
-    single = [o for o in there if o.tier == "C0"]
-    if not nulls or not single:
+    here = [o for o in outcomes if o.programme == programme]
+    shown = [o for o in here if who in said.get(o.key, {})]
+    single = [o for o in shown if o.tier == "C0" and o.noise == noise]
+    nulls = [o for o in shown if o.tier == "C6"]
+    own = [o for o in nulls if o.noise == noise]
+    if not own or not single:
         return None
-    statistics = np.array([n["score"] for n in nulls])
-    own = np.array([o.excess for o in there if o.tier == "C6" and o.noise == "white"])
-    threshold = tuned(statistics)
-    levels = sorted({round(o.d) for o in single})
-    flagged, found, named = [], [], []
-    for d in levels:
-        here = [(o, said[o.key][who]) for o in single if round(o.d) == d]
-        flagged.append((float(d), share_of([s["flagged"] for _, s in here])))
-        found.append((float(d), share_of([s["score"] > threshold for _, s in here])))
-        if all(s["named"] is not None for _, s in here):
-            right = [s["score"] > threshold and set(s["named"]) == set(o.causes) for o, s in here]
-            named.append((float(d), share_of(right)))
-    middle = [o for o in single if MIDDLE[0] < o.d < MIDDLE[1]]
-    theirs = np.array([said[o.key][who]["score"] for o in middle])
+    setting = _setting(who, single, own, said)
+    families = {o.noise for o in here if o.tier == "C6"}
+    saw_all = len(families) > 1 and {o.noise for o in nulls} == families
     return OpponentCurve(
         who=who,
         programme=programme,
-        default_alarms=share_of([n["flagged"] for n in nulls]),
-        threshold=threshold,
-        tuned_alarms=share_of(statistics > threshold),
-        needed=_needed(
-            [o.d for o in single], [said[o.key][who]["score"] for o in single], statistics
-        ),
-        ahead=_ahead(middle, theirs, statistics, None),
-        tuned_ahead=_ahead(middle, theirs, statistics, own),
+        noise=noise,
+        default_alarms=share_of([said[o.key][who]["flagged"] for o in own]),
+        default_power=_by_d(single, [said[o.key][who]["flagged"] for o in single]),
+        own=setting,
+        every=_setting(who, single, nulls, said) if saw_all else None,
         elsewhere=tuple(
-            (family, share_of([said[o.key][who]["score"] > threshold for o in others]))
+            (family, share_of([said[o.key][who]["score"] > setting.threshold for o in others]))
             for family in NOISES
-            if (others := [o for o in there if o.tier == "C6" and o.noise == family])
-            and family != "white"
+            if family != noise and (others := [o for o in nulls if o.noise == family])
         ),
-        default_power=tuple(flagged),
-        tuned_power=tuple(found),
-        tuned_naming=tuple(named),
     )
 
 
@@ -188,11 +281,17 @@ def _own(outcome: Outcome) -> dict[str, Any]:
 
 
 def opponent_curves(outcomes: Sequence[Outcome], said: Mapping[str, Any]) -> list[OpponentCurve]:
-    """Curves of every opponent on rich and poor programmes."""
+    """Curves of every opponent on rich and poor programmes, under the noise of each."""
     names = sorted({who for record in said.values() for who in record})
     if names:
         # Ours is tuned on, and shown, every recording that any opponent saw.
         said = {o.key: {**said[o.key], OURS: _own(o)} for o in outcomes if said.get(o.key)}
         names.append(OURS)
-    curves = [_curve(w, p, outcomes, said) for w in names for p in ("rich", "poor")]
+    noises = [n for n in NOISES if any(o.tier == "C0" and o.noise == n for o in outcomes)]
+    curves = [
+        _curve(who, programme, noise, outcomes, said)
+        for noise in noises
+        for who in names
+        for programme in ("rich", "poor")
+    ]
     return [curve for curve in curves if curve is not None]
