@@ -87,8 +87,9 @@ class Options:
     until: float = math.inf
 
     def batches(self, items: Sequence[T]) -> Iterator[Sequence[T]]:
-        """Share work out in batches, at least two for every worker."""
-        size = max(1, min(self.batch, -(-len(items) // (2 * self.workers))))
+        """Share work out in batches, about two for every worker if there are several."""
+        even = len(items) if self.workers == 1 else -(-len(items) // (2 * self.workers))
+        size = max(1, min(self.batch, even))
         return (items[k : k + size] for k in range(0, len(items), size))
 
 
@@ -206,6 +207,8 @@ def _results(
         return
     if not jobs:
         return
+    if time.monotonic() > until:
+        raise OutOfTimeError
     pool = _pool(workers, processes)
     try:
         futures = [pool.submit(function, *arguments) for function, arguments in jobs]
@@ -474,7 +477,12 @@ def _run(
     if options.opponents != "none" and absent():
         screen.print(f"without their libraries (extra: challenge): {', '.join(absent())}")
     meetings = meet_opponents(
-        plan, folders.recordings, folders.opponents, options.opponents, options.costly_limit
+        plan,
+        folders.recordings,
+        folders.opponents,
+        options.opponents,
+        options.costly_limit,
+        home=about.get("noise", "white"),
     )
     work("opponents", options.workers, meetings, screen, until=options.until)
     outcomes = open_answers(plan, folders, options)

@@ -89,7 +89,7 @@ def test_tuned_threshold_lets_one_in_a_hundred_through() -> None:
         words[f"s{k}"] = {"x": {"score": rng.normal() + 5.0, "flagged": True, "named": None}}
     curve, own = opponent_curves([*nulls, *singles], words)
     assert (curve.who, own.who) == ("x", OURS)
-    assert curve.own.alarms.value <= 0.01
+    assert dict(curve.own.alarms)["white"].value <= 0.01
     assert curve.default_alarms.value == 1.0
     assert curve.own.power[0][1].value > 0.97
     assert curve.own.naming == ()

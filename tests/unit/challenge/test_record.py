@@ -9,21 +9,24 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 from rich.console import Console
 
+from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record import run as record_run
+from cyclosweep.challenge.record.command import main
 from cyclosweep.challenge.record.compare import fits, pairs
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.paper import write_paper
 from cyclosweep.challenge.record.parts import COLOURED, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
-from cyclosweep.challenge.runner import Options, run_challenge
+from cyclosweep.challenge.runner import LOCK, Options
 from cyclosweep.challenge.seal import SealError
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
-SMALL = Size(null=4, opened=4, concealed=2, tuning=2, samples=400, steps=2)
+SMALL = Size(null=4, opened=4, concealed=2, tuning=2, coloured=2, samples=400, steps=2)
 
 
 def quiet() -> Console:
@@ -53,16 +56,16 @@ def test_every_slice_is_published_before_it_is_diagnosed(whole: Path) -> None:
     for event, part, first in found:
         if event == "diagnosed":
             assert found.index(("sealed", part, first)) < found.index((event, part, first))
-    assert len([e for e in found if e[0] == "diagnosed"]) == 8
+    assert len([e for e in found if e[0] == "diagnosed"]) == 10
     assert verify_record(whole) == []
 
 
 def test_all_parts_grow_together(whole: Path) -> None:
     order = [part for event, part, _ in events(whole) if event == "sealed"]
-    assert order == ["null", "open", "concealed", "tuning"] * 2
+    assert order == ["null", "open", "concealed", "tuning", COLOURED] * 2
     for size in (FULL, SUBSET):
         ends = {part.name: last for part, _, last in size.slices()}
-        assert ends == {part.name: part.cases for part in size.parts()}
+        assert ends == {part.name: part.cases for part in size.parts() if part.cases}
 
 
 def test_parts_of_a_full_record_are_whole_turns_of_their_plans() -> None:
@@ -104,9 +107,9 @@ def test_a_kill_between_two_diagnoses_costs_nothing(tmp_path: Path, whole: Path)
     lines = log.read_text().splitlines(keepends=True)
     # As if killed in the last slice: one diagnosis was there, one was not, and half a line.
     log.write_text("".join(lines[:-1]) + lines[-1][:20])
-    shown = tmp_path / "parts" / "tuning"
+    shown = tmp_path / "parts" / COLOURED
     record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
-    last = record.plan(record.size.parts()[3], 2)[1]
+    last = record.plan(record.size.parts()[-1], 2)[1]
     record_run.make_entry(last).write(shown / "recordings" / last.key)
     (shown / "diagnoses" / last.key / "diagnosis.json").unlink()
     before = untimed(json.loads((whole / "score.json").read_text()))
@@ -189,34 +192,85 @@ def test_page_of_record_holds_every_figure_and_the_notes(whole: Path, tmp_path: 
     assert "What we learnt." in page
     assert record["record"]["diagnosis"] in page
     assert (tmp_path / "proof-power-rich.svg").read_text().startswith("<svg xmlns=")
-    assert "Not run yet." in page
     log = (tmp_path / "proof-published.jsonl").read_text()
     assert log == (whole / "PUBLISHED.jsonl").read_text()
 
 
-def test_page_of_record_shows_the_contest_under_correlated_noise(
-    whole: Path, tmp_path: Path
-) -> None:
+def test_page_of_record_shows_every_contest(whole: Path, tmp_path: Path) -> None:
     shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
-    run_challenge(
-        40,
-        44,
-        tmp_path / COLOURED,
-        mix="contest",
-        noise="ar0.6",
-        samples=500,
-        options=replace(OPTIONS, opponents="cheap"),
-        console=quiet(),
-    )
+    record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    outcomes, _ = record.outcomes()
+    [null, *_] = [o for o in outcomes if o.tier == "C6"]
+    [white, *_] = [o for o in outcomes if o.key.startswith("open/")]
+    nulls = [
+        replace(null, key=f"null/{noise}{k}", noise=noise, programme="rich")
+        for noise in NOISES
+        for k in range(12)
+    ]
+    singles = [
+        replace(white, key=f"{part}/{k}", noise=noise, programme="rich", d=float(3 + k % 4))
+        for part, noise in (("open", "white"), (COLOURED, "ar0.6"))
+        for k in range(24)
+    ]
+    every = [*nulls, *singles]
+    said = {
+        o.key: {"who": {"score": o.d + 0.01 * k, "flagged": True, "named": None}}
+        for k, o in enumerate(every)
+    }
+    score = record.score(every, said).as_dict()
+    assert {f["name"] for f in score["figures"]} >= {
+        "opponents at 1 % on ar0.6 noise behind the diagnosis as it is, rich",
+        "opponents at 1 % over all ten families of noise behind the diagnosis as it is, rich",
+    }
+    # What is aside counts in no other figure.
+    named = next(f for f in score["figures"] if f["name"].startswith("d for 90 % power, rich"))
+    assert named["estimate"]["count"] in (0, 24)
+    (tmp_path / "score.json").write_text(json.dumps(score))
     page = write_paper(tmp_path, tmp_path / "docs").read_text()
-    coloured = json.loads((tmp_path / "docs" / "proof.json").read_text())["coloured"]
-    shown = [o for o in coloured["opponents"] if o["programme"] == "rich"]
-    assert {o["who"] for o in shown} >= {"aic_subset", "runs_test"}
-    section = page.split("### Rich programme, noise ar0.6")[1].split("### Poor")[0]
-    for opponent in shown:
-        assert f"| {opponent['who']} |" in section
-    assert coloured["about"]["root"] in page
-    assert (tmp_path / "docs" / "proof-power-rich-ar0.6.svg").exists()
+    for title in ("white noise", "noise ar0.6", "thresholds set over all families of noise"):
+        part = page.split(f"#### Rich programme, {title}\n")[1].split("####")[0]
+        assert "| who |" in part
+    for name in ("rich", "rich-ar0.6", "rich-every-family"):
+        assert (tmp_path / "docs" / f"proof-power-{name}.svg").exists()
+
+
+def test_a_part_may_be_added_to_a_record_and_is_written_down(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
+    file = tmp_path / "record.json"
+    about = json.loads(file.read_text())
+    del about["size"][COLOURED]
+    file.write_text(json.dumps(about))
+    more = replace(SMALL, coloured=SMALL.coloured + 2)
+    record = Record(tmp_path, 40, more, Kept(OPTIONS))
+    assert record.ledger.lines[-1]["event"] == "part added"
+    assert record.ledger.lines[-1][COLOURED] == more.coloured
+    assert json.loads(file.read_text())["size"][COLOURED] == more.coloured
+    with pytest.raises(ValueError, match="size: found"):
+        Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+
+
+def test_notes_on_another_record_say_so(whole: Path, tmp_path: Path) -> None:
+    notes = tmp_path / "proof-notes.md"
+    notes.write_text("On the record of seed 40.\n")
+    assert "Not yet rewritten" not in write_paper(whole, tmp_path).read_text()
+    notes.write_text("On the record of seed 30.\n")
+    assert "Not yet rewritten for the record of seed 40" in write_paper(whole, tmp_path).read_text()
+
+
+def test_the_command_makes_goes_on_and_starts_afresh(tmp_path: Path) -> None:
+    sizes = ("null", "opened", "concealed", "tuning", COLOURED, "costly-nulls", "costly-open")
+    tiny = [word for name in sizes for word in (f"--{name}", "0")]
+    out = tmp_path / "record"
+    words = ["--out", str(out), "--seed", "40", "--steps", "1", *tiny]
+    for more in ([], ["--docs", str(tmp_path / "docs")], ["--fresh"]):
+        with pytest.raises(SystemExit) as ended:
+            main([*words, *more])
+        assert ended.value.code == 0
+    assert (tmp_path / "docs" / "proof.md").exists()
+    with FileLock(out / LOCK), pytest.raises(SystemExit) as ended:
+        main([*words, "--fresh"])
+    assert ended.value.code == 2
+    assert (out / "record.json").exists()
 
 
 def test_figures_of_two_runs_agree_within_their_intervals(whole: Path) -> None:

@@ -8,6 +8,8 @@ import pytest
 from challenge_answers import outcome, said, truth
 from scipy import stats
 
+from cyclosweep.challenge.board.terminal import within_reach
+from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import calibration_error, chance_error
 from cyclosweep.challenge.scoring.confusion import confusion
@@ -143,12 +145,15 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
 
     for k in range(200):
         add(k, "C6", 0.0, float(rng.normal()) - 3.0, float(rng.normal()))
-    for k in range(400, 440):
-        add(k, "C6", 0.0, -3.0, 9.0)
-        outcomes[-1] = replace(outcomes[-1], noise="ar0.6")
     for k in range(200, 400):
         d = float(rng.choice([3.0, 4.0, 5.0, 6.0]))
         add(k, "C0", d, float(rng.normal()) - 3.0 + d, 0.3 * d + float(rng.normal()))
+    # Forty of each other family; under AR 0.6 two of the forty have a large statistic.
+    for family, noise in enumerate(NOISES[1:]):
+        for k in range(40):
+            large = noise == "ar0.6" and k < 2
+            add(400 + 40 * family + k, "C6", 0.0, -9.0, 9.0 if large else -9.0)
+            outcomes[-1] = replace(outcomes[-1], noise=noise)
     curves = {c.who: c for c in opponent_curves(outcomes, words)}
     assert set(curves) == {"who", OURS}
     # Ours is stricter than one in a hundred as it is, and finds more when tuned alike.
@@ -157,19 +162,57 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
     assert own["who"].tuned_ahead.value > own["who"].ahead.value
     assert own[OURS].ahead.value < 0.0 < own["who"].needed.value
     assert own[OURS].tuned_ahead.value == 0.0
-    assert dict(curves["who"].elsewhere)["ar0.6"].value == 1.0
-    assert dict(curves[OURS].elsewhere)["ar0.6"].value == 0.0
+    assert dict(own["who"].alarms)["ar0.6"].value == 0.05
+    assert dict(own[OURS].alarms)["ar0.6"].value == 0.0
     assert own["who"].needed.low < own["who"].needed.value < own["who"].needed.high
-    # Tuned on both families, the opponent must let nothing of the other noise through.
+    # Over all families the two large ones are 0.5 in a hundred, and 0.5 in a hundred are left for
+    # the white ones: ten of 200, where a pool of all would leave three of them.
     every = curves["who"].every
     assert every is not None
-    assert every.threshold == 9.0
-    assert every.alarms.value == 0.0
-    assert max(e.value for _, e in every.power) == 0.0
-    assert curves[OURS].every.needed.value == pytest.approx(own[OURS].needed.value, abs=0.6)
+    white = np.sort([w["who"]["score"] for k, w in words.items() if int(k[5:]) < 200])[::-1]
+    assert every.threshold == white[10]
+    assert dict(every.alarms)["white"].value == 0.05
+    assert dict(every.alarms)["ar0.6"].value == 0.05
     reached = {f.name: f for f in contest(list(curves.values()))}
-    for where in ("on white noise", "over every family of noise"):
-        assert reached[f"opponents at 1 % {where} behind the diagnosis as it is, rich"].met is True
+    assert reached["opponents at 1 % on white noise behind the diagnosis as it is, rich"].met
+    every_row = reached[
+        "opponents at 1 % over all ten families of noise behind the diagnosis as it is, rich"
+    ]
+    assert every_row.target == "none"
+
+
+def test_all_families_are_claimed_only_where_enough_of_each_were_seen() -> None:
+    outcomes, words = [], {}
+    for noise in NOISES:
+        for k in range(9):
+            key = f"{noise}-{k}"
+            case = outcome({**truth(tier="C6"), "key": key}, said("NOTHING_MISSING"))
+            outcomes.append(replace(case, noise=noise))
+            words[key] = {"x": {"score": 0.1 * k, "flagged": False, "named": None}}
+    for k in range(20):
+        case = outcome({**truth("creep"), "key": f"s{k}"}, said("NOTHING_MISSING"))
+        outcomes.append(case)
+        words[f"s{k}"] = {"x": {"score": 9.0, "flagged": True, "named": None}}
+    assert all(curve.every is None for curve in opponent_curves(outcomes, words))
+
+
+def test_who_finds_nothing_needs_more_than_was_tried() -> None:
+    outcomes, words = [], {}
+    for k in range(60):
+        effects = ("creep",) if k < 30 else ()
+        case = truth(*effects, tier="C0" if effects else "C6") | {"key": f"case-{k}"}
+        outcomes.append(outcome(case, said("NOTHING_MISSING")))
+        words[f"case-{k}"] = {"x": {"score": float(k >= 30), "flagged": False, "named": None}}
+    curve = opponent_curves(outcomes, words)[0]
+    assert curve.own.needed.value == math.inf
+    assert curve.own.needed.count == 30
+    assert within_reach(curve.own.needed) == "> 20 [20, > 20]"
+
+
+def test_contest_without_curves_has_too_few_cases() -> None:
+    rows = contest([])
+    assert [f.met for f in rows] == [None] * 4
+    assert all(f.target == "at least 1" for f in rows)
 
 
 def test_confusion_counts_every_single_cause_once() -> None:

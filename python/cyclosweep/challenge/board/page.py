@@ -11,7 +11,7 @@ import polars as pl
 
 from cyclosweep.challenge.board.gallery import Exhibit
 from cyclosweep.challenge.board.svg import PALETTE, Series, chart
-from cyclosweep.challenge.board.terminal import as_text, needed_by, within_reach
+from cyclosweep.challenge.board.terminal import as_text, within_reach
 from cyclosweep.challenge.scoring.figures import Figure
 from cyclosweep.challenge.scoring.score import Score
 from cyclosweep.challenge.tiers import TIERS
@@ -59,11 +59,11 @@ def _figures(score: Score) -> str:
     return f"<table><tr>{head}</tr>{rows}</table>"
 
 
-def _power(score: Score, programme: str) -> str:
+def _power(score: Score, programme: str, noise: str) -> str:
     """Power curves of the diagnosis, the knowing test and the opponents."""
     series = []
-    curves = [c for c in score.curves if c.programme == programme]
-    rivals = [o for o in score.opponents if o.programme == programme]
+    curves = [c for c in score.curves if (c.programme, c.noise) == (programme, noise)]
+    rivals = [o for o in score.opponents if (o.programme, o.noise) == (programme, noise)]
     named = [(c.who, c.points) for c in curves]
     named += [(f"{o.who} at 1 %", o.own.power) for o in rivals]
     for k, (who, points) in enumerate(named):
@@ -80,7 +80,7 @@ def _power(score: Score, programme: str) -> str:
             )
     reach = max((x for s in series for x in s.x), default=20.0)
     return chart(
-        f"Power against visibility, {programme} programme",
+        f"Power against visibility, {programme} programme, {noise} noise",
         "projected signal-to-noise d",
         "share of recordings",
         series,
@@ -92,18 +92,18 @@ def _power(score: Score, programme: str) -> str:
 def _opponents(score: Score) -> str:
     """Table of who needs how much, on the same recordings."""
     rows = "".join(
-        f"<tr><td>{escape(c.who)}</td><td>{c.programme}</td><td></td>"
-        f"<td class=n>{needed_by(score, c)}</td></tr>"
+        f"<tr><td>{escape(c.who)}</td><td>{c.programme}</td><td>{c.noise}</td><td></td>"
+        f"<td class=n>{within_reach(c.needed)}</td></tr>"
         for c in score.curves
-        if needed_by(score, c)
+        if c.needed.count
     )
     rows += "".join(
-        f"<tr><td>{escape(o.who)}</td><td>{o.programme}</td>"
+        f"<tr><td>{escape(o.who)}</td><td>{o.programme}</td><td>{o.noise}</td>"
         f"<td class=n>{as_text(o.default_alarms)}</td>"
         f"<td class=n>{within_reach(o.own.needed)}</td></tr>"
         for o in score.opponents
     )
-    head = "<th>who<th>programme<th>false alarms at defaults<th>d for 90 % power at 1 %"
+    head = "<th>who<th>programme<th>noise<th>false alarms at defaults<th>d for 90 % power at 1 %"
     return f"<table><tr>{head}</tr>{rows}</table>"
 
 
@@ -193,10 +193,9 @@ def write_page(score: Score, exhibits: Sequence[Exhibit], path: Path) -> None:
         File to write.
     """
     about = score.about
-    charts = "".join(
-        f"<div>{part}</div>"
-        for part in (_power(score, "rich"), _power(score, "poor"), _calibration(score))
-    )
+    noises = dict.fromkeys(["white", *(c.noise for c in score.curves)])
+    powers = [_power(score, p, noise) for noise in noises for p in ("rich", "poor")]
+    charts = "".join(f"<div>{part}</div>" for part in (*powers, _calibration(score)))
     matrices = "".join(
         f"<h3>{escape(programme)} programme</h3>{_matrix(table)}"
         for programme, table in score.confusion.items()

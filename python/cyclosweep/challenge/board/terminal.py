@@ -9,7 +9,7 @@ from rich.table import Table
 
 from cyclosweep.challenge.scoring.figures import Figure
 from cyclosweep.challenge.scoring.intervals import Estimate
-from cyclosweep.challenge.scoring.score import Curve, Score
+from cyclosweep.challenge.scoring.score import Score
 
 
 def as_text(estimate: Estimate) -> str:
@@ -21,19 +21,10 @@ def as_text(estimate: Estimate) -> str:
 
 def within_reach(needed: Estimate) -> str:
     """Visibility needed, or that it lies beyond what was tried."""
-    return "> 20" if needed.value > 20.0 else as_text(needed)
-
-
-def needed_by(score: Score, curve: Curve) -> str:
-    """Visibility that the diagnosis, or the test that knows the effect, needs."""
-    names = {
-        "detected": f"d for 90 % power, {curve.programme}",
-        "test that knows the effect": (
-            f"the same of the test that knows the effect, {curve.programme}"
-        ),
-    }
-    found = [f.estimate for f in score.figures if f.name == names.get(curve.who)]
-    return as_text(found[0]) if found else ""
+    if needed.count == 0 or (needed.value <= 20.0 and math.isfinite(needed.high)):
+        return as_text(needed)
+    value = "> 20" if needed.value > 20.0 else f"{needed.value:.3g}"
+    return f"{value} [{min(needed.low, 20.0):.3g}, > 20]"
 
 
 def _mark(figure: Figure) -> str:
@@ -73,6 +64,7 @@ def _opponents(score: Score) -> Table:
     table = Table(title="Opponents on the same recordings: power at 1 % false alarms, by d")
     table.add_column("who")
     table.add_column("programme")
+    table.add_column("noise")
     table.add_column("false alarms at defaults")
     table.add_column("d for 90 %")
     for d in levels:
@@ -80,13 +72,16 @@ def _opponents(score: Score) -> Table:
     for curve in score.curves:
         shares = dict(curve.points)
         cells = [f"{shares[d].value:.2f}" if d in shares else "" for d in levels]
-        table.add_row(curve.who, curve.programme, "", needed_by(score, curve), *cells)
+        table.add_row(
+            curve.who, curve.programme, curve.noise, "", within_reach(curve.needed), *cells
+        )
     for opponent in score.opponents:
         shares = dict(opponent.own.power)
         cells = [f"{shares[d].value:.2f}" if d in shares else "" for d in levels]
         table.add_row(
             opponent.who,
             opponent.programme,
+            opponent.noise,
             as_text(opponent.default_alarms),
             within_reach(opponent.own.needed),
             *cells,

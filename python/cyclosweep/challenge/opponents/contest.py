@@ -84,6 +84,7 @@ def meet_opponents(
     who: str,
     costly_limit: int,
     first: int = 0,
+    home: str = "white",
 ) -> list[tuple[Callable[..., None], tuple[Any, ...]]]:
     """List the meetings of a challenge: single effects in the open, and nothing missing.
 
@@ -96,10 +97,12 @@ def meet_opponents(
     who : {"all", "cheap", "none"}
         Which opponents; those whose library is absent stay away.
     costly_limit : int
-        Recordings of each stratum that the costly ones see, and of each other family of noise
-        with nothing missing that the cheapest do.
+        Recordings of each stratum that the costly ones see, and of each stratum under another
+        noise that the cheapest do.
     first : int
         Place in the plan from which recordings are shown; those before are only counted.
+    home : str
+        Family of noise under which all opponents meet; under the others only the cheapest do.
 
     Raises
     ------
@@ -120,7 +123,7 @@ def meet_opponents(
         count[stratum.name] += 1
         early = count[stratum.name] <= costly_limit
         names: tuple[str, ...] = CHEAPEST if early else ()
-        if stratum.noise == "white":
+        if stratum.noise == home:
             names = (*CHEAP, *(COSTLY if who == "all" and early else ()))
         there = tuple(name for name in names if name not in left_out)
         if entry.number < first or not there:

@@ -16,24 +16,10 @@ from rich.console import Console
 from cyclosweep.challenge.measured_run import SIZES_DEG, run_measured
 from cyclosweep.challenge.record.compare import compare
 from cyclosweep.challenge.record.paper import write_paper
-from cyclosweep.challenge.record.parts import (
-    COLOURED,
-    COLOURED_CASES,
-    COLOURED_NOISE,
-    COLOURED_OFFSET,
-    FULL,
-    SUBSET,
-    Size,
-)
+from cyclosweep.challenge.record.parts import FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import FLAGS, Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
-from cyclosweep.challenge.runner import (
-    RECORD_SEED,
-    Options,
-    OutOfTimeError,
-    alone,
-    run_challenge,
-)
+from cyclosweep.challenge.runner import RECORD_SEED, Options, OutOfTimeError, alone
 from cyclosweep.challenge.seal import SealError
 
 MEASURED = "CYCLOSWEEP_MEASURED"
@@ -50,10 +36,9 @@ def _parser() -> argparse.ArgumentParser:
     add("--seed", type=int, default=RECORD_SEED, help="a multiple of ten (default %(default)s)")
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
     add("--minutes", type=float, metavar="M", help="begin nothing more after M minutes")
-    add("--subset", action="store_true", help="a sample that takes about ten minutes")
+    add("--subset", action="store_true", help="a sample that takes a quarter of an hour")
     for field in fields(Size):
         add(f"--{field.name.replace('_', '-')}", type=int, metavar="N", help="another size")
-    add("--coloured", type=int, metavar="N", help="cases of the contest under correlated noise")
     add("--opponents", choices=("all", "cheap", "none"), default="all")
     add("--keep-recordings", action="store_true", help="do not delete what is diagnosed")
     add("--fresh", action="store_true", help="throw away what DIR holds")
@@ -107,33 +92,11 @@ def _make(given: argparse.Namespace, screen: Console) -> None:
         record = Record(given.out, given.seed, size, kept, given.fresh)
         _real_drive(given, options, screen)
         run_record(record, screen)
-        _coloured(given, options, screen)
-    if given.docs is not None:
-        write_paper(given.out, given.docs)
-        screen.print(f"written: {given.docs / 'proof.md'}")
-    if given.against is not None:
-        compare(given.out, given.against, screen)
-
-
-def _coloured(given: argparse.Namespace, options: Options, screen: Console) -> None:
-    """Run the contest under correlated noise, a challenge of its own in the record's folder."""
-    cases = given.coloured if given.coloured is not None else 0 if given.subset else COLOURED_CASES
-    if cases == 0:
-        return
-    try:
-        run_challenge(
-            cases,
-            given.seed + COLOURED_OFFSET,
-            given.out / COLOURED,
-            options.workers,
-            mix="contest",
-            noise=COLOURED_NOISE,
-            samples=given.samples or FULL.samples,
-            options=options,
-            console=screen,
-        )
-    except OutOfTimeError:
-        screen.print("correlated noise: the time is over; the same command goes on")
+        if given.docs is not None:
+            write_paper(given.out, given.docs)
+            screen.print(f"written: {given.docs / 'proof.md'}")
+        if given.against is not None:
+            compare(given.out, given.against, screen)
 
 
 def _real_drive(given: argparse.Namespace, options: Options, screen: Console) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cyclosweep.challenge.board.svg import PALETTE, Series, chart
@@ -13,72 +13,63 @@ EVERY = "every"
 OWN = "own"
 PROGRAMMES = ("rich", "poor")
 
+_HEAD = """## Detection beside its opponents
+
+Share of recordings with a single effect in which something was found, on identical files. Every
+opponent stands at a threshold that one in a hundred recordings with nothing missing exceeds. Which
+recordings those are decides the comparison, so it is made three times. The diagnosis is the same in
+all of them and is not told the noise; it stands as it is, and once more with its own evidence tuned
+in the same way. `ahead` is the share found by the diagnosis minus that found by the opponent over
+d = 3 to 10, with the uncertainty of the threshold in its interval; `ahead alike` the same with both
+tuned. An opponent is behind where the whole interval is above zero."""
+
+_WHITE = """Effects under white noise, thresholds set on white noise. This is what the opponents'
+formulas assume."""
+
+_COLOURED = """Effects under correlated noise (family {noise}), thresholds set on recordings with
+that very noise. The thresholds alone are tuned: nobody whitens the noise for the opponents, as the
+diagnosis does for itself. Those that cost too much are left out."""
+
+_EVERY = """Effects under white noise, with one threshold for all ten families of noise, each of
+which counts the same: what a detector is worth that is set once and used on rigs of any noise. The
+worst family decides an opponent's threshold, as the shares below show; against white noise it is
+then far stricter than one in a hundred. Opponents that were not shown all families are left out."""
+
 
 def write_pictures(score: Plain, docs: Path) -> None:
     """Write the power curves of a score, one picture for every programme and setting."""
-    for programme in PROGRAMMES:
-        for noise in _noises(score):
-            for setting in (OWN, EVERY):
-                if setting == OWN or _rivals(score, programme, noise, setting):
-                    file = docs / _picture(programme, noise, setting)
-                    file.write_text(_drawn(score, programme, noise, setting))
+    for noise, setting in _settings(score):
+        for programme in PROGRAMMES:
+            drawn = _drawn(score, programme, noise, setting)
+            (docs / _picture(programme, noise, setting)).write_text(drawn)
 
 
 def contest_section(score: Plain) -> str:
-    """Two comparisons under white noise: tuned on white noise, and on every family."""
-    parts = [
-        "## Detection beside its opponents\n\n"
-        "Share of recordings with a single effect in which something was found, on identical "
-        "files. Every opponent stands at a threshold that one in a hundred of recordings with "
-        "nothing missing exceeds. Which recordings decides the comparison, so both are shown: "
-        "white noise alone, which is what their formulas assume and the diagnosis is not told, "
-        "and all families of noise alike, which is what a rig has and what the table of false "
-        "alarms above asks of the diagnosis. The diagnosis stands as it is, and once more with "
-        "its own evidence tuned in the same way. `ahead` is the share found by the diagnosis "
-        "minus that found by the opponent over d = 3 to 10, with the uncertainty of the threshold "
-        "in its interval; `ahead alike` the same with both tuned."
-    ]
-    for programme in PROGRAMMES:
-        parts.append(
-            f"### {programme.capitalize()} programme, thresholds set on white noise\n\n"
-            + _comparison(score, programme, "white", OWN)
-            + _elsewhere(_rivals(score, programme, "white", OWN))
-        )
-    for programme in PROGRAMMES:
-        if _rivals(score, programme, "white", EVERY):
+    """Every comparison that a score holds."""
+    parts = [_HEAD]
+    for noise, setting in _settings(score):
+        if setting == EVERY:
+            title, words = "thresholds set over all families of noise", _EVERY
+        elif noise == "white":
+            title, words = "white noise", _WHITE
+        else:
+            title, words = f"noise {noise}", _COLOURED.format(noise=noise)
+        parts.append(f"### {title[0].upper()}{title[1:]}\n\n{words}")
+        for programme in PROGRAMMES:
             parts.append(
-                f"### {programme.capitalize()} programme, thresholds set over every family of "
-                "noise\n\nOpponents that cost too much to be shown all families are left out; "
-                "they stand in the tables above.\n\n"
-                + _comparison(score, programme, "white", EVERY)
+                f"#### {programme.capitalize()} programme, {title}\n\n"
+                + _comparison(score, programme, noise, setting)
+                + _alarms(_rivals(score, programme, noise, setting), setting)
             )
     return "\n\n".join(parts)
 
 
-def coloured_section(score: Plain | None) -> str:
-    """The contest under correlated noise, every threshold set on that very noise."""
-    head = "## The same under correlated noise\n\n"
-    if score is None:
-        return head + "Not run yet."
-    about = score["about"]
-    parts = [
-        head + f"{about['cases']:,} more recordings under noise of family {about['noise']} (seed "
-        f"{about['seed']}, answers sealed under `{about['root']}`), and every opponent's "
-        "threshold set on recordings with nothing missing and that very noise: what tuning an "
-        "opponent to one's own rig would give."
-    ]
-    for programme in PROGRAMMES:
-        for noise in _noises(score):
-            parts.append(
-                f"### {programme.capitalize()} programme, noise {noise}\n\n"
-                + _comparison(score, programme, noise, OWN)
-            )
-    return "\n\n".join(parts)
-
-
-def _noises(score: Plain) -> list[str]:
-    own = score["about"].get("noise", "white")
-    return list(dict.fromkeys([own, *(o["noise"] for o in score["opponents"])]))
+def _settings(score: Plain) -> Iterator[tuple[str, str]]:
+    """Noise and setting of every comparison."""
+    for noise in dict.fromkeys(["white", *(c["noise"] for c in score["curves"])]):
+        yield noise, OWN
+    if any(_rivals(score, programme, "white", EVERY) for programme in PROGRAMMES):
+        yield "white", EVERY
 
 
 def _rivals(score: Plain, programme: str, noise: str, setting: str) -> list[Plain]:
@@ -90,6 +81,11 @@ def _rivals(score: Plain, programme: str, noise: str, setting: str) -> list[Plai
     ]
 
 
+def _curves(score: Plain, programme: str, noise: str) -> list[Plain]:
+    """Curves of the diagnosis and of the test that knows the effect."""
+    return [c for c in score["curves"] if (c["programme"], c["noise"]) == (programme, noise)]
+
+
 def _picture(programme: str, noise: str, setting: str) -> str:
     """Name of a picture's file."""
     where = "-every-family" if setting == EVERY else "" if noise == "white" else f"-{noise}"
@@ -98,20 +94,13 @@ def _picture(programme: str, noise: str, setting: str) -> str:
 
 def _comparison(score: Plain, programme: str, noise: str, setting: str) -> str:
     """Picture and table of who finds how much."""
-    needed = {
-        "detected": "d for 90 % power, ",
-        "test that knows the effect": "the same of the test that knows the effect, ",
-    }
-    figures = {f["name"]: f["estimate"] for f in score["figures"]}
-    curves = [c for c in score["curves"] if c["programme"] == programme]
-    rivals = _rivals(score, programme, noise, setting)
+    curves = _curves(score, programme, noise)
     levels = sorted({p["d"] for c in curves for p in c["points"]})
     rows: list[Sequence[object]] = []
     for c in curves:
         at = {p["d"]: p for p in c["points"]}
-        estimate = figures.get(needed.get(c["who"], "") + programme)
-        rows.append((c["who"], "", _needed(estimate), "", "", *(_at(at, d) for d in levels)))
-    for o in rivals:
+        rows.append((c["who"], "", _needed(c["needed"]), "", "", *(_at(at, d) for d in levels)))
+    for o in _rivals(score, programme, noise, setting):
         tuned = o[setting]
         at = {p["d"]: p for p in tuned["power"]}
         rows.append(
@@ -126,7 +115,7 @@ def _comparison(score: Plain, programme: str, noise: str, setting: str) -> str:
         )
     heads = (
         "who",
-        "false alarms at defaults",
+        f"false alarms at defaults, {noise}",
         "d for 90 %",
         "ahead",
         "ahead alike",
@@ -136,27 +125,31 @@ def _comparison(score: Plain, programme: str, noise: str, setting: str) -> str:
     return f"![Power against visibility]({picture})\n\n" + table(heads, rows)
 
 
-def _elsewhere(rivals: Sequence[Plain]) -> str:
-    """False alarms of thresholds that were set on white noise, under every other family."""
-    families = [f for f in NOISES if any(f in o["elsewhere"] for o in rivals)]
-    if not families:
+def _alarms(rivals: Sequence[Plain], setting: str) -> str:
+    """False alarms at those thresholds under every family of noise that was seen."""
+    there = [o for o in rivals if len(o[setting]["alarms"]) > 1]
+    families = [f for f in NOISES if any(f in o[setting]["alarms"] for o in there)]
+    if not there:
         return ""
-    rows = (
-        (o["who"], *(text(o["elsewhere"].get(f), 2) for f in families))
-        for o in rivals
-        if o["elsewhere"]
-    )
+    rows = ((o["who"], *(_alarm(o[setting]["alarms"], f) for f in families)) for o in there)
     return (
-        "\n\nFalse alarms at those thresholds under other noise. A threshold that holds on white "
-        "noise alone is no use to a test engineer, whose noise is not; the diagnosis as it is "
-        "stands in the table of false alarms above.\n\n" + table(("who", *families), rows)
+        "\n\nFalse alarms at those thresholds, by family of noise; of the diagnosis as it is they "
+        "stand in the table of false alarms above.\n\n" + table(("who", *families), rows)
     )
 
 
-def _needed(e: Plain | None) -> str:
-    if e and e["count"] and (e["value"] is None or e["value"] > 20.0):
-        return "> 20"
-    return text(e)
+def _alarm(alarms: Mapping[str, Plain], family: str) -> str:
+    e = alarms.get(family)
+    return f"{text(e, 2)} of {e['count']}" if e else "–"
+
+
+def _needed(e: Plain) -> str:
+    """Visibility for 90 % power; without a bound where it lies beyond what was tried."""
+    if not e["count"] or (e["value"] is not None and e["value"] <= 20.0 and e["high"] is not None):
+        return text(e)
+    value = "> 20" if e["value"] is None or e["value"] > 20.0 else f"{e['value']:.3g}"
+    low = 20.0 if e["low"] is None else min(e["low"], 20.0)
+    return f"{value} [{low:.3g}, > 20]"
 
 
 def _at(points: Mapping[float, Plain], d: float) -> str:
@@ -165,7 +158,7 @@ def _at(points: Mapping[float, Plain], d: float) -> str:
 
 def _drawn(score: Plain, programme: str, noise: str, setting: str) -> str:
     """Curves of the diagnosis, the knowing test and all opponents, with intervals."""
-    named = [(c["who"], c["points"]) for c in score["curves"] if c["programme"] == programme]
+    named = [(c["who"], c["points"]) for c in _curves(score, programme, noise)]
     named += [
         (f"{o['who']} at 1 %", o[setting]["power"])
         for o in _rivals(score, programme, noise, setting)
@@ -182,7 +175,7 @@ def _drawn(score: Plain, programme: str, noise: str, setting: str) -> str:
         for k, (who, points) in enumerate(named)
         if points
     ]
-    where = "tuned over every family of noise" if setting == EVERY else f"{noise} noise"
+    where = "one threshold for all families of noise" if setting == EVERY else f"{noise} noise"
     drawn = chart(
         f"Power against visibility, {programme} programme, {where}",
         "projected signal-to-noise d",

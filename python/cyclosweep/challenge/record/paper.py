@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from cyclosweep.challenge.noise import NOISES
-from cyclosweep.challenge.record.contest import coloured_section, contest_section, write_pictures
+from cyclosweep.challenge.record.contest import contest_section, write_pictures
 from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.record.parts import COLOURED
 from cyclosweep.challenge.record.real import real_drive
@@ -23,7 +22,8 @@ NOTES = "proof-notes.md"
 def write_paper(record: Path, docs: Path) -> Path:
     """Write ``proof.md``, ``proof.json``, ``proof-published.jsonl`` and the pictures.
 
-    What ``proof-notes.md`` in the same folder says is taken over word for word.
+    What ``proof-notes.md`` in the same folder says is taken over word for word, with a remark
+    above it where it does not name the record's seed.
 
     Parameters
     ----------
@@ -36,7 +36,9 @@ def write_paper(record: Path, docs: Path) -> Path:
     score = json.loads((record / "score.json").read_text())
     outcomes = json.loads((record / "outcomes.json").read_text())
     about = json.loads((record / "record.json").read_text())
-    log = [json.loads(line) for line in (record / "PUBLISHED.jsonl").read_text().splitlines()]
+    published = record / "PUBLISHED.jsonl"
+    lines = published.read_text() if published.exists() else ""
+    log = [json.loads(line) for line in lines.splitlines()]
     measured_file = record / "measured" / "measured.json"
     measured = json.loads(measured_file.read_text()) if measured_file.exists() else []
     tables = {
@@ -46,33 +48,35 @@ def write_paper(record: Path, docs: Path) -> Path:
         "aliens": _unknown_rows(outcomes, "C5-alien"),
         "removed": _unknown_rows(outcomes, "C5-removed"),
     }
-    shutil.copy(record / "PUBLISHED.jsonl", docs / "proof-published.jsonl")
-    coloured_file = record / COLOURED / "score.json"
-    coloured = json.loads(coloured_file.read_text()) if coloured_file.exists() else None
-    for said in (score, coloured):
-        if said is not None:
-            write_pictures(said, docs)
-    notes = docs / NOTES
-    words = notes.read_text().strip() if notes.exists() else "Nothing has been written yet."
+    (docs / "proof-published.jsonl").write_text(lines)
+    write_pictures(score, docs)
     sections = (
         _head(score, about, log),
         _targets(score),
         _alarms(tables["false_alarms"]),
         contest_section(score),
-        coloured_section(coloured),
         _naming(score, tables),
         _calibration(score),
         _unknowns(tables),
         real_drive(measured),
-        "## What the misses teach\n\n" + words,
+        "## What the misses teach\n\n" + _notes(docs / NOTES, about["seed"]),
         _checking(about),
     )
     page = docs / "proof.md"
     page.write_text("\n\n".join(sections) + "\n", encoding="utf-8")
     content = score | {"record": about, "tables": tables, "measured": measured}
-    content["coloured"] = coloured
     (docs / "proof.json").write_text(json.dumps(content, indent=1) + "\n")
     return page
+
+
+def _notes(file: Path, seed: int) -> str:
+    """What was written by hand about this record; words about another one say so."""
+    if not file.exists():
+        return "Nothing has been written yet."
+    words = file.read_text().strip()
+    if f"seed {seed}" in words:
+        return words
+    return f"**Not yet rewritten for the record of seed {seed} above.**\n\n{words}"
 
 
 def _part(hits: int, count: int) -> dict[str, Any]:
@@ -88,11 +92,16 @@ def _head(score: Plain, about: Plain, log: Sequence[Plain]) -> str:
         "open": size["opened"],
         "concealed": size["concealed"],
         "tuning": size["tuning"],
+        COLOURED: size.get(COLOURED, 0),
     }
     libraries = ", ".join(f"{k} {v}" for k, v in machine["libraries"].items() if v)
     rows = [
-        ("command", f"`python -m cyclosweep.challenge.record --out DIR --seed {about['seed']}`"),
-        ("seed", f"{about['seed']} and the three numbers after it, one for each part"),
+        (
+            "command",
+            f"`make proof-record RECORD_SEED={about['seed']}`, with `CYCLOSWEEP_MEASURED` naming "
+            "the folder of the real drive's loops",
+        ),
+        ("seed", f"{about['seed']} and the four numbers after it, one for each part"),
         ("begun, ended", f"{log[0]['time'][:16]}, {log[-1]['time'][:16]} UTC" if log else "–"),
         (
             "machine",
@@ -106,7 +115,7 @@ def _head(score: Plain, about: Plain, log: Sequence[Plain]) -> str:
         ("head of the log, SHA-256", f"`{score['about']['root']}`"),
     ]
     counted = [
-        (name, f"{parts[name]:,}", f"{total:,}", words)
+        (name, f"{parts.get(name, 0):,}", f"{total:,}", words)
         for (name, total), words in zip(
             whole.items(),
             (
@@ -114,6 +123,7 @@ def _head(score: Plain, about: Plain, log: Sequence[Plain]) -> str:
                 "single effects in the open, d = 3 to 20, rich and poor programmes",
                 "the tiers C1 to C5 and C7",
                 "more with nothing missing, for the opponents' thresholds",
+                "single effects under correlated noise, for the contest with the opponents",
             ),
             strict=True,
         )
@@ -268,6 +278,7 @@ def _effect_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
                     o
                     for o in outcomes
                     if o["tier"] == "C0"
+                    and o["noise"] == "white"
                     and o["programme"] == programme
                     and o["causes"] == [cause]
                     and round(o["d"]) == d
@@ -401,27 +412,30 @@ For someone who distrusts all of it:
 
 1. **Another seed gives the same picture.** `make proof` makes a smaller run of another seed in
    about a quarter of an hour and lays every figure beside the record's; `PROOF_SEED=...` picks the
-   seed, a multiple of ten. The whole record again, with any seed:
-   `python -m cyclosweep.challenge.record --out DIR --seed S --workers 2`. It may be stopped and
-   called again, or run in pieces with `--minutes M`: all parts grow together, and what is finished
-   is scored.
+   seed, a multiple of ten. The whole record again: `make proof-record RECORD_SEED=...
+   RECORD_OUT=...`. It may be stopped and called again, or run in pieces with
+   `RECORD_FLAGS="--minutes M"`: all parts grow together, and what is finished is scored.
 2. **The answers were sealed before anything was diagnosed.** The root over the answers of each
    slice stands in the log before that slice is diagnosed, every line of the log holds the hash of
    the line before, and the last one's hash is printed above.
    `python -m cyclosweep.challenge.record --out DIR --only-verify --verify 20` checks the log, its
    order, the seals and the kept diagnoses, and makes every twentieth recording and answer again
    from the seed (the same versions of the libraries, and a like processor, give the same bytes).
+   It needs the record's folder, which holds thousands of files and is not in this repository; a
+   hash also covers a random nonce, so that a run of one's own has other roots for the same answers.
    The diagnosis is a process of its own in a folder with nothing but copies of recordings:
    `python/cyclosweep/challenge/diagnosing.py`.
 3. **The rig shares nothing with what it tests.** `tests/unit/challenge/test_import_rule.py`: the
    generator imports NumPy, SciPy, Polars and itself, and nothing that diagnoses imports the
    challenge. Other equations, too: [challenge.md](challenge.md) says how each cause is made.
 4. **Nothing was tuned on these seeds.** Records use seeds from 100,000 on (`RECORD_SEED` in
-   `python/cyclosweep/challenge/runner.py`), development used seeds below 10,000. The hash of the
+   `python/cyclosweep/challenge/runner.py`), development used seeds below 10,000. What earlier,
+   partial records of other seeds showed was repaired before this one was begun; the measured drive
+   is the same in every record, and no unseen evidence. The hash of the
    code that diagnosed is written down before the first recording is made
    (`{about["diagnosis"][:16]}…`), and a record whose code has changed is refused, so that no
    record mixes versions. `git log` shows what came after.
 5. **The opponents got a fair chance.** `python/cyclosweep/challenge/opponents/`: the baseline is
-   taken out of their columns, and their thresholds are set on the same nulls. To see both
-   with thresholds set in the same way, read the column `ahead alike`.
+   taken out of their columns, and their thresholds are set on the same recordings with nothing
+   missing. To see both with thresholds set in the same way, read the column `ahead alike`.
 """

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from cyclosweep.challenge.plan import Entry
+from cyclosweep.challenge.runner import plan_of
+
 STEPS = 25
 COLOURED = "coloured"
-"""Folder of the contest under correlated noise: a challenge of its own beside the parts."""
-COLOURED_NOISE = "ar0.6"
-COLOURED_OFFSET = 4
-"""What is added to the record's seed for it."""
-COLOURED_CASES = 900
+"""Part in which the noise is correlated: for the contest alone, apart from all other figures."""
 
 
 @dataclass(frozen=True)
@@ -21,19 +20,35 @@ class Part:
     Attributes
     ----------
     name : str
-        Name of its folder; also a mix of ``plan.MIXES``.
+        Name of its folder.
     cases : int
         Cases in all.
     offset : int
         What is added to the record's seed, so that no two parts share specimens.
     costly : int
         Recordings of each stratum that the costly opponents see.
+    mix : str
+        Strata, of ``plan.MIXES``; of its name if absent.
+    noise : str
+        Family of noise in place of white noise.
     """
 
     name: str
     cases: int
     offset: int
     costly: int
+    mix: str = ""
+    noise: str = "white"
+
+    def plan(self, seed: int, last: int, samples: int) -> list[Entry]:
+        """Cases of this part up to one, in a record of this seed and so many readings."""
+        about = {
+            "seed": seed + self.offset,
+            "mix": self.mix or self.name,
+            "samples": samples,
+            "noise": self.noise,
+        }
+        return plan_of(about, last)
 
     def slice(self, step: int, steps: int) -> tuple[int, int]:
         """First case of a step, and the first one after it."""
@@ -46,7 +61,7 @@ class Size:
 
     Attributes
     ----------
-    null, opened, concealed, tuning : int
+    null, opened, concealed, tuning, coloured : int
         Cases of each part.
     costly_nulls, costly_open : int
         Recordings of each programme with nothing missing, and of each visibility and programme,
@@ -61,6 +76,7 @@ class Size:
     opened: int = 3_600
     concealed: int = 966
     tuning: int = 350
+    coloured: int = 600
     costly_nulls: int = 300
     costly_open: int = 60
     samples: int = 3_000
@@ -74,6 +90,7 @@ class Size:
             Part("open", self.opened, 1, self.costly_open),
             Part("concealed", self.concealed, 2, 0),
             Part("tuning", self.tuning, 3, self.costly_nulls - shared),
+            Part(COLOURED, self.coloured, 4, self.coloured, mix="open", noise="ar0.6"),
         ]
 
     def slices(self) -> Iterator[tuple[Part, int, int]]:
@@ -91,6 +108,7 @@ SUBSET = Size(
     opened=108,
     concealed=69,
     tuning=105,
+    coloured=0,
     costly_nulls=24,
     costly_open=3,
     steps=6,

@@ -17,11 +17,11 @@ from cyclosweep.challenge.board.page import write_page
 from cyclosweep.challenge.board.terminal import print_board
 from cyclosweep.challenge.diagnosing import diagnose_batch, read_diagnosis
 from cyclosweep.challenge.opponents.contest import absent, meet_opponents
-from cyclosweep.challenge.plan import Entry, make_entry, make_plan
+from cyclosweep.challenge.plan import Entry, make_entry
 from cyclosweep.challenge.record.code import code, commit
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.machine import machine
-from cyclosweep.challenge.record.parts import FULL, Part, Size
+from cyclosweep.challenge.record.parts import COLOURED, FULL, Part, Size
 from cyclosweep.challenge.runner import (
     LOCK,
     Folders,
@@ -106,13 +106,25 @@ class Record:
         if not file.exists():
             _write(file, own | {"commit": commit(), "machine": machine()})
         self.about: dict[str, Any] = json.loads(file.read_text())
+        self.ledger = Ledger(out / "PUBLISHED.jsonl")
+        added = self._added_parts(asdict(size))
         for key, value in own.items():
-            if self.about[key] != value:
+            if self.about[key] != value and not (key == "size" and added):
                 raise ValueError(
                     f"{file}: {key}: found {self.about[key]}, expected {value}; "
                     "a record mixes no versions: start afresh or use another folder"
                 )
-        self.ledger = Ledger(out / "PUBLISHED.jsonl")
+        if added:
+            self.ledger.append("part added", **added)
+            self.about["size"] = asdict(size)
+            _write(file, self.about)
+
+    def _added_parts(self, size: dict[str, int]) -> dict[str, int]:
+        """Parts that this record was begun without, if that is all that differs."""
+        before = self.about["size"]
+        added = {name: cases for name, cases in size.items() if name not in before}
+        same = all(size.get(name) == cases for name, cases in before.items())
+        return added if same else {}
 
     def folders(self, part: Part) -> Folders:
         """Folders of a part."""
@@ -120,7 +132,7 @@ class Record:
 
     def plan(self, part: Part, last: int) -> list[Entry]:
         """Cases of a part up to one."""
-        return make_plan(last, self.seed + part.offset, part.name, self.size.samples)
+        return part.plan(self.seed, last, self.size.samples)
 
     def run_slice(self, part: Part, first: int, last: int, screen: Console) -> None:
         """Make, publish, diagnose and show to the opponents one slice.
@@ -234,13 +246,15 @@ class Record:
     def score(self, outcomes: list[Outcome], said: dict[str, Any]) -> Score:
         """Score what is finished."""
         counts = {part.name: self.ledger.done(part.name) for part in self.size.parts()}
+        aside = [o for o in outcomes if o.key.startswith(f"{COLOURED}/")]
+        main = [o for o in outcomes if not o.key.startswith(f"{COLOURED}/")]
         about = {
             "seed": self.seed,
             "mix": ", ".join(f"{name} {count}" for name, count in counts.items()),
             "root": self.ledger.head,
             "parts": counts,
         }
-        return make_score(outcomes, said, about, self.timings(outcomes))
+        return make_score(main, said, about, self.timings(main), aside)
 
     def timings(self, outcomes: Sequence[Outcome]) -> list[Figure]:
         """Time of the verdict alone and of everything, and whether both say the same."""
@@ -324,8 +338,9 @@ def _discard(folder: Path) -> None:
     held = [path for path in folder.glob("*") if path.name != LOCK]
     if held and not (folder / "record.json").exists():
         raise ValueError(f"{folder}: found something that is no record, not deleted")
-    for path in held:
-        if path.is_dir():
+    # The record's own file goes last: what a kill leaves is still known as a record.
+    for path in sorted(held, key=lambda path: path.name == "record.json"):
+        if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)
         else:
             path.unlink()

@@ -6,7 +6,7 @@ import json
 from datetime import UTC, datetime
 from pathlib import Path
 
-from cyclosweep.challenge.plan import Entry, make_plan
+from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.parts import Size
 from cyclosweep.challenge.record.run import said_hash
@@ -45,7 +45,7 @@ def verify_record(out: str | Path, every: int = 1) -> list[str]:
     for part in Size(**about["size"]).parts():
         done = ledger.done(part.name)
         folders = Folders(folder / "parts" / part.name)
-        plan = make_plan(done, about["seed"] + part.offset, part.name, about["size"]["samples"])
+        plan = part.plan(about["seed"], done, about["size"]["samples"])
         hashes = folders.hashes()
         passphrase = folders.passphrase("")
         sealed: dict[int, str] = {}

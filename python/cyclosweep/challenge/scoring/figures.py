@@ -358,25 +358,30 @@ def probabilities(outcomes: Chosen) -> list[Figure]:
 def contest(curves: Sequence[OpponentCurve]) -> list[Figure]:
     """Count the opponents that the diagnosis leaves behind on identical files."""
     figures = []
+    rivals = [c for c in curves if c.who != OURS]
+    for noise in dict.fromkeys(["white", *(c.noise for c in rivals)]):
+        for programme in ("rich", "poor"):
+            own = [c for c in rivals if (c.programme, c.noise) == (programme, noise)]
+            if own or noise == "white":
+                figures += _behind(f"on {noise} noise", programme, [c.own for c in own], 1.0)
     for programme in ("rich", "poor"):
-        for noise in dict.fromkeys(c.noise for c in curves):
-            there = [c for c in curves if (c.programme, c.noise) == (programme, noise)]
-            rivals = [c for c in there if c.who != OURS]
-            figures += _behind(f"on {noise} noise", programme, [c.own for c in rivals])
-            every = [c.every for c in rivals if c.every is not None]
-            if every:
-                figures += _behind("over every family of noise", programme, every)
+        seen = [c for c in rivals if (c.programme, c.noise) == (programme, "white")]
+        every = [c.every for c in seen if c.every is not None]
+        if every:
+            figures += _behind("over all ten families of noise", programme, every, None)
     return figures
 
 
-def _behind(where: str, programme: str, settings: Sequence[Setting]) -> list[Figure]:
+def _behind(
+    where: str, programme: str, settings: Sequence[Setting], wanted: float | None
+) -> list[Figure]:
     """Share of opponents that are behind, threshold and recordings drawn again."""
     return [
         _figure(
             f"opponents at 1 % {where} behind the diagnosis {words}, {programme}",
             share_of(behind),
-            at_least=1.0,
-            must=1.0 if words == "as it is" else None,
+            at_least=wanted,
+            must=wanted if words == "as it is" else None,
         )
         for words, behind in (
             ("as it is", [s.ahead.low > 0.0 for s in settings]),

@@ -20,6 +20,8 @@ Points = tuple[tuple[float, Estimate], ...]
 LEVEL = 0.01
 OURS = "the diagnosis, tuned alike"
 """Our own evidence, with its threshold set as an opponent's is."""
+FEWEST = 20
+"""Recordings below which no power curve is drawn."""
 MIDDLE = (2.5, 10.5)
 """Visibilities over which two detectors are compared: below, none sees much; above, most do."""
 
@@ -32,8 +34,8 @@ class Setting:
     ----------
     threshold : float
         In the detector's units.
-    alarms : Estimate
-        False alarms at that threshold, on the recordings it was set on.
+    alarms : tuple of (str, Estimate)
+        Family of noise, and false alarms under it at that threshold.
     needed : Estimate
         Visibility for 90 % power; beyond 20, none is to be read from it [-]. Its interval holds
         the uncertainty of the threshold.
@@ -46,7 +48,7 @@ class Setting:
     """
 
     threshold: float
-    alarms: Estimate
+    alarms: tuple[tuple[str, Estimate], ...]
     needed: Estimate
     ahead: Estimate
     tuned_ahead: Estimate
@@ -57,7 +59,7 @@ class Setting:
         """Return plain data."""
         return {
             "threshold": self.threshold,
-            "alarms": vars(self.alarms),
+            "alarms": {family: vars(e) for family, e in self.alarms},
             "needed": vars(self.needed),
             "ahead": vars(self.ahead),
             "tuned_ahead": vars(self.tuned_ahead),
@@ -81,10 +83,8 @@ class OpponentCurve:
     own : Setting
         Tuned on recordings with nothing missing and that noise: it knows the family beforehand.
     every : Setting or None
-        Tuned on recordings with nothing missing under every family alike; nothing where it has
-        not seen them all.
-    elsewhere : tuple of (str, Estimate)
-        Other families of noise, and false alarms under them at the setting ``own``.
+        Tuned on recordings with nothing missing under all families of ``NOISES``, each family
+        counting the same; nothing where it has not seen enough of each.
     """
 
     who: str
@@ -94,7 +94,6 @@ class OpponentCurve:
     default_power: Points
     own: Setting
     every: Setting | None
-    elsewhere: tuple[tuple[str, Estimate], ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
@@ -106,7 +105,6 @@ class OpponentCurve:
             "default_power": _listed(self.default_power),
             "own": self.own.as_dict(),
             "every": self.every and self.every.as_dict(),
-            "elsewhere": {family: vars(e) for family, e in self.elsewhere},
         }
 
 
@@ -141,28 +139,40 @@ class _Nulls:
     ----------
     theirs, ours : ndarray, shape (n,)
         Statistic of the opponent, and excess of the diagnosis.
-    weights : ndarray, shape (n,)
-        What each recording counts: every family of noise the same.
+    family : ndarray, shape (n,)
+        Family of noise of each, as a number; every family counts the same.
     """
 
     theirs: Array
     ours: Array
-    weights: Array
+    family: NDArray[np.int64]
 
     @classmethod
     def of(cls, who: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]) -> _Nulls:
         """Collect what was said about some recordings."""
-        families = [o.noise for o in outcomes]
         return cls(
             np.array([said[o.key][who]["score"] for o in outcomes]),
             np.array([o.excess for o in outcomes]),
-            np.array([1.0 / families.count(family) for family in families]),
+            np.array([NOISES.index(o.noise) for o in outcomes]),
         )
 
     def again(self, rng: np.random.Generator) -> _Nulls:
-        """Draw as many of them again."""
-        pick = rng.integers(0, self.theirs.size, self.theirs.size)
-        return _Nulls(self.theirs[pick], self.ours[pick], self.weights[pick])
+        """Draw as many of each family again."""
+        pick = np.arange(self.family.size)
+        for one in np.unique(self.family):
+            there = np.flatnonzero(self.family == one)
+            pick[there] = rng.choice(there, there.size)
+        return _Nulls(self.theirs[pick], self.ours[pick], self.family)
+
+    @property
+    def weights(self) -> Array:
+        """What each recording counts."""
+        return 1.0 / np.bincount(self.family)[self.family]
+
+    @property
+    def fine_enough(self) -> bool:
+        """Whether no single recording decides a threshold of one in a hundred."""
+        return bool(self.weights.max() <= LEVEL * self.weights.sum())
 
     @property
     def threshold(self) -> float:
@@ -175,21 +185,26 @@ class _Nulls:
         return tuned(self.ours, self.weights)
 
 
+def _found(d: Array, hits: NDArray[np.bool_]) -> float:
+    """Visibility for 90 % power: infinite where nothing is found, zero where everything is."""
+    if hits.size and hits.all() != hits.any():
+        return d_for_power(list(d), list(hits), LEVEL, draws=0).value
+    return 0.0 if hits.all() else np.inf
+
+
 def _needed(d: Sequence[float], scores: Array, nulls: _Nulls, draws: int = 60) -> Estimate:
     """Visibility for 90 % power, with threshold and recordings drawn again for its interval."""
     x = np.array(d)
-    value = d_for_power(list(x), list(scores > nulls.threshold), LEVEL, draws=0)
-    if value.count == 0:
-        return value
+    value = _found(x, scores > nulls.threshold)
+    if x.size < FEWEST or value == 0.0:
+        return NOTHING
     rng = np.random.default_rng(2468)
     drawn = []
     for _ in range(draws):
         pick = rng.integers(0, x.size, x.size)
-        limit = nulls.again(rng).threshold
-        again = d_for_power(list(x[pick]), list(scores[pick] > limit), LEVEL, draws=0)
-        drawn.append(again.value if again.count else np.inf)
+        drawn.append(_found(x[pick], scores[pick] > nulls.again(rng).threshold))
     low, high = np.quantile(drawn, [0.025, 0.975], method="nearest")
-    return Estimate(value.value, float(low), float(high), value.count)
+    return Estimate(value, float(low), float(high), x.size)
 
 
 def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, alike: bool) -> Estimate:
@@ -210,7 +225,7 @@ def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, alike: bool)
     return Estimate(difference(every, nulls), float(low), float(high), len(middle))
 
 
-def _by_d(single: Sequence[Outcome], hits: Sequence[bool] | NDArray[np.bool_]) -> Points:
+def by_d(single: Sequence[Outcome], hits: Sequence[bool] | NDArray[np.bool_]) -> Points:
     """Share of hits at every visibility."""
     levels = sorted({round(o.d) for o in single})
     return tuple(
@@ -220,9 +235,13 @@ def _by_d(single: Sequence[Outcome], hits: Sequence[bool] | NDArray[np.bool_]) -
 
 
 def _setting(
-    who: str, single: Sequence[Outcome], nulls: Sequence[Outcome], said: Mapping[str, Any]
+    who: str,
+    single: Sequence[Outcome],
+    nulls: Sequence[Outcome],
+    every: Sequence[Outcome],
+    said: Mapping[str, Any],
 ) -> Setting:
-    """Tune one detector on some recordings with nothing missing."""
+    """Tune one detector on some of all the recordings with nothing missing that it saw."""
     tuning = _Nulls.of(who, nulls, said)
     limit = tuning.threshold
     scores = np.array([said[o.key][who]["score"] for o in single])
@@ -236,12 +255,16 @@ def _setting(
     ]
     return Setting(
         threshold=limit,
-        alarms=share_of(tuning.theirs > limit),
+        alarms=tuple(
+            (family, share_of([said[o.key][who]["score"] > limit for o in there]))
+            for family in NOISES
+            if (there := [o for o in every if o.noise == family])
+        ),
         needed=_needed([o.d for o in single], scores, tuning),
         ahead=_ahead(middle, scores[inside], tuning, alike=False),
         tuned_ahead=_ahead(middle, scores[inside], tuning, alike=True),
-        power=_by_d(single, found),
-        naming=() if any(named is None for named in names) else _by_d(single, right),
+        power=by_d(single, found),
+        naming=() if any(named is None for named in names) else by_d(single, right),
     )
 
 
@@ -249,29 +272,21 @@ def _curve(
     who: str, programme: str, noise: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]
 ) -> OpponentCurve | None:
     """Curve of one opponent, or nothing where it saw no recording."""
-    here = [o for o in outcomes if o.programme == programme]
-    shown = [o for o in here if who in said.get(o.key, {})]
+    shown = [o for o in outcomes if o.programme == programme and who in said.get(o.key, {})]
     single = [o for o in shown if o.tier == "C0" and o.noise == noise]
     nulls = [o for o in shown if o.tier == "C6"]
     own = [o for o in nulls if o.noise == noise]
     if not own or not single:
         return None
-    setting = _setting(who, single, own, said)
-    families = {o.noise for o in here if o.tier == "C6"}
-    saw_all = len(families) > 1 and {o.noise for o in nulls} == families
+    saw_all = {o.noise for o in nulls} == set(NOISES) and _Nulls.of(who, nulls, said).fine_enough
     return OpponentCurve(
         who=who,
         programme=programme,
         noise=noise,
         default_alarms=share_of([said[o.key][who]["flagged"] for o in own]),
-        default_power=_by_d(single, [said[o.key][who]["flagged"] for o in single]),
-        own=setting,
-        every=_setting(who, single, nulls, said) if saw_all else None,
-        elsewhere=tuple(
-            (family, share_of([said[o.key][who]["score"] > setting.threshold for o in others]))
-            for family in NOISES
-            if family != noise and (others := [o for o in nulls if o.noise == family])
-        ),
+        default_power=by_d(single, [said[o.key][who]["flagged"] for o in single]),
+        own=_setting(who, single, own, nulls, said),
+        every=_setting(who, single, nulls, nulls, said) if saw_all else None,
     )
 
 

@@ -13,9 +13,10 @@ from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import Bin, calibration_bins
 from cyclosweep.challenge.scoring.confusion import confusion
 from cyclosweep.challenge.scoring.figures import Figure, all_figures, contest
-from cyclosweep.challenge.scoring.intervals import Estimate, share_of
+from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.rivals import OpponentCurve, opponent_curves
+from cyclosweep.challenge.scoring.power import d_for_power
+from cyclosweep.challenge.scoring.rivals import LEVEL, OpponentCurve, by_d, opponent_curves
 
 
 @dataclass(frozen=True)
@@ -24,14 +25,18 @@ class Curve:
 
     Attributes
     ----------
-    who, programme : str
-        Whose curve it is, and on which programme.
+    who, programme, noise : str
+        Whose curve it is, on which programme and under which noise.
+    needed : Estimate
+        Visibility for 90 % power [-]; of ``named right`` there is none.
     points : tuple of (float, Estimate)
         Visibility and share with its interval.
     """
 
     who: str
     programme: str
+    noise: str
+    needed: Estimate
     points: tuple[tuple[float, Estimate], ...]
 
 
@@ -68,13 +73,15 @@ class Score:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data that JSON can hold; not-a-number becomes null."""
         plain = {
-            "schema": "cyclosweep.challenge/1",
+            "schema": "cyclosweep.challenge/2",
             "about": self.about,
             "figures": [figure.as_dict() for figure in self.figures],
             "curves": [
                 {
                     "who": curve.who,
                     "programme": curve.programme,
+                    "noise": curve.noise,
+                    "needed": vars(curve.needed),
                     "points": [{"d": d, **vars(e)} for d, e in curve.points],
                 }
                 for curve in self.curves
@@ -101,25 +108,22 @@ def _nulled(value: Any) -> Any:
 
 def _curves(outcomes: Sequence[Outcome]) -> list[Curve]:
     """Curves of the diagnosis and of the test that knows the effect."""
-    threshold = oracle_d(0.5, 0.01)
+    threshold = oracle_d(0.5, LEVEL)
     curves = []
-    for programme in ("rich", "poor"):
-        single = [o for o in outcomes if o.tier == "C0" and o.programme == programme]
-        levels = sorted({round(o.d) for o in single})
-        told: dict[str, list[bool]] = {
-            "detected": [o.alarm for o in single],
-            "named right": [o.named_right for o in single],
-            "test that knows the effect": [abs(o.oracle_z) > threshold for o in single],
-        }
-        for who, flags in told.items():
-            points = tuple(
-                (
-                    float(d),
-                    share_of([f for o, f in zip(single, flags, strict=True) if round(o.d) == d]),
-                )
-                for d in levels
-            )
-            curves.append(Curve(who, programme, points))
+    for noise in dict.fromkeys(o.noise for o in outcomes if o.tier == "C0"):
+        for programme in ("rich", "poor"):
+            single = [
+                o for o in outcomes if (o.tier, o.programme, o.noise) == ("C0", programme, noise)
+            ]
+            d = [o.d for o in single]
+            told: dict[str, list[bool]] = {
+                "detected": [o.alarm for o in single],
+                "named right": [o.named_right for o in single],
+                "test that knows the effect": [abs(o.oracle_z) > threshold for o in single],
+            }
+            for who, flags in told.items():
+                needed = NOTHING if who == "named right" else d_for_power(d, flags, LEVEL)
+                curves.append(Curve(who, programme, noise, needed, by_d(single, flags)))
     return curves
 
 
@@ -128,6 +132,7 @@ def make_score(
     said: Mapping[str, Any],
     about: dict[str, Any],
     further: Sequence[Figure] = (),
+    aside: Sequence[Outcome] = (),
 ) -> Score:
     """Score the outcomes of a challenge.
 
@@ -141,8 +146,10 @@ def make_score(
         What the challenge was made of.
     further : sequence of Figure
         Figures that do not follow from the outcomes.
+    aside : sequence of Outcome
+        Further cases for the contest with the opponents, in no other figure.
     """
-    curves = opponent_curves(outcomes, said)
+    curves = opponent_curves([*outcomes, *aside], said)
     verdicts = (
         pl.DataFrame(
             {
@@ -159,7 +166,7 @@ def make_score(
     return Score(
         about=about | {"cases": len(outcomes)},
         figures=[*all_figures(outcomes), *contest(curves), *further],
-        curves=_curves(outcomes),
+        curves=_curves([*outcomes, *aside]),
         opponents=curves,
         confusion={
             programme: confusion([o for o in named if o.programme == programme])
