@@ -27,6 +27,7 @@ help:
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; a quarter of an hour"
 	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
 	@echo "make docs    regenerate the tables in docs that come from code"
+	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
 
 env: $(VENV)/.ready

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+import cyclosweep as cs
+
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -63,6 +65,15 @@ def test_make_targets_exist(code: str) -> None:
 def test_every_block_is_of_a_kind_that_is_checked() -> None:
     kinds = {match[1] for page in PAGES for match in _BLOCK.finditer(page.read_text("utf-8"))}
     assert kinds <= {"python", "sh", "make", "toml", "json", "text"}
+
+
+def test_the_study_on_the_files_page_is_one_and_its_statuses_are_all(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "files.md").read_text("utf-8")
+    [study] = [match[2] for match in _BLOCK.finditer(page) if match[1] == "toml"]
+    (tmp_path / "study.toml").write_text(study)
+    labels = cs.Study.from_toml(tmp_path / "study.toml").statuses
+    named = set(re.findall(r"`([a-z_]+)`", page.split("## The columns")[1]))
+    assert {label for label in labels if not label.startswith("limit_")} - {"ok"} <= named
 
 
 def test_nomenclature_is_up_to_date() -> None:
