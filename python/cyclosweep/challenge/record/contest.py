@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cyclosweep.challenge.board.svg import PALETTE, Series, chart
+from cyclosweep.challenge.board.terminal import within_reach
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record.markdown import Plain, table, text
+from cyclosweep.challenge.scoring.intervals import Estimate
 
 EVERY = "every"
 OWN = "own"
@@ -145,11 +148,11 @@ def _alarm(alarms: Mapping[str, Plain], family: str) -> str:
 
 def _needed(e: Plain) -> str:
     """Visibility for 90 % power; without a bound where it lies beyond what was tried."""
-    if not e["count"] or (e["value"] is not None and e["value"] <= 20.0 and e["high"] is not None):
+    if not e["count"]:
         return text(e)
-    value = "> 20" if e["value"] is None or e["value"] > 20.0 else f"{e['value']:.3g}"
-    low = 20.0 if e["low"] is None else min(e["low"], 20.0)
-    return f"{value} [{low:.3g}, > 20]"
+    # JSON has no infinity.
+    value, low, high = (math.inf if e[k] is None else e[k] for k in ("value", "low", "high"))
+    return within_reach(Estimate(value, low, high, e["count"]))
 
 
 def _at(points: Mapping[float, Plain], d: float) -> str:

@@ -18,10 +18,8 @@ from cyclosweep.challenge.scoring.calibration import (
 )
 from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
+from cyclosweep.challenge.scoring.power import LEVEL, d_for_power, relative_to_oracle
 from cyclosweep.challenge.scoring.rivals import OURS, OpponentCurve, Setting
-
-LEVEL = 0.01
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,12 @@ from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate
 Array = NDArray[np.float64]
 
 
+LEVEL = 0.01
+"""False alarms at which detectors are compared."""
+FEWEST = 20
+"""Recordings below which no power curve is drawn."""
+
+
 def _fit(d: Array, hit: Array, level: float) -> float:
     """Fit a probit curve above a false-alarm floor; return where it reaches 0.9."""
 
@@ -28,7 +34,7 @@ def _fit(d: Array, hit: Array, level: float) -> float:
 
 
 def d_for_power(
-    d: Sequence[float], hits: Sequence[bool], level: float = 0.01, draws: int = 200
+    d: Sequence[float], hits: Sequence[bool], level: float = LEVEL, draws: int = 200
 ) -> Estimate:
     """Visibility at which nine in ten are found, with a bootstrap interval [-].
 
@@ -36,7 +42,7 @@ def d_for_power(
     cases, or cases of one outcome only, are there.
     """
     x, y = np.asarray(d, dtype=float), np.asarray(hits, dtype=float)
-    if x.size < 20 or y.min() == y.max():
+    if x.size < FEWEST or y.min() == y.max():
         return NOTHING
     value = _fit(x, y, level)
     if draws == 0:
@@ -51,7 +57,7 @@ def d_for_power(
     return Estimate(value, float(low), float(high), int(x.size))
 
 
-def relative_to_oracle(needed: Estimate, level: float = 0.01) -> Estimate:
+def relative_to_oracle(needed: Estimate, level: float = LEVEL) -> Estimate:
     """Visibility needed over that of the test that knows the effect [-]."""
     oracle = oracle_d(0.9, level)
     return Estimate(needed.value / oracle, needed.low / oracle, needed.high / oracle, needed.count)

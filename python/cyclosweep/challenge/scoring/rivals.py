@@ -12,16 +12,13 @@ from numpy.typing import NDArray
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.power import d_for_power
+from cyclosweep.challenge.scoring.power import FEWEST, LEVEL, d_for_power
 
 Array = NDArray[np.float64]
 Points = tuple[tuple[float, Estimate], ...]
 
-LEVEL = 0.01
 OURS = "the diagnosis, tuned alike"
 """Our own evidence, with its threshold set as an opponent's is."""
-FEWEST = 20
-"""Recordings below which no power curve is drawn."""
 MIDDLE = (2.5, 10.5)
 """Visibilities over which two detectors are compared: below, none sees much; above, most do."""
 

@@ -15,8 +15,8 @@ from cyclosweep.challenge.scoring.confusion import confusion
 from cyclosweep.challenge.scoring.figures import Figure, all_figures, contest
 from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.power import d_for_power
-from cyclosweep.challenge.scoring.rivals import LEVEL, OpponentCurve, by_d, opponent_curves
+from cyclosweep.challenge.scoring.power import LEVEL, d_for_power
+from cyclosweep.challenge.scoring.rivals import OpponentCurve, by_d, opponent_curves
 
 
 @dataclass(frozen=True)
