@@ -56,6 +56,20 @@ def test_heavy_tails_are_recognised():
     assert np.max(np.abs(score)) < 6
 
 
+def test_the_residual_has_unit_variance_where_outliers_follow_no_tail():
+    # Normal readings with some far off: no Student's distribution has that score.
+    rng, x, basis, gap = material(4000)
+    squares = []
+    for _ in range(12):
+        far = np.where(rng.random(len(x)) < 0.03, 8.0, 1.0)
+        angle = 0.1 * far * rng.normal(size=len(x))
+        noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(x)))
+        assert np.isfinite(noise.tail)
+        white, _ = noise.residual(angle, np.zeros(len(x)))
+        squares.append(np.mean(white**2))
+    assert np.mean(squares) == pytest.approx(1.0, abs=0.015)
+
+
 @pytest.mark.parametrize("sigma", [0.02, 0.05])
 def test_noise_behind_a_coarse_dial(sigma):
     rng, x, basis, gap = material()

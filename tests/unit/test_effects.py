@@ -96,6 +96,23 @@ def test_takeup_only_stiffens_beyond_its_first_engagement():
     assert column[39] == pytest.approx(-(10 - 1.0))
 
 
+def test_engagements_at_low_loads_are_likelier_and_the_prior_adds_up_to_one():
+    h = history()
+    takeup, top = effects.find("clearance_takeup"), h.largest_torque_nm
+
+    def remoteness(first, width):
+        return takeup.remoteness(h, {"first_nm": first * top, "range_nm": width * top})
+
+    assert remoteness(0.05, 0.1) < 0.0 < remoteness(0.45, 0.45)
+    assert remoteness(0.3, 0.0) == pytest.approx(takeup.remoteness(h, {"kink_1_nm": 0.3 * top}))
+    density = [
+        np.exp(-remoteness(f, w))
+        for f in np.linspace(0.02, 0.4, 25)
+        for w in np.linspace(0.01, 0.4, 25)
+    ]
+    assert np.mean(density) == pytest.approx(1.0, rel=0.02)
+
+
 def test_datum_remembers_the_run_before():
     h = history()
     column = effects.find("datum_drift").columns(h, {"push": 0.0, "memory": 0.5})[:, 0]

@@ -19,7 +19,7 @@ LEVEL = 0.01
 """Nominal level of the global test."""
 OWN = 0.02
 """Null probability at which the excess of a hypothesis begins."""
-WITHOUT_NAME = 1.5
+NAMELESS = 1.5
 """What a shape without a name pays: the logarithm by which its share of the level is smaller."""
 FLOOR = 2.5
 """Smallest threshold of the excess."""
@@ -48,11 +48,11 @@ class Alarm:
         """Draw recordings with nothing beyond the model at hand."""
         drawn = rest.null_evidences(DRAWS, rng)
         start = {
-            name: tail_quantile(row, OWN) + (0.0 if _named(rest, name) else WITHOUT_NAME)
+            name: tail_quantile(row, OWN) + (0.0 if _named(rest, name) else NAMELESS)
             for name, row in zip(rest.groups, drawn, strict=True)
         }
         waves = hum.null_wave(DRAWS, rng)
-        start |= dict.fromkeys(hum.FAMILIES, tail_quantile(waves, OWN) + WITHOUT_NAME)
+        start |= dict.fromkeys(hum.FAMILIES, tail_quantile(waves, OWN) + NAMELESS)
         part = cls(start, np.zeros(0), np.inf)
         maxima = part.largest(rest, drawn, waves)
         return cls(start, maxima, max(tail_quantile(maxima, LEVEL), FLOOR))

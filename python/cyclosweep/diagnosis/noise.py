@@ -38,6 +38,9 @@ class Noise:
         Standard deviation of a row where ``sigma_deg`` is something else.
     structured : bool
         What is left is error of the model rather than noise.
+    score_moments : tuple of float
+        Mean slope and mean square of the score of one white row of unit variance; what they
+        are, not what Student's distribution says, for outliers are not drawn from it.
     """
 
     sigma_deg: float
@@ -49,6 +52,7 @@ class Noise:
     gap: Floats
     marginal_deg: float | None = None
     structured: bool = False
+    score_moments: tuple[float, float] = (1.0, 1.0)
 
     @property
     def spread_deg(self) -> float:
@@ -84,11 +88,9 @@ class Noise:
         white = self.whiten((angle - mean) / self.sigma_deg)
         even = np.full(len(mean), 1.0 / self.sigma_deg)
         if np.isfinite(self.tail):
-            # Unit variance: scale of the t is below sigma.
-            scale = np.sqrt((self.tail - 2.0) / self.tail) if self.tail > 2.05 else 0.3
-            known = (self.tail + 1.0) / ((self.tail + 3.0) * scale**2)
-            score = (self.tail + 1.0) * white / (self.tail * scale**2 + white**2)
-            return score / np.sqrt(known), even * np.sqrt(known)
+            slope, square = self.score_moments
+            root = np.sqrt(square)
+            return student_score(white, self.tail)[0] / root, even * (slope / root)
         return white, even
 
     def design(self, columns: Floats, weight: Floats) -> Floats:
@@ -98,6 +100,14 @@ class Noise:
     def with_sigma(self, sigma_deg: float) -> "Noise":
         """Return the same noise with another size."""
         return replace(self, sigma_deg=sigma_deg)
+
+
+def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
+    """Score of rows of unit variance under Student's distribution, and its slope."""
+    scale2 = (tail - 2.0) / tail if tail > 2.05 else 0.09
+    spread = tail * scale2 + white**2
+    score = (tail + 1.0) * white / spread
+    return score, (tail + 1.0) * (tail * scale2 - white**2) / spread**2
 
 
 def interval_score(angle: Floats, mean: Floats, sigma: float, step: float) -> tuple[Floats, Floats]:
@@ -159,7 +169,7 @@ def estimate_noise(
     clean = np.clip(left, -4 * scale, 4 * scale)
     best, upper = _correlation(clean, basis, gap)
     rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
-    sigma, tail = _size(rough, left, basis, freedom)
+    sigma, tail, moments = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     averaged = float(np.median(weight)) > 1.5
     if resolution > 0 and not averaged:
@@ -183,7 +193,7 @@ def estimate_noise(
         # kinks. Rows count equally then.
         plain = max(float(np.sqrt(left @ left / freedom)), 1e-12)
         return Noise(plain, 0.0, best, np.inf, 0.0, freedom, gap, plain, structured=True)
-    return Noise(sigma, upper, best, tail, 0.0, freedom, gap)
+    return Noise(sigma, upper, best, tail, 0.0, freedom, gap, score_moments=moments)
 
 
 def orthonormal(columns: Floats, tolerance: float = 1e-9) -> Floats:
@@ -231,15 +241,17 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
     return float(grid[best]), float(grid[within[-1]])
 
 
-def _size(noise: Noise, left: Floats, basis: Floats, freedom: float) -> tuple[float, float]:
-    """Size of the whitened noise, and the tail of its distribution."""
+def _size(
+    noise: Noise, left: Floats, basis: Floats, freedom: float
+) -> tuple[float, float, tuple[float, float]]:
+    """Size of the whitened noise, the tail of its distribution, slope and square of its score."""
     white = noise.whiten(left)
     inner = orthonormal(noise.whiten(basis))
     white = white - inner @ (inner.T @ white)
     count = len(white)
     sigma = float(np.sqrt(white @ white / freedom))
     if count < 100 or sigma <= 0:
-        return max(sigma, 1e-9), np.inf
+        return max(sigma, 1e-9), np.inf, (1.0, 1.0)
     inflate = np.sqrt(count / freedom)
     scale = 1.4826 * float(np.median(np.abs(white))) * inflate
     best_tail, best_value, best_sigma = np.inf, -np.inf, sigma
@@ -257,7 +269,10 @@ def _size(noise: Noise, left: Floats, basis: Floats, freedom: float) -> tuple[fl
             trial *= np.sqrt(tail / (tail - 2.0))
         if value > best_value:
             best_tail, best_value, best_sigma = tail, value, trial
-    return best_sigma, best_tail
+    if np.isinf(best_tail):
+        return best_sigma, best_tail, (1.0, 1.0)
+    score, slope = student_score(white * inflate / best_sigma, best_tail)
+    return best_sigma, best_tail, (float(np.mean(slope)), float(np.mean(score**2)))
 
 
 def _student_likelihood(values: Floats, tail: float) -> float:

@@ -241,7 +241,10 @@ class Search:
         if effect is not None and effect.vector:
             places = joint.amplitude_places(len(joint.terms) - 1)
             return 0.5 * gain - price_of_vector(joint.beta[places], joint.information(places))
-        return float(evidence(gain, rank)) - max(cost, self._price_of_shape(joint, node.rest))
+        added = float(evidence(gain, rank)) - max(cost, self._price_of_shape(joint, node.rest))
+        if effect is not None:
+            added -= effect.remoteness(joint.history, joint.terms[-1].shape)
+        return added
 
     def _price_of_shape(self, joint: Fit, rest: Scan) -> float:
         """Log of how many of its library's shapes of the last term a recording tells apart."""

@@ -85,6 +85,10 @@ class Effect:
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""
         return 0.0
 
+    def remoteness(self, history: History, shape: Shape) -> float:
+        """Log prior odds against a fitted shape that lies far from the usual ones [nat]."""
+        return 0.0
+
     def expected(self, history: History, shape: Shape) -> Floats | None:
         """Size that amplitudes are expected to have, which holds those that nothing else holds.
 

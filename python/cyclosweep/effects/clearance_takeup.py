@@ -7,14 +7,19 @@ import numpy as np
 from cyclosweep.effects.base import Effect, Parameter, Shape, listed
 from cyclosweep.effects.history import Flags, Floats, History
 
+SPREAD = 0.25
+"""Spread of the mean load of engagement over the largest load, a half-normal prior."""
+FIRST, WIDTH = (0.02, 0.4), (0.01, 0.4)
+"""Loads of first engagement, and ranges, in which it is looked for, over the largest load."""
+
 
 class ClearanceTakeup(Effect):
     """Compliance that drops while further pins engage, between two loads.
 
     Below `first_nm` the first pins carry alone; up to `first_nm + range_nm` the others engage, and
     the compliance falls by the amplitude. A range of zero is a single kink. Clearances are small
-    against the elastic twist, so the first engagement lies in the lower half of the range; a single
-    kink beyond is what a sensor at its limit shows.
+    against the elastic twist, so the first engagement lies in the lower half of the range, and low
+    engagements are likelier than high ones; a kink beyond is what a sensor at its limit shows.
     """
 
     name = "clearance_takeup"
@@ -44,6 +49,14 @@ class ClearanceTakeup(Effect):
         return grid + [
             {f"kink_{k}_nm": share * top for k, share in enumerate(shares, 1)} for shares in kinks
         ]
+
+    def remoteness(self, history: History, shape: Shape) -> float:
+        """Half-normal prior of the mean load of engagement, over an even one of first and range."""
+        if "first_nm" in shape:
+            mean_nm = shape["first_nm"] + 0.5 * shape["range_nm"]
+        else:
+            mean_nm = float(np.mean(list(shape.values())))
+        return 0.5 * (mean_nm / history.largest_torque_nm / SPREAD) ** 2 + _LOG_EVEN
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist lost for a unit drop of compliance [deg]."""
@@ -82,3 +95,12 @@ def _kinks(shape: Shape) -> list[float]:
     if "first_nm" not in shape:
         return list(shape.values())
     return [shape["first_nm"], shape["first_nm"] + shape["range_nm"]]
+
+
+def _log_even() -> float:
+    """Log of the unnormalised half-normal density, averaged over the loads looked at."""
+    first, width = np.meshgrid(np.linspace(*FIRST, 40), np.linspace(*WIDTH, 40))
+    return float(np.log(np.mean(np.exp(-0.5 * ((first + 0.5 * width) / SPREAD) ** 2))))
+
+
+_LOG_EVEN = _log_even()

@@ -107,7 +107,7 @@ def facts() -> Iterator[Fact]:
         (
             "13:1 printed drive: output stiffness 310 to 337 N m/rad",
             "N m/rad",
-            "pins and shaft are not what is soft there: the model reads 7 to 50 times stiffer",
+            "printed discs, housing and joints are soft there; the model holds pins and shaft only",
         ),
     ):
         yield Fact(GROUP, fact, None, None, unit_name, "published", None, reason)
