@@ -137,6 +137,8 @@ def effect(name, rng, torque, time, run, crank, warm):
         return flips * 1.0
     if name == "saturation":
         return -side * np.maximum(load - 0.93 * top, 0.0)
+    if name == "early_saturation":
+        return -side * np.maximum(load - 0.65 * top, 0.0)
     raise ValueError(name)
 
 
