@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from cyclosweep.challenge.board.curves import power_chart, power_series
 from cyclosweep.challenge.board.gallery import Exhibit
-from cyclosweep.challenge.board.svg import PALETTE, Series, chart
+from cyclosweep.challenge.board.svg import Series, chart
 from cyclosweep.challenge.board.terminal import as_text, within_reach
 from cyclosweep.challenge.scoring.figures import Figure
 from cyclosweep.challenge.scoring.score import Score
@@ -61,32 +62,15 @@ def _figures(score: Score) -> str:
 
 def _power(score: Score, programme: str, noise: str) -> str:
     """Power curves of the diagnosis, the knowing test and the opponents."""
-    series = []
     curves = [c for c in score.curves if (c.programme, c.noise) == (programme, noise)]
     rivals = [o for o in score.opponents if (o.programme, o.noise) == (programme, noise)]
     named = [(c.who, c.points) for c in curves]
     named += [(f"{o.who} at 1 %", o.own.power) for o in rivals]
-    for k, (who, points) in enumerate(named):
-        if points:
-            series.append(
-                Series(
-                    who,
-                    [d for d, _ in points],
-                    [e.value for _, e in points],
-                    [e.low for _, e in points],
-                    [e.high for _, e in points],
-                    colour=PALETTE[k % len(PALETTE)],
-                )
-            )
-    reach = max((x for s in series for x in s.x), default=20.0)
-    return chart(
-        f"Power against visibility, {programme} programme, {noise} noise",
-        "projected signal-to-noise d",
-        "share of recordings",
-        series,
-        x_range=(0.0, reach * 1.04),
-        y_range=(0.0, 1.0),
+    series = power_series(
+        [(who, [(d, e.value, e.low, e.high) for d, e in points]) for who, points in named]
     )
+    reach = max((x for s in series for x in s.x), default=20.0)
+    return power_chart(f"{programme} programme, {noise} noise", series, (0.0, reach * 1.04))
 
 
 def _opponents(score: Score) -> str:

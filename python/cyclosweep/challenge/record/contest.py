@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from cyclosweep.challenge.board.svg import PALETTE, Series, chart
+from cyclosweep.challenge.board.curves import power_chart, power_series
 from cyclosweep.challenge.board.terminal import within_reach
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record.markdown import Plain, table, text
@@ -166,27 +166,15 @@ def _drawn(score: Plain, programme: str, noise: str, setting: str) -> str:
         (f"{o['who']} at 1 %", o[setting]["power"])
         for o in _rivals(score, programme, noise, setting)
     ]
-    series = [
-        Series(
-            who,
-            [p["d"] + 0.05 * k for p in points],
-            [p["value"] for p in points],
-            [p["low"] for p in points],
-            [p["high"] for p in points],
-            colour=PALETTE[k % len(PALETTE)],
-        )
-        for k, (who, points) in enumerate(named)
-        if points
-    ]
-    where = "one threshold for all families of noise" if setting == EVERY else f"{noise} noise"
-    drawn = chart(
-        f"Power against visibility, {programme} programme, {where}",
-        "projected signal-to-noise d",
-        "share of recordings",
-        series,
-        x_range=(2.0, 21.0),
-        y_range=(0.0, 1.0),
+    series = power_series(
+        [
+            (who, [(p["d"], p["value"], p["low"], p["high"]) for p in points])
+            for who, points in named
+        ],
+        apart=0.05,
     )
+    where = "one threshold for all families of noise" if setting == EVERY else f"{noise} noise"
+    drawn = power_chart(f"{programme} programme, {where}", series, (2.0, 21.0))
     element = drawn[: drawn.index("</svg>")]
     legend = "".join(
         f'<rect x="480" y="{26 + 18 * k}" width="9" height="9" fill="{s.colour}"/>'

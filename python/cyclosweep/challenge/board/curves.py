@@ -1,0 +1,38 @@
+"""Power against visibility, of any number of detectors, as one chart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cyclosweep.challenge.board.svg import PALETTE, Series, chart
+
+Point = tuple[float, float, float, float]
+"""Visibility, share found, and the bounds of its interval."""
+
+
+def power_series(curves: Sequence[tuple[str, Sequence[Point]]], apart: float = 0.0) -> list[Series]:
+    """Series of every detector that has points, each set apart from the one before it."""
+    return [
+        Series(
+            who,
+            [d + apart * k for d, _, _, _ in points],
+            [value for _, value, _, _ in points],
+            [low for _, _, low, _ in points],
+            [high for _, _, _, high in points],
+            colour=PALETTE[k % len(PALETTE)],
+        )
+        for k, (who, points) in enumerate(curves)
+        if points
+    ]
+
+
+def power_chart(title: str, series: Sequence[Series], x_range: tuple[float, float]) -> str:
+    """Chart of power curves."""
+    return chart(
+        f"Power against visibility, {title}",
+        "projected signal-to-noise d",
+        "share of recordings",
+        series,
+        x_range=x_range,
+        y_range=(0.0, 1.0),
+    )
