@@ -34,7 +34,7 @@ from cyclosweep.challenge.measured import (
     with_angle,
     write_loops,
 )
-from cyclosweep.challenge.runner import Options, program_of, work
+from cyclosweep.challenge.runner.work import Options, program_of, work
 from cyclosweep.challenge.scoring.outcome import ALARMS
 
 Array = NDArray[np.float64]

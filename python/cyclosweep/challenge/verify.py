@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from cyclosweep.challenge.plan import Entry, make_entry
-from cyclosweep.challenge.runner import plan_of
+from cyclosweep.challenge.runner.run import plan_of
 from cyclosweep.challenge.seal import SealError, root_hash, unseal
 
 

@@ -36,7 +36,8 @@ def challenge(
 
     The same command on the same DIR goes on where it stopped; a larger N adds cases.
     """
-    from cyclosweep.challenge.runner import Options, run_challenge
+    from cyclosweep.challenge.runner.run import run_challenge
+    from cyclosweep.challenge.runner.work import Options
     from cyclosweep.challenge.seal import SealError
 
     try:

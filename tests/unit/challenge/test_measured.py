@@ -24,7 +24,7 @@ from cyclosweep.challenge.measured import (
 )
 from cyclosweep.challenge.measured_run import doubts, run_measured
 from cyclosweep.challenge.record.real import real_drive
-from cyclosweep.challenge.runner import Options
+from cyclosweep.challenge.runner.work import Options
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
 

@@ -21,7 +21,8 @@ from cyclosweep.challenge.record.paper import write_paper
 from cyclosweep.challenge.record.parts import COLOURED, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
-from cyclosweep.challenge.runner import LOCK, Options
+from cyclosweep.challenge.runner.folders import LOCK
+from cyclosweep.challenge.runner.work import Options
 from cyclosweep.challenge.seal import SealError
 
 STAND_IN = Path(__file__).parent / "stand_in.py"

@@ -9,7 +9,9 @@ import pytest
 from filelock import FileLock
 from rich.console import Console
 
-from cyclosweep.challenge.runner import LOCK, Options, run_challenge
+from cyclosweep.challenge.runner.folders import LOCK
+from cyclosweep.challenge.runner.run import run_challenge
+from cyclosweep.challenge.runner.work import Options
 from cyclosweep.challenge.seal import SealError
 from cyclosweep.challenge.verify import verify_run
 

@@ -19,7 +19,9 @@ from cyclosweep.challenge.record.paper import write_paper
 from cyclosweep.challenge.record.parts import FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import FLAGS, Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
-from cyclosweep.challenge.runner import RECORD_SEED, Options, OutOfTimeError, alone
+from cyclosweep.challenge.runner.folders import alone
+from cyclosweep.challenge.runner.run import RECORD_SEED
+from cyclosweep.challenge.runner.work import Options, OutOfTimeError
 from cyclosweep.challenge.seal import SealError
 
 MEASURED = "CYCLOSWEEP_MEASURED"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cyclosweep.challenge.plan import Entry
-from cyclosweep.challenge.runner import plan_of
+from cyclosweep.challenge.runner.run import plan_of
 
 STEPS = 25
 COLOURED = "coloured"

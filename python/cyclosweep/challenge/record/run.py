@@ -22,20 +22,16 @@ from cyclosweep.challenge.record.code import code, commit
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.machine import machine
 from cyclosweep.challenge.record.parts import COLOURED, FULL, Part, Size
-from cyclosweep.challenge.runner import (
-    LOCK,
-    Folders,
-    Options,
-    OutOfTimeError,
+from cyclosweep.challenge.runner.folders import LOCK, Folders
+from cyclosweep.challenge.runner.stages import (
     diagnose,
     gallery,
     open_answers,
     opponents_said,
     predict_all,
     prepare,
-    program_of,
-    work,
 )
+from cyclosweep.challenge.runner.work import Options, OutOfTimeError, program_of, work
 from cyclosweep.challenge.scoring.figures import Figure, timing
 from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.score import Score, make_score

@@ -10,7 +10,7 @@ from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.parts import Size
 from cyclosweep.challenge.record.run import said_hash
-from cyclosweep.challenge.runner import Folders
+from cyclosweep.challenge.runner.folders import Folders
 from cyclosweep.challenge.seal import SealError, root_hash
 from cyclosweep.challenge.verify import verify_entry
 

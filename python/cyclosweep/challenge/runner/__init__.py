@@ -1,0 +1,1 @@
+"""A whole challenge: recordings, sealed answers, diagnoses, opponents and score; resumable."""
