@@ -279,5 +279,6 @@ def test_figures_of_two_runs_agree_within_their_intervals(whole: Path) -> None:
     far = {"value": 0.60, "low": 0.50, "high": 0.70, "count": 90}
     assert fits(near, {**near, "value": 0.92, "low": 0.89, "high": 0.95})
     assert not fits(near, far)
-    score = {"figures": [{"name": "x", "estimate": near}, {"name": "time of it", "estimate": far}]}
+    names = ("x", "time of it", "calibration error of stated probabilities")
+    score = {"figures": [{"name": name, "estimate": near} for name in names]}
     assert [p.name for p in pairs(score, score)] == ["x"]

@@ -14,6 +14,9 @@ from rich.table import Table
 
 FEWEST = 10
 """Figures that rest on fewer cases are not compared."""
+OWN = ("time ", "calibration error", "the same if every stated probability")
+"""Beginnings of figures that belong to a machine or to a number of cases: departures of stated
+probabilities, summed without sign, are the larger the fewer cases there are."""
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,13 @@ def fits(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
 
 
 def pairs(ours: Mapping[str, Any], record: Mapping[str, Any]) -> list[Pair]:
-    """Figures that both runs have, times left out: those belong to a machine."""
+    """Figures that both runs have and that runs of another size should share."""
     known = {f["name"]: f["estimate"] for f in record["figures"]}
     found = []
     for figure in ours["figures"]:
         name, here = figure["name"], figure["estimate"]
         there = known.get(name)
-        if there is None or name.startswith("time ") or here["value"] is None:
+        if there is None or name.startswith(OWN) or here["value"] is None:
             continue
         whole = all(e[k] is not None for e in (here, there) for k in ("value", "low", "high"))
         if whole and min(here["count"], there["count"]) >= FEWEST:
