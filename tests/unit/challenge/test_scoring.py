@@ -13,11 +13,17 @@ from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import calibration_error, chance_error
 from cyclosweep.challenge.scoring.confusion import confusion
-from cyclosweep.challenge.scoring.figures import all_figures, contest
+from cyclosweep.challenge.scoring.curves import detection_curves
+from cyclosweep.challenge.scoring.figures import Figure, all_figures, contest
 from cyclosweep.challenge.scoring.intervals import bootstrapped, share
 from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
 from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves
+
+
+def _table(outcomes: list[Outcome]) -> list[Figure]:
+    """The table of figures of some outcomes."""
+    return all_figures(outcomes, detection_curves(outcomes))
 
 
 def test_named_right_takes_exactly_the_true_set() -> None:
@@ -126,7 +132,7 @@ def test_an_explanation_with_a_nameless_part_is_not_the_true_set() -> None:
 
 def test_an_alarm_without_an_explanation_does_not_cover() -> None:
     none = [outcome(truth("creep"), said("UNKNOWN_PHYSICS", explanation_set=[]))]
-    found = {f.name: f.estimate for f in all_figures(none)}
+    found = {f.name: f.estimate for f in _table(none)}
     assert found["explanation set covers the truth, rich"].value == 0.0
 
 
@@ -173,8 +179,11 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
     assert every.threshold == white[10]
     assert dict(every.alarms)["white"].value == 0.05
     assert dict(every.alarms)["ar0.6"].value == 0.05
-    reached = {f.name: f for f in contest(list(curves.values()))}
+    reached = {f.name: f for f in contest(detection_curves(outcomes), list(curves.values()))}
     assert reached["opponents at 1 % on white noise behind the diagnosis as it is, rich"].met
+    slower = "by d for 90 % alone, opponents at 1 % on white noise behind the diagnosis"
+    assert reached[f"{slower} as it is, rich"].estimate.value == 1.0
+    assert reached[f"{slower} at its own 1 %, rich"].estimate.value == 1.0
     every_row = reached[
         "opponents at 1 % over all ten families of noise behind the diagnosis as it is, rich"
     ]
@@ -210,9 +219,9 @@ def test_who_finds_nothing_needs_more_than_was_tried() -> None:
 
 
 def test_contest_without_curves_has_too_few_cases() -> None:
-    rows = contest([])
-    assert [f.met for f in rows] == [None] * 4
-    assert all(f.target == "at least 1" for f in rows)
+    rows = contest([], [])
+    assert all(f.met is None for f in rows)
+    assert [f.target for f in rows] == 2 * ["at least 1", "at least 1", "none", "none"]
 
 
 def test_confusion_counts_every_single_cause_once() -> None:
@@ -230,7 +239,7 @@ def test_confusion_counts_every_single_cause_once() -> None:
 
 
 def test_every_figure_of_the_table_is_there_even_without_cases() -> None:
-    figures = all_figures([])
+    figures = _table([])
     words = " ".join(f.name for f in figures)
     for needed in (
         "false alarms",
@@ -254,10 +263,10 @@ def test_every_figure_of_the_table_is_there_even_without_cases() -> None:
 def test_too_few_recordings_cannot_miss_a_bound_they_could_not_reach() -> None:
     few = [outcome(truth(tier="C6"), said("NOTHING_MISSING")) for _ in range(50)]
     many = few * 10
-    assert all_figures(few)[0].met is None
-    assert all_figures(many)[0].met is True
+    assert _table(few)[0].met is None
+    assert _table(many)[0].met is True
     loud = [*many, *[outcome(truth(tier="C6"), said("IDENTIFIED", "creep")) for _ in range(20)]]
-    assert all_figures(loud)[0].met is False
+    assert _table(loud)[0].met is False
 
 
 def test_rms_bootstrap() -> None:

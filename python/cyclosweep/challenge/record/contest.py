@@ -11,10 +11,10 @@ from cyclosweep.challenge.board.terminal import within_reach
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.scoring.intervals import Estimate
+from cyclosweep.challenge.scoring.power import PROGRAMMES
 
 EVERY = "every"
 OWN = "own"
-PROGRAMMES = ("rich", "poor")
 
 _HEAD = """## Detection beside its opponents
 

@@ -10,16 +10,20 @@ from typing import Any
 import numpy as np
 
 from cyclosweep.challenge.noise import NOISES
-from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import (
     calibration_error,
     chance_error,
     stated_and_true,
 )
-from cyclosweep.challenge.scoring.intervals import Estimate, bootstrapped, share, share_of
+from cyclosweep.challenge.scoring.curves import DETECTED, KNOWING, Curve, needed_by
+from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate, bootstrapped, share, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.power import LEVEL, d_for_power, relative_to_oracle
+from cyclosweep.challenge.scoring.power import LEVEL, PROGRAMMES, relative_to_oracle
 from cyclosweep.challenge.scoring.rivals import OURS, OpponentCurve, Setting
+
+AS_IT_IS = "as it is"
+ALIKE = "at its own 1 %"
+"""How the diagnosis meets its opponents: untouched, or with its evidence tuned as theirs is."""
 
 
 @dataclass(frozen=True)
@@ -111,18 +115,18 @@ def false_alarms(outcomes: Chosen) -> list[Figure]:
     return figures
 
 
-def power(outcomes: Chosen) -> list[Figure]:
-    """Visibility for nine detections in ten, beside the test that knows the effect."""
+def power(curves: Sequence[Curve]) -> list[Figure]:
+    """Visibility for nine detections in ten under white noise, beside the knowing test's."""
     figures = []
-    for programme in ("rich", "poor"):
-        single = [o for o in outcomes if o.tier == "C0" and o.programme == programme]
-        needed = d_for_power([o.d for o in single], [o.alarm for o in single], LEVEL)
-        known = [abs(o.oracle_z) > oracle_d(0.5, LEVEL) for o in single]
-        oracle = d_for_power([o.d for o in single], known, LEVEL)
+    for programme in PROGRAMMES:
+        needed = needed_by(curves, DETECTED, programme, "white")
         target = 1.30 if programme == "rich" else None
         figures += [
             _figure(f"d for 90 % power, {programme}", needed),
-            _figure(f"the same of the test that knows the effect, {programme}", oracle),
+            _figure(
+                f"the same of the test that knows the effect, {programme}",
+                needed_by(curves, KNOWING, programme, "white"),
+            ),
             _figure(
                 f"d for 90 % power over the knowing test's, {programme}",
                 relative_to_oracle(needed, LEVEL),
@@ -353,25 +357,33 @@ def probabilities(outcomes: Chosen) -> list[Figure]:
     ]
 
 
-def contest(curves: Sequence[OpponentCurve]) -> list[Figure]:
+def contest(curves: Sequence[Curve], opponents: Sequence[OpponentCurve]) -> list[Figure]:
     """Count the opponents that the diagnosis leaves behind on identical files."""
     figures = []
-    rivals = [c for c in curves if c.who != OURS]
-    for noise in dict.fromkeys(["white", *(c.noise for c in rivals)]):
-        for programme in ("rich", "poor"):
-            own = [c for c in rivals if (c.programme, c.noise) == (programme, noise)]
-            if own or noise == "white":
-                figures += _behind(f"on {noise} noise", programme, [c.own for c in own], 1.0)
-    for programme in ("rich", "poor"):
-        seen = [c for c in rivals if (c.programme, c.noise) == (programme, "white")]
-        every = [c.every for c in seen if c.every is not None]
+    for noise in dict.fromkeys(["white", *(c.noise for c in opponents)]):
+        for programme in PROGRAMMES:
+            here = [c for c in opponents if (c.programme, c.noise) == (programme, noise)]
+            if here or noise == "white":
+                rivals = [c.own for c in here if c.who != OURS]
+                tuned = [c.own.needed for c in here if c.who == OURS]
+                figures += _behind(f"on {noise} noise", programme, rivals, 1.0)
+                figures += _slower(
+                    f"on {noise} noise",
+                    programme,
+                    rivals,
+                    needed_by(curves, DETECTED, programme, noise),
+                    tuned[0] if tuned else NOTHING,
+                )
+    for programme in PROGRAMMES:
+        seen = [c for c in opponents if (c.programme, c.noise) == (programme, "white")]
+        every = [c.every for c in seen if c.every is not None and c.who != OURS]
         if every:
             figures += _behind("over all ten families of noise", programme, every, None)
     return figures
 
 
 def _behind(
-    where: str, programme: str, settings: Sequence[Setting], wanted: float | None
+    where: str, programme: str, rivals: Sequence[Setting], wanted: float | None
 ) -> list[Figure]:
     """Share of opponents that are behind, threshold and recordings drawn again."""
     return [
@@ -379,12 +391,26 @@ def _behind(
             f"opponents at 1 % {where} behind the diagnosis {words}, {programme}",
             share_of(behind),
             at_least=wanted,
-            must=wanted if words == "as it is" else None,
+            must=wanted if words == AS_IT_IS else None,
         )
         for words, behind in (
-            ("as it is", [s.ahead.low > 0.0 for s in settings]),
-            ("at its own 1 %", [s.tuned_ahead.low > 0.0 for s in settings]),
+            (AS_IT_IS, [s.ahead.low > 0.0 for s in rivals]),
+            (ALIKE, [s.tuned_ahead.low > 0.0 for s in rivals]),
         )
+    ]
+
+
+def _slower(
+    where: str, programme: str, rivals: Sequence[Setting], as_it_is: Estimate, alike: Estimate
+) -> list[Figure]:
+    """Share of opponents that need a larger d for nine detections in ten, by the estimates."""
+    return [
+        _figure(
+            f"by d for 90 % alone, opponents at 1 % {where} behind the diagnosis {words}, "
+            f"{programme}",
+            share_of([s.needed.value > ours.value for s in rivals if ours.count]),
+        )
+        for words, ours in ((AS_IT_IS, as_it_is), (ALIKE, alike))
     ]
 
 
@@ -417,7 +443,11 @@ def effort(outcomes: Chosen) -> list[Figure]:
     ]
 
 
-def all_figures(outcomes: Chosen) -> list[Figure]:
+def all_figures(outcomes: Chosen, curves: Sequence[Curve]) -> list[Figure]:
     """Every line of the table, none left out."""
-    parts = (false_alarms, power, naming, sizes, prediction, unknown, probabilities, effort)
-    return [figure for part in parts for figure in part(outcomes)]
+    parts = (naming, sizes, prediction, unknown, probabilities, effort)
+    return [
+        *false_alarms(outcomes),
+        *power(curves),
+        *(figure for part in parts for figure in part(outcomes)),
+    ]

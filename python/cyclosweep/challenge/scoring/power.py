@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from cyclosweep.challenge.oracle import oracle_d
-from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate
+from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate, share_of
+from cyclosweep.challenge.scoring.outcome import Outcome
 
 Array = NDArray[np.float64]
-
+Points = tuple[tuple[float, Estimate], ...]
 
 LEVEL = 0.01
 """False alarms at which detectors are compared."""
+PROGRAMMES = ("rich", "poor")
+"""Programmes on which power is shown."""
 FEWEST = 20
 """Recordings below which no power curve is drawn."""
 
@@ -61,3 +64,12 @@ def relative_to_oracle(needed: Estimate, level: float = LEVEL) -> Estimate:
     """Visibility needed over that of the test that knows the effect [-]."""
     oracle = oracle_d(0.9, level)
     return Estimate(needed.value / oracle, needed.low / oracle, needed.high / oracle, needed.count)
+
+
+def by_d(single: Sequence[Outcome], hits: Sequence[bool] | NDArray[np.bool_]) -> Points:
+    """Share of hits at every visibility."""
+    levels = sorted({round(o.d) for o in single})
+    return tuple(
+        (float(d), share_of([h for o, h in zip(single, hits, strict=True) if round(o.d) == d]))
+        for d in levels
+    )

@@ -12,10 +12,16 @@ from numpy.typing import NDArray
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate, share_of
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.power import FEWEST, LEVEL, d_for_power
+from cyclosweep.challenge.scoring.power import (
+    FEWEST,
+    LEVEL,
+    PROGRAMMES,
+    Points,
+    by_d,
+    d_for_power,
+)
 
 Array = NDArray[np.float64]
-Points = tuple[tuple[float, Estimate], ...]
 
 OURS = "the diagnosis, tuned alike"
 """Our own evidence, with its threshold set as an opponent's is."""
@@ -222,15 +228,6 @@ def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, alike: bool)
     return Estimate(difference(every, nulls), float(low), float(high), len(middle))
 
 
-def by_d(single: Sequence[Outcome], hits: Sequence[bool] | NDArray[np.bool_]) -> Points:
-    """Share of hits at every visibility."""
-    levels = sorted({round(o.d) for o in single})
-    return tuple(
-        (float(d), share_of([h for o, h in zip(single, hits, strict=True) if round(o.d) == d]))
-        for d in levels
-    )
-
-
 def _setting(
     who: str,
     single: Sequence[Outcome],
@@ -304,6 +301,6 @@ def opponent_curves(outcomes: Sequence[Outcome], said: Mapping[str, Any]) -> lis
         _curve(who, programme, noise, outcomes, said)
         for noise in noises
         for who in names
-        for programme in ("rich", "poor")
+        for programme in PROGRAMMES
     ]
     return [curve for curve in curves if curve is not None]

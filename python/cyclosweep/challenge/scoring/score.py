@@ -9,35 +9,13 @@ from typing import Any
 
 import polars as pl
 
-from cyclosweep.challenge.oracle import oracle_d
 from cyclosweep.challenge.scoring.calibration import Bin, calibration_bins
 from cyclosweep.challenge.scoring.confusion import confusion
+from cyclosweep.challenge.scoring.curves import Curve, detection_curves
 from cyclosweep.challenge.scoring.figures import Figure, all_figures, contest
-from cyclosweep.challenge.scoring.intervals import NOTHING, Estimate
 from cyclosweep.challenge.scoring.outcome import Outcome
-from cyclosweep.challenge.scoring.power import LEVEL, d_for_power
-from cyclosweep.challenge.scoring.rivals import OpponentCurve, by_d, opponent_curves
-
-
-@dataclass(frozen=True)
-class Curve:
-    """Share of cases against visibility on one programme.
-
-    Attributes
-    ----------
-    who, programme, noise : str
-        Whose curve it is, on which programme and under which noise.
-    needed : Estimate
-        Visibility for 90 % power [-]; of ``named right`` there is none.
-    points : tuple of (float, Estimate)
-        Visibility and share with its interval.
-    """
-
-    who: str
-    programme: str
-    noise: str
-    needed: Estimate
-    points: tuple[tuple[float, Estimate], ...]
+from cyclosweep.challenge.scoring.power import PROGRAMMES
+from cyclosweep.challenge.scoring.rivals import OpponentCurve, opponent_curves
 
 
 @dataclass(frozen=True)
@@ -106,27 +84,6 @@ def _nulled(value: Any) -> Any:
     return value
 
 
-def _curves(outcomes: Sequence[Outcome]) -> list[Curve]:
-    """Curves of the diagnosis and of the test that knows the effect."""
-    threshold = oracle_d(0.5, LEVEL)
-    curves = []
-    for noise in dict.fromkeys(o.noise for o in outcomes if o.tier == "C0"):
-        for programme in ("rich", "poor"):
-            single = [
-                o for o in outcomes if (o.tier, o.programme, o.noise) == ("C0", programme, noise)
-            ]
-            d = [o.d for o in single]
-            told: dict[str, list[bool]] = {
-                "detected": [o.alarm for o in single],
-                "named right": [o.named_right for o in single],
-                "test that knows the effect": [abs(o.oracle_z) > threshold for o in single],
-            }
-            for who, flags in told.items():
-                needed = NOTHING if who == "named right" else d_for_power(d, flags, LEVEL)
-                curves.append(Curve(who, programme, noise, needed, by_d(single, flags)))
-    return curves
-
-
 def make_score(
     outcomes: Sequence[Outcome],
     said: Mapping[str, Any],
@@ -149,7 +106,8 @@ def make_score(
     aside : sequence of Outcome
         Further cases for the contest with the opponents, in no other figure.
     """
-    curves = opponent_curves([*outcomes, *aside], said)
+    curves = detection_curves([*outcomes, *aside])
+    opponents = opponent_curves([*outcomes, *aside], said)
     verdicts = (
         pl.DataFrame(
             {
@@ -165,12 +123,12 @@ def make_score(
     named = [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C5-alien"} and o.d > 9.0]
     return Score(
         about=about | {"cases": len(outcomes)},
-        figures=[*all_figures(outcomes), *contest(curves), *further],
-        curves=_curves([*outcomes, *aside]),
-        opponents=curves,
+        figures=[*all_figures(outcomes, curves), *contest(curves, opponents), *further],
+        curves=curves,
+        opponents=opponents,
         confusion={
             programme: confusion([o for o in named if o.programme == programme])
-            for programme in ("rich", "poor")
+            for programme in PROGRAMMES
         },
         calibration=calibration_bins(
             [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C3", "C4"}]
