@@ -96,21 +96,39 @@ def test_takeup_only_stiffens_beyond_its_first_engagement():
     assert column[39] == pytest.approx(-(10 - 1.0))
 
 
-def test_engagements_at_low_loads_are_likelier_and_the_prior_adds_up_to_one():
+def test_pins_engage_one_after_another_from_a_low_load_on():
     h = history()
-    takeup, top = effects.find("clearance_takeup"), h.largest_torque_nm
+    top = h.largest_torque_nm
+    shapes = effects.find("clearance_takeup").shapes(h)
+    assert all(0 < s["first_nm"] <= 0.41 * top and s["range_nm"] >= 0.09 * top for s in shapes)
+    assert max(s["first_nm"] + s["range_nm"] for s in shapes) > top
 
-    def remoteness(first, width):
-        return takeup.remoteness(h, {"first_nm": first * top, "range_nm": width * top})
 
-    assert remoteness(0.05, 0.1) < 0.0 < remoteness(0.45, 0.45)
-    assert remoteness(0.3, 0.0) == pytest.approx(takeup.remoteness(h, {"kink_1_nm": 0.3 * top}))
-    density = [
-        np.exp(-remoteness(f, w))
-        for f in np.linspace(0.02, 0.4, 25)
-        for w in np.linspace(0.01, 0.4, 25)
-    ]
-    assert np.mean(density) == pytest.approx(1.0, rel=0.02)
+def test_free_offsets_are_memory_only_if_one_memory_explains_them():
+    largest = np.array([20.0, 8.0, 14.0, 4.0, 18.0, 10.0, 6.0, 16.0, 12.0, 5.0, 19.0, 9.0])
+    torque = np.concatenate([[t, -0.5 * t, 0.7 * t, 0.2] for t in largest])
+    run = np.repeat(np.arange(12), 4)
+    h = History(
+        applied_nm=torque,
+        elastic_nm=torque,
+        angle_deg=2.7 * torque,
+        side=np.sign(torque),
+        run=run,
+        restart=np.r_[True, np.diff(run) != 0],
+        compliance_deg_per_nm=2.7,
+        free_play_deg=28.0,
+    )
+    datum = effects.find("datum_drift")
+
+    def offsets(memory, other):
+        shape = {"push": 1.0, "memory": memory, "push_2": 2.0, "memory_2": other}
+        shift = datum.columns(h, shape)[h.run_starts] @ [1.0, 0.5]
+        return shift[1:] - shift[0]
+
+    assert datum.telling(h, {"free": 1.0}, offsets(0.4, 0.4))
+    # Two pushes with a memory each would leave 0.04 of this random walk.
+    wandering = np.array([2.0, 2.7, 3.4, 2.8, 1.2, 1.4, 1.5, 0.2, -0.4, -0.5, -1.5])
+    assert not datum.telling(h, {"free": 1.0}, wandering)
 
 
 def test_datum_remembers_the_run_before():

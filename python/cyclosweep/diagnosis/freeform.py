@@ -40,7 +40,7 @@ _CURVES = frozenset({"smooth odd curve", "dial"})
 CLASSES = {
     "step of the angle": _OFFSETS,
     "slip within a run": _OFFSETS,
-    "change of play": _OFFSETS,
+    "change of play": _OFFSETS | _PLACES,
     "one run apart": _OFFSETS,
     "drift in time": _OFFSETS,
     "drift within runs": _OFFSETS,
@@ -161,6 +161,15 @@ def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
 
 
 def _clips(history: History) -> Iterator[FreeForm]:
+    """Sensors at a limit, of the reading or of the load, on both flanks or on one."""
+    widest = float(np.max(np.abs(history.angle_deg), initial=0.0))
+    for share in np.linspace(0.45, 0.97, 14):
+        yield FreeForm(
+            "saturation at the end of the range",
+            f"beyond {share * widest:.3g} deg",
+            partial(_clipped, limit=float(share) * widest),
+            positive=True,
+        )
     top = history.largest_torque_nm
     for share in (0.46, 0.53, 0.6, 0.67, 0.74, 0.81, 0.87, 0.93, 0.97):
         for flank in (0, 1, -1):
@@ -168,14 +177,19 @@ def _clips(history: History) -> Iterator[FreeForm]:
                 continue
             yield FreeForm(
                 "saturation at the end of the range",
-                f"beyond {share * top:.3g} N m",
+                f"beyond {(flank or 1) * share * top:.3g} N m",
                 partial(_over, start=share * top, flank=flank),
                 positive=True,
             )
 
 
-def _over(history: History, start: float, flank: int) -> Floats:
+def _clipped(history: History, limit: float) -> Floats:
     # A sensor at its limit shows too little, never too much.
+    over = np.maximum(np.abs(history.angle_deg) - limit, 0.0)
+    return np.asarray(-np.sign(history.angle_deg) * over)[:, None]
+
+
+def _over(history: History, start: float, flank: int) -> Floats:
     over = -np.maximum(np.abs(history.applied_nm) - start, 0.0)
     here = 1.0 if flank == 0 else (history.side == flank)
     return np.asarray(over * history.side * here)[:, None]

@@ -28,7 +28,7 @@ EXTRA_TERM = 6.0
 """Log prior odds against every further effect."""
 WITHOUT_NAME = 4.0
 """Log prior odds against a shape without a name."""
-CAUTION = {"saturation at the end of the range": 1.0} | dict.fromkeys(
+CAUTION = {"saturation at the end of the range": 0.0} | dict.fromkeys(
     ("relaxation", "loop by rate", "position offsets", "compliance by position"), 6.0
 )
 """The same for shapes as common as the named effects, and for those that hold a named effect whole:
@@ -38,6 +38,10 @@ SHAPE_ERROR = 0.05
 no model of an effect is exact, and large effects show it."""
 MOST_FORGIVEN = 20.0
 """Evidence up to which a remainder is so taken; a further effect of visibility 7 has more."""
+DENSE = frozenset({"saturation at the end of the range", "bump at a load"})
+"""Shapes without a name whose grid stands for what is believed beforehand."""
+MOST_FOR_CHOICE = 1.5
+"""What the choice of a shape costs at most where the grid of shapes is coarse."""
 ENRICHED = 2
 """Times an effect is given more freedom of shape."""
 PRUNED = 3
@@ -241,10 +245,9 @@ class Search:
         if effect is not None and effect.vector:
             places = joint.amplitude_places(len(joint.terms) - 1)
             return 0.5 * gain - price_of_vector(joint.beta[places], joint.information(places))
-        added = float(evidence(gain, rank)) - max(cost, self._price_of_shape(joint, node.rest))
-        if effect is not None:
-            added -= effect.remoteness(joint.history, joint.terms[-1].shape)
-        return added
+        if effect is None or not effect.dense:
+            cost = max(cost, self._price_of_shape(joint, node.rest))
+        return float(evidence(gain, rank)) - cost
 
     def _price_of_shape(self, joint: Fit, rest: Scan) -> float:
         """Log of how many of its library's shapes of the last term a recording tells apart."""
@@ -297,8 +300,10 @@ class Search:
         caution = np.array([_caution(hypothesis, b.effect, b.shape) for b in blocks])
         rank = np.argsort(caution - each)
         order = members[rank]
-        price = float(np.clip(each[rank[0]] - average, 0.0, 1.5))
         first = rest.library.blocks[order[0]]
+        dense = first.effect.dense if first.effect is not None else hypothesis in DENSE
+        most = np.inf if dense else MOST_FOR_CHOICE
+        price = float(np.clip(each[rank[0]] - average, 0.0, most))
         slips = first.effect is not None and first.effect.slips
         tried = 0
         for index in order:

@@ -45,6 +45,9 @@ class Effect:
         The effect is a friction torque on slip elements, solved in the angle.
     elastic : bool
         The twist is a function of the elastic torque alone: part of the drive's elastic law.
+    dense : bool
+        The grid of shapes stands for what is believed of them beforehand: they weigh the same, and
+        the evidence is averaged over them.
     vector : bool
         The amplitudes are the components of one vector of unknown direction.
     """
@@ -58,6 +61,7 @@ class Effect:
     shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
     slips: ClassVar[bool] = False
     elastic: ClassVar[bool] = False
+    dense: ClassVar[bool] = False
     vector: ClassVar[bool] = False
 
     def shapes(self, history: History) -> Sequence[Shape]:
@@ -83,10 +87,6 @@ class Effect:
 
     def caution(self, shape: Shape) -> float:
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""
-        return 0.0
-
-    def remoteness(self, history: History, shape: Shape) -> float:
-        """Log prior odds against a fitted shape that lies far from the usual ones [nat]."""
         return 0.0
 
     def expected(self, history: History, shape: Shape) -> Floats | None:

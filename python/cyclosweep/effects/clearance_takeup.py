@@ -7,9 +7,7 @@ import numpy as np
 from cyclosweep.effects.base import Effect, Parameter, Shape, listed
 from cyclosweep.effects.history import Flags, Floats, History
 
-SPREAD = 0.25
-"""Spread of the mean load of engagement over the largest load, a half-normal prior."""
-FIRST, WIDTH = (0.02, 0.4), (0.01, 0.4)
+FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
 """Loads of first engagement, and ranges, in which it is looked for, over the largest load."""
 
 
@@ -18,8 +16,9 @@ class ClearanceTakeup(Effect):
 
     Below `first_nm` the first pins carry alone; up to `first_nm + range_nm` the others engage, and
     the compliance falls by the amplitude. A range of zero is a single kink. Clearances are small
-    against the elastic twist, so the first engagement lies in the lower half of the range, and low
-    engagements are likelier than high ones; a kink beyond is what a sensor at its limit shows.
+    against the elastic twist and differ from pin to pin, so the first engagement lies in the lower
+    half of the range, and the others follow over a part of it or all; one kink far up is what a
+    sensor at its limit shows.
     """
 
     name = "clearance_takeup"
@@ -31,6 +30,7 @@ class ClearanceTakeup(Effect):
     tell_tale = "slope drops in steps at certain twists"
     family = "smooth odd curve"
     elastic = True
+    dense = True
     shape_parameters = (
         Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
         Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
@@ -39,24 +39,11 @@ class ClearanceTakeup(Effect):
     def shapes(self, history: History) -> Sequence[Shape]:
         """Loads of first engagement and ranges, as shares of the largest load."""
         top = history.largest_torque_nm
-        grid: list[Shape] = [
+        return [
             {"first_nm": first * top, "range_nm": width * top}
-            for first in (0.02, 0.06, 0.12, 0.2, 0.3, 0.4)
-            for width in (0.01, 0.15, 0.4)
-            if first + width < 0.85
+            for first in np.linspace(*FIRST, 8)
+            for width in np.linspace(*WIDTH, 6)
         ]
-        kinks = ((0.06, 0.2), (0.12, 0.4), (0.25, 0.6), (0.06, 0.2, 0.45), (0.12, 0.3, 0.6))
-        return grid + [
-            {f"kink_{k}_nm": share * top for k, share in enumerate(shares, 1)} for shares in kinks
-        ]
-
-    def remoteness(self, history: History, shape: Shape) -> float:
-        """Half-normal prior of the mean load of engagement, over an even one of first and range."""
-        if "first_nm" in shape:
-            mean_nm = shape["first_nm"] + 0.5 * shape["range_nm"]
-        else:
-            mean_nm = float(np.mean(list(shape.values())))
-        return 0.5 * (mean_nm / history.largest_torque_nm / SPREAD) ** 2 + _LOG_EVEN
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist lost for a unit drop of compliance [deg]."""
@@ -95,12 +82,3 @@ def _kinks(shape: Shape) -> list[float]:
     if "first_nm" not in shape:
         return list(shape.values())
     return [shape["first_nm"], shape["first_nm"] + shape["range_nm"]]
-
-
-def _log_even() -> float:
-    """Log of the unnormalised half-normal density, averaged over the loads looked at."""
-    first, width = np.meshgrid(np.linspace(*FIRST, 40), np.linspace(*WIDTH, 40))
-    return float(np.log(np.mean(np.exp(-0.5 * ((first + 0.5 * width) / SPREAD) ** 2))))
-
-
-_LOG_EVEN = _log_even()

@@ -25,15 +25,16 @@ class ContactStiffening(Effect):
     tell_tale = "steep near zero load, flatter above; both directions alike"
     family = "smooth odd curve"
     elastic = True
+    dense = True
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
     )
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Power laws of Hertz and turning loads up to the largest load."""
+        """Power laws around that of Hertz, and turning loads up to a quarter of the largest."""
         top = history.largest_torque_nm
-        powers: list[Shape] = [{"power": p} for p in (0.5, 2 / 3, 0.8)]
-        return powers + [{"turn_nm": share * top} for share in (0.02, 0.06, 0.2)]
+        powers: list[Shape] = [{"power": float(p)} for p in np.linspace(1 / 2, 5 / 6, 7)]
+        return powers + [{"turn_nm": float(t) * top} for t in np.geomspace(0.02, 0.25, 7)]
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""

@@ -20,6 +20,7 @@ class LoadAsymmetry(Effect):
     tell_tale = "even in torque: differs between directions"
     family = "even curve"
     elastic = True
+    dense = True
     shape_parameters = (Parameter("power", "", "power of the load", 0.4, 3.0),)
 
     def untestable(self, history: History) -> str | None:
@@ -30,7 +31,7 @@ class LoadAsymmetry(Effect):
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """From a square root to a square of the load."""
-        return [{"power": power} for power in (0.6, 1.0, 1.5, 2.0)]
+        return [{"power": float(power)} for power in np.linspace(0.6, 2.0, 8)]
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Even twist, one at a load of 10 N m [deg]."""

@@ -20,6 +20,7 @@ class OverloadSoftening(Effect):
     tell_tale = "slope rises beyond a torque"
     family = "smooth odd curve"
     elastic = True
+    dense = True
     shape_parameters = (
         Parameter("onset_nm", "N m", "load above which the compliance grows", 0.0, 1e6),
         Parameter("power", "", "power of the extra twist", 1.0, 3.0),
