@@ -24,7 +24,7 @@ help:
 	@echo "make test-grid  closed form against a 0.01 deg grid on 10,000 random drives, some minutes"
 	@echo "make lint    rustfmt, clippy, ruff, mypy, stubtest"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
-	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; a quarter of an hour"
+	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
 	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
 	@echo "make docs    regenerate the tables in docs that come from code"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"

@@ -38,7 +38,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--seed", type=int, default=RECORD_SEED, help="a multiple of ten (default %(default)s)")
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
     add("--minutes", type=float, metavar="M", help="begin nothing more after M minutes")
-    add("--subset", action="store_true", help="a sample that takes a quarter of an hour")
+    add("--subset", action="store_true", help="a sample that takes about ten minutes")
     for field in fields(Size):
         add(f"--{field.name.replace('_', '-')}", type=int, metavar="N", help="another size")
     add("--opponents", choices=("all", "cheap", "none"), default="all")

@@ -411,7 +411,7 @@ def _checking(about: Plain) -> str:
 For someone who distrusts all of it:
 
 1. **Another seed gives the same picture.** `make proof` makes a smaller run of another seed in
-   about a quarter of an hour and lays every figure beside the record's; `PROOF_SEED=...` picks the
+   about ten minutes and lays every figure beside the record's; `PROOF_SEED=...` picks the
    seed, a multiple of ten. The whole record again: `make proof-record RECORD_SEED=...
    RECORD_OUT=...`. It may be stopped and called again, or run in pieces with
    `RECORD_FLAGS="--minutes M"`: all parts grow together, and what is finished is scored.

@@ -113,4 +113,4 @@ SUBSET = Size(
     costly_open=3,
     steps=6,
 )
-"""A quarter of an hour on two cores."""
+"""About ten minutes on two cores."""
