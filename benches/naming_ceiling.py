@@ -17,18 +17,14 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 import cyclosweep as cs
 from cyclosweep.challenge.case import Case
-from cyclosweep.challenge.concealment import FIRST_GUESS
+from cyclosweep.challenge.concealment import ConcealmentError, conceal
+from cyclosweep.challenge.noise import Noise
 from cyclosweep.challenge.plan import Entry, make_entry, make_plan
 from cyclosweep.challenge.programme import make_programme
-from cyclosweep.challenge.rig import measure
-from cyclosweep.challenge.signature import basis, calibration, without
 from cyclosweep.challenge.specimen import EITHER_SIGN, VOCABULARY, Specimen
-
-Array = NDArray[np.float64]
 
 PART = {
     "load_asymmetry": "side_load",
@@ -39,8 +35,6 @@ PART = {
 }
 """Look-alikes, and the part of a specimen that holds the shape of each."""
 VISIBLE = (10.0, 20.0)
-TOLERANCE = 0.03
-"""Departure from the wanted visibility at which an amplitude is good enough."""
 
 
 @dataclass(frozen=True)
@@ -110,37 +104,22 @@ def _by_bayes(case: Case, entry: Entry, d: float, shapes: int) -> str:
     streams = np.random.default_rng(truth["seed"]).spawn(6)
     specimen = Specimen.draw(streams[0])
     programme = make_programme(entry.stratum.programme, streams[1], entry.samples)
-    plain = measure(specimen, programme, {})
-    # None of these effects keeps the shaft off its flank, so all record the same samples.
-    seen = plain.recorded
-    span = basis(calibration(programme.take(seen)))
-    sigma_deg = truth["noise"]["sigma_deg"]
-
-    def white(angle_deg: Array) -> Array:
-        return np.asarray(without(angle_deg[:, None], span)[:, 0] / sigma_deg)
-
-    read = white(case.recording["angle_deg"].to_numpy())
+    noise = Noise(sigma_deg=truth["noise"]["sigma_deg"])
+    lost = np.zeros(len(programme), dtype=bool)
+    read = case.recording["angle_deg"].to_numpy() / noise.sigma_deg
     rng = np.random.default_rng([truth["seed"], 5])
     odds = {}
     for cause, part in PART.items():
         each = []
-        for _ in range(shapes):
-            other = Specimen.draw(np.random.default_rng(int(rng.integers(1 << 60))))
+        for other in (Specimen.draw(one) for one in rng.spawn(shapes)):
             drawn = replace(specimen, **{part: getattr(other, part)})
-            amplitude = FIRST_GUESS.get(cause, 0.3)
-            for _ in range(6):
-                try:
-                    shown = measure(drawn, programme, {cause: amplitude}).angle_deg
-                except ValueError:
-                    break
-                signature = white((shown - plain.angle_deg)[seen])
-                size = float(np.linalg.norm(signature))
-                if abs(size / d - 1.0) < TOLERANCE:
-                    match = d * float(signature @ read) / size
-                    either = cause in EITHER_SIGN
-                    each.append(np.logaddexp(match, -match) - np.log(2.0) if either else match)
-                    break
-                amplitude *= float(np.clip(d / max(size, 1e-9), 0.05, 8.0))
+            try:
+                found = conceal(drawn, programme, noise, [cause], [d], [1.0], lost, {})
+            except ConcealmentError:
+                continue
+            match = d * float(found.visibility.direction[:, 0] @ read)
+            either = cause in EITHER_SIGN
+            each.append(np.logaddexp(match, -match) - np.log(2.0) if either else match)
         odds[cause] = np.logaddexp.reduce(each) - np.log(len(each)) if each else -np.inf
     return max(odds, key=lambda name: odds[name])
 
