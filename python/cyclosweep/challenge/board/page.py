@@ -14,6 +14,7 @@ from cyclosweep.challenge.board.gallery import Exhibit
 from cyclosweep.challenge.board.svg import Series, chart
 from cyclosweep.challenge.board.terminal import as_text, within_reach
 from cyclosweep.challenge.scoring.figures import Figure
+from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.scoring.score import Score
 from cyclosweep.challenge.tiers import TIERS
 
@@ -178,7 +179,7 @@ def write_page(score: Score, exhibits: Sequence[Exhibit], path: Path) -> None:
     """
     about = score.about
     noises = dict.fromkeys(["white", *(c.noise for c in score.curves)])
-    powers = [_power(score, p, noise) for noise in noises for p in ("rich", "poor")]
+    powers = [_power(score, p, noise) for noise in noises for p in PROGRAMMES]
     charts = "".join(f"<div>{part}</div>" for part in (*powers, _calibration(score)))
     matrices = "".join(
         f"<h3>{escape(programme)} programme</h3>{_matrix(table)}"

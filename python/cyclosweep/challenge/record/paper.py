@@ -14,6 +14,7 @@ from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.record.parts import COLOURED
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.scoring.intervals import share
+from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.specimen import VOCABULARY
 
 NOTES = "proof-notes.md"
@@ -270,7 +271,7 @@ def _by_d(stratum: str) -> tuple[str, float]:
 
 def _effect_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
     rows = []
-    for programme in ("rich", "poor"):
+    for programme in PROGRAMMES:
         for cause in VOCABULARY:
             row: dict[str, Any] = {"programme": programme, "cause": cause}
             for d in (6, 10, 20):
@@ -310,13 +311,13 @@ def _naming(score: Plain, tables: Plain) -> str:
         ),
         "### Single effects in the open, by effect\n\nShare named right.\n\n"
         + table(
-            ("effect", *(f"{p}, d = {d}" for p in ("rich", "poor") for d in (6, 10, 20))),
+            ("effect", *(f"{p}, d = {d}" for p in PROGRAMMES for d in (6, 10, 20))),
             (
                 (
                     cause,
                     *(
                         text(row[f"d{d}"], 2)
-                        for p in ("rich", "poor")
+                        for p in PROGRAMMES
                         for row in tables["single_effects"]
                         if row["programme"] == p and row["cause"] == cause
                         for d in (6, 10, 20)
