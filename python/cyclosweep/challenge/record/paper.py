@@ -430,9 +430,9 @@ For someone who distrusts all of it:
    generator imports NumPy, SciPy, Polars and itself, and nothing that diagnoses imports the
    challenge. Other equations, too: [challenge.md](challenge.md) says how each cause is made.
 4. **Nothing was tuned on these seeds.** Records use seeds from 100,000 on (`RECORD_SEED` in
-   `python/cyclosweep/challenge/runner/run.py`), development used seeds below 10,000. What earlier,
-   partial records of other seeds showed was repaired before this one was begun; the measured drive
-   is the same in every record, and no unseen evidence. The hash of the
+   `python/cyclosweep/challenge/runner/run.py`), development used seeds below 10,000. What earlier
+   records of other seeds, whole or partial, showed was repaired before this one was begun; the
+   measured drive is the same in every record, and no unseen evidence. The hash of the
    code that diagnosed is written down before the first recording is made
    (`{about["diagnosis"][:16]}…`), and a record whose code has changed is refused, so that no
    record mixes versions. `git log` shows what came after.
