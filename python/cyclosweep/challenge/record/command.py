@@ -16,7 +16,7 @@ from rich.console import Console
 from cyclosweep.challenge.measured_run import SIZES_DEG, run_measured
 from cyclosweep.challenge.record.compare import compare
 from cyclosweep.challenge.record.paper import write_paper
-from cyclosweep.challenge.record.parts import FULL, SUBSET, Size
+from cyclosweep.challenge.record.parts import CONTEST, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import FLAGS, Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
 from cyclosweep.challenge.runner.folders import alone
@@ -38,7 +38,11 @@ def _parser() -> argparse.ArgumentParser:
     add("--seed", type=int, default=RECORD_SEED, help="a multiple of ten (default %(default)s)")
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
     add("--minutes", type=float, metavar="M", help="begin nothing more after M minutes")
-    add("--subset", action="store_true", help="a sample that takes about ten minutes")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--subset", action="store_true", help="a sample of about ten minutes")
+    kind.add_argument(
+        "--contest", action="store_true", help="the contest alone, with more to set thresholds on"
+    )
     for field in fields(Size):
         add(f"--{field.name.replace('_', '-')}", type=int, metavar="N", help="another size")
     add("--opponents", choices=("all", "cheap", "none"), default="all")
@@ -79,7 +83,7 @@ def _run(given: argparse.Namespace) -> int:
 
 
 def _make(given: argparse.Namespace, screen: Console) -> None:
-    base = SUBSET if given.subset else FULL
+    base = SUBSET if given.subset else CONTEST if given.contest else FULL
     sizes = {f.name: getattr(given, f.name) for f in fields(Size)}
     size = replace(base, **{name: value for name, value in sizes.items() if value is not None})
     until = math.inf if given.minutes is None else time.monotonic() + 60.0 * given.minutes

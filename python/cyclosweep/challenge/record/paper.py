@@ -11,7 +11,7 @@ from typing import Any
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record.contest import contest_section, write_pictures
 from cyclosweep.challenge.record.markdown import Plain, table, text
-from cyclosweep.challenge.record.parts import COLOURED
+from cyclosweep.challenge.record.parts import Size
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.scoring.intervals import share
 from cyclosweep.challenge.scoring.power import PROGRAMMES
@@ -86,15 +86,8 @@ def _part(hits: int, count: int) -> dict[str, Any]:
 
 
 def _head(score: Plain, about: Plain, log: Sequence[Plain]) -> str:
-    machine, size = about["machine"], about["size"]
-    parts = score["about"]["parts"]
-    whole = {
-        "null": size["null"],
-        "open": size["opened"],
-        "concealed": size["concealed"],
-        "tuning": size["tuning"],
-        COLOURED: size.get(COLOURED, 0),
-    }
+    machine = about["machine"]
+    done = score["about"]["parts"]
     libraries = ", ".join(f"{k} {v}" for k, v in machine["libraries"].items() if v)
     rows = [
         (
@@ -116,18 +109,9 @@ def _head(score: Plain, about: Plain, log: Sequence[Plain]) -> str:
         ("head of the log, SHA-256", f"`{score['about']['root']}`"),
     ]
     counted = [
-        (name, f"{parts.get(name, 0):,}", f"{total:,}", words)
-        for (name, total), words in zip(
-            whole.items(),
-            (
-                "nothing missing, ten families of noise and nuisance",
-                "single effects in the open, d = 3 to 20, rich and poor programmes",
-                "the tiers C1 to C5 and C7",
-                "more with nothing missing, for the opponents' thresholds",
-                "single effects under correlated noise, for the contest with the opponents",
-            ),
-            strict=True,
-        )
+        (part.name, f"{done.get(part.name, 0):,}", f"{part.cases:,}", part.what)
+        for part in Size(**about["size"]).parts()
+        if part.cases
     ]
     return (
         "# The proof: concealed physics, sealed answers, opponents, and a real drive\n\n"

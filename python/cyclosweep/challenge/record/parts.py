@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.runner.run import plan_of
@@ -11,6 +11,8 @@ from cyclosweep.challenge.runner.run import plan_of
 STEPS = 25
 COLOURED = "coloured"
 """Part in which the noise is correlated: for the contest alone, apart from all other figures."""
+CORRELATED = "ar0.6"
+"""Family of noise of the parts in which it is correlated."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,8 @@ class Part:
     ----------
     name : str
         Name of its folder.
+    what : str
+        What its recordings are, in words.
     cases : int
         Cases in all.
     offset : int
@@ -31,14 +35,18 @@ class Part:
         Strata, of ``plan.MIXES``; of its name if absent.
     noise : str
         Family of noise in place of white noise.
+    programme : str
+        Programme in place of those of the strata; theirs if absent.
     """
 
     name: str
+    what: str
     cases: int
     offset: int
     costly: int
     mix: str = ""
     noise: str = "white"
+    programme: str = ""
 
     def plan(self, seed: int, last: int, samples: int) -> list[Entry]:
         """Cases of this part up to one, in a record of this seed and so many readings."""
@@ -48,7 +56,13 @@ class Part:
             "samples": samples,
             "noise": self.noise,
         }
-        return plan_of(about, last)
+        plan = plan_of(about, last)
+        if not self.programme:
+            return plan
+        return [
+            replace(entry, stratum=replace(entry.stratum, programme=self.programme))
+            for entry in plan
+        ]
 
     def slice(self, step: int, steps: int) -> tuple[int, int]:
         """First case of a step, and the first one after it."""
@@ -63,6 +77,9 @@ class Size:
     ----------
     null, opened, concealed, tuning, coloured : int
         Cases of each part.
+    rich_null, poor_null, coloured_rich_null, coloured_poor_null : int
+        Cases with nothing missing on one programme under one noise, for the opponents'
+        thresholds; a record that is more than the contest has its own in ``null`` and ``tuning``.
     costly_nulls, costly_open : int
         Recordings of each programme with nothing missing, and of each visibility and programme,
         that the costly opponents see.
@@ -77,6 +94,10 @@ class Size:
     concealed: int = 966
     tuning: int = 350
     coloured: int = 600
+    rich_null: int = 0
+    poor_null: int = 0
+    coloured_rich_null: int = 0
+    coloured_poor_null: int = 0
     costly_nulls: int = 300
     costly_open: int = 60
     samples: int = 3_000
@@ -86,11 +107,60 @@ class Size:
         """Parts in the order in which a step runs through them."""
         shared = self.costly_nulls * 2 // 3
         return [
-            Part("null", self.null, 0, shared),
-            Part("open", self.opened, 1, self.costly_open),
-            Part("concealed", self.concealed, 2, 0),
-            Part("tuning", self.tuning, 3, self.costly_nulls - shared),
-            Part(COLOURED, self.coloured, 4, self.coloured, mix="open", noise="ar0.6"),
+            Part(
+                "null",
+                "nothing missing, ten families of noise and nuisance",
+                self.null,
+                0,
+                shared,
+            ),
+            Part(
+                "open",
+                "single effects in the open, d = 3 to 20, rich and poor programmes",
+                self.opened,
+                1,
+                self.costly_open,
+            ),
+            Part("concealed", "the tiers C1 to C5 and C7", self.concealed, 2, 0),
+            Part(
+                "tuning",
+                "more with nothing missing, for the opponents' thresholds",
+                self.tuning,
+                3,
+                self.costly_nulls - shared,
+            ),
+            Part(
+                COLOURED,
+                "single effects under correlated noise, for the contest with the opponents",
+                self.coloured,
+                4,
+                self.coloured,
+                mix="open",
+                noise=CORRELATED,
+            ),
+            *self._nulls_of_a_contest(),
+        ]
+
+    def _nulls_of_a_contest(self) -> list[Part]:
+        """Parts with nothing missing of a record that is the contest alone."""
+        kinds = (
+            ("rich_null", self.rich_null, "rich", "white"),
+            ("poor_null", self.poor_null, "poor", "white"),
+            (f"{COLOURED}_rich_null", self.coloured_rich_null, "rich", CORRELATED),
+            (f"{COLOURED}_poor_null", self.coloured_poor_null, "poor", CORRELATED),
+        )
+        return [
+            Part(
+                name,
+                f"nothing missing, {programme} programme, {noise} noise",
+                cases,
+                5 + k,
+                self.costly_nulls if noise == "white" else cases,
+                mix="tuning",
+                noise=noise,
+                programme=programme,
+            )
+            for k, (name, cases, programme, noise) in enumerate(kinds)
         ]
 
     def slices(self) -> Iterator[tuple[Part, int, int]]:
@@ -114,3 +184,17 @@ SUBSET = Size(
     steps=6,
 )
 """About ten minutes on two cores."""
+CONTEST = Size(
+    null=0,
+    opened=1_200,
+    concealed=0,
+    tuning=0,
+    coloured=1_200,
+    rich_null=3_600,
+    poor_null=1_500,
+    coloured_rich_null=1_200,
+    coloured_poor_null=1_000,
+    costly_nulls=300,
+    costly_open=30,
+)
+"""The contest with the opponents alone, with more recordings to set thresholds on."""

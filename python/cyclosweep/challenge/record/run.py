@@ -67,7 +67,7 @@ class Record:
     out : pathlib.Path
         Folder.
     seed : int
-        Seed; its parts use the three numbers after it too.
+        Seed; its parts use the numbers after it too.
     size : Size
         What it is made of.
     kept : Kept, optional
