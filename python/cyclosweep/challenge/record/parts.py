@@ -14,6 +14,8 @@ COLOURED = "coloured"
 CORRELATED = "ar0.6"
 """Family of noise of the parts in which it is correlated."""
 
+_IN_WORDS = {"tuning": "nothing missing", "open": "further single effects in the open"}
+
 
 @dataclass(frozen=True)
 class Part:
@@ -77,6 +79,8 @@ class Size:
     ----------
     null, opened, concealed, tuning, coloured : int
         Cases of each part.
+    rich_open : int
+        Further single effects in the open, all on rich programmes.
     rich_null, poor_null, coloured_rich_null, coloured_poor_null : int
         Cases with nothing missing on one programme under one noise, for the opponents'
         thresholds; a record that is more than the contest has its own in ``null`` and ``tuning``.
@@ -94,6 +98,7 @@ class Size:
     concealed: int = 966
     tuning: int = 350
     coloured: int = 600
+    rich_open: int = 0
     rich_null: int = 0
     poor_null: int = 0
     coloured_rich_null: int = 0
@@ -138,29 +143,45 @@ class Size:
                 mix="open",
                 noise=CORRELATED,
             ),
-            *self._nulls_of_a_contest(),
+            *self._parts_of_a_contest(),
         ]
 
-    def _nulls_of_a_contest(self) -> list[Part]:
-        """Parts with nothing missing of a record that is the contest alone."""
+    def _parts_of_a_contest(self) -> list[Part]:
+        """Parts of one programme and noise, which only a record that is the contest alone has."""
+        few = self.costly_nulls
         kinds = (
-            ("rich_null", self.rich_null, "rich", "white"),
-            ("poor_null", self.poor_null, "poor", "white"),
-            (f"{COLOURED}_rich_null", self.coloured_rich_null, "rich", CORRELATED),
-            (f"{COLOURED}_poor_null", self.coloured_poor_null, "poor", CORRELATED),
+            ("rich_null", self.rich_null, few, "tuning", "rich", "white"),
+            ("poor_null", self.poor_null, few, "tuning", "poor", "white"),
+            (
+                f"{COLOURED}_rich_null",
+                self.coloured_rich_null,
+                self.coloured_rich_null,
+                "tuning",
+                "rich",
+                CORRELATED,
+            ),
+            (
+                f"{COLOURED}_poor_null",
+                self.coloured_poor_null,
+                self.coloured_poor_null,
+                "tuning",
+                "poor",
+                CORRELATED,
+            ),
+            ("rich_open", self.rich_open, 0, "open", "rich", "white"),
         )
         return [
             Part(
                 name,
-                f"nothing missing, {programme} programme, {noise} noise",
+                f"{_IN_WORDS[mix]}, {programme} programme, {noise} noise",
                 cases,
                 5 + k,
-                self.costly_nulls if noise == "white" else cases,
-                mix="tuning",
+                costly,
+                mix=mix,
                 noise=noise,
                 programme=programme,
             )
-            for k, (name, cases, programme, noise) in enumerate(kinds)
+            for k, (name, cases, costly, mix, programme, noise) in enumerate(kinds)
         ]
 
     def slices(self) -> Iterator[tuple[Part, int, int]]:
@@ -189,12 +210,13 @@ CONTEST = Size(
     opened=1_200,
     concealed=0,
     tuning=0,
-    coloured=1_200,
-    rich_null=3_600,
-    poor_null=1_500,
-    coloured_rich_null=1_200,
-    coloured_poor_null=1_000,
-    costly_nulls=300,
+    coloured=900,
+    rich_open=1_500,
+    rich_null=4_800,
+    poor_null=1_200,
+    coloured_rich_null=1_000,
+    coloured_poor_null=600,
     costly_open=30,
+    steps=10,
 )
 """The contest with the opponents alone, with more recordings to set thresholds on."""
