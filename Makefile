@@ -9,13 +9,15 @@ PROOF_FLAGS ?=
 RECORD_OUT ?= build/record
 RECORD_SEED ?= 600000
 RECORD_FLAGS ?=
+CONTEST_OUT ?= build/contest
+CONTEST_SEED ?= 800000
 RECORD := $(BIN)/python -m cyclosweep.challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench docs golden proof \
-	proof-record clean
+	proof-record proof-contest clean
 .DEFAULT_GOAL := help
 
 help:
@@ -26,6 +28,7 @@ help:
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
 	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
+	@echo "make proof-contest  the contest with the opponents once more and docs/contest.md; hours, too"
 	@echo "make docs    regenerate the tables in docs that come from code"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
@@ -73,8 +76,12 @@ proof: env
 proof-record: env
 	$(RECORD) --out $(RECORD_OUT) --seed $(RECORD_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
 
+proof-contest: env
+	$(RECORD) --contest --out $(CONTEST_OUT) --seed $(CONTEST_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
+
 docs: env
 	$(BIN)/python docs/generate.py
+	$(BIN)/python -m cyclosweep.challenge.record --pages docs
 
 golden: env
 	$(BIN)/python -m tests.golden.regenerate

@@ -17,14 +17,15 @@ from cyclosweep.challenge.record import run as record_run
 from cyclosweep.challenge.record.command import main
 from cyclosweep.challenge.record.compare import fits, pairs
 from cyclosweep.challenge.record.ledger import Ledger
-from cyclosweep.challenge.record.paper import write_paper
-from cyclosweep.challenge.record.parts import COLOURED, FULL, SUBSET, Size
+from cyclosweep.challenge.record.paper import write_page, write_paper
+from cyclosweep.challenge.record.parts import COLOURED, CONTEST, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
 from cyclosweep.challenge.runner.folders import LOCK
 from cyclosweep.challenge.runner.work import Options
 from cyclosweep.challenge.seal import SealError
 
+DOCS = Path(__file__).parents[3] / "docs"
 STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
 SMALL = Size(null=4, opened=4, concealed=2, tuning=2, coloured=2, samples=400, steps=2)
@@ -64,7 +65,7 @@ def test_every_slice_is_published_before_it_is_diagnosed(whole: Path) -> None:
 def test_all_parts_grow_together(whole: Path) -> None:
     order = [part for event, part, _ in events(whole) if event == "sealed"]
     assert order == ["null", "open", "concealed", "tuning", COLOURED] * 2
-    for size in (FULL, SUBSET):
+    for size in (FULL, SUBSET, CONTEST):
         ends = {part.name: last for part, _, last in size.slices()}
         assert ends == {part.name: part.cases for part in size.parts() if part.cases}
 
@@ -233,6 +234,58 @@ def test_page_of_record_shows_every_contest(whole: Path, tmp_path: Path) -> None
         assert "| who |" in part
     for name in ("rich", "rich-ar0.6", "rich-every-family"):
         assert (tmp_path / "docs" / f"proof-power-{name}.svg").exists()
+
+
+def test_parts_of_a_contest_are_of_one_programme_and_noise_and_share_no_seed() -> None:
+    parts = {part.name: part for part in CONTEST.parts() if part.cases}
+    assert len({part.offset for part in parts.values()}) == len(parts)
+    kinds = {
+        name: {(e.stratum.tier, e.stratum.programme, e.stratum.noise) for e in part.plan(50, 60, 9)}
+        for name, part in parts.items()
+        if part.programme
+    }
+    assert kinds == {
+        "rich_null": {("C6", "rich", "white")},
+        "poor_null": {("C6", "poor", "white")},
+        "coloured_rich_null": {("C6", "rich", "ar0.6")},
+        "coloured_poor_null": {("C6", "poor", "ar0.6")},
+        "rich_open": {("C0", "rich", "white")},
+    }
+
+
+def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Path) -> None:
+    size = replace(CONTEST, opened=24, coloured=4, rich_open=12, samples=400, steps=1)
+    size = replace(size, rich_null=4, poor_null=4, coloured_rich_null=4, coloured_poor_null=4)
+    out, docs = tmp_path / "contest", tmp_path / "docs"
+    write_paper(whole, docs)
+    kept = Kept(replace(OPTIONS, opponents="cheap"))
+    run_record(Record(out, 40, size, kept), quiet())
+    page = write_paper(out, docs)
+    assert page.name == "contest.md"
+    words = page.read_text()
+    behind = words.split("## Who is behind")[1].split("##")[0]
+    for row in (
+        "| white | rich | bic_subset |",
+        "| white | poor | stlsq |",
+        "| ar0.6 | poor | aic_subset |",
+    ):
+        assert row in behind
+    # Noise for which every part has cases, none of the rest of the proof.
+    assert "| false alarms, white |" in words
+    assert "| false alarms, ar0.6 |" in words
+    assert "| false alarms, jitter |" not in words
+    assert "named right, single effect" not in words
+    assert (docs / "contest-power-rich-ar0.6.svg").exists()
+    # The table of targets of the whole proof shows it too.
+    assert "(seed 40, [contest.md](contest.md))" in write_page(docs, "proof").read_text()
+
+
+@pytest.mark.parametrize("name", ["proof"])
+def test_committed_pages_are_what_their_figures_give(name: str, tmp_path: Path) -> None:
+    shutil.copytree(DOCS, tmp_path, dirs_exist_ok=True)
+    write_page(tmp_path, name)
+    for file in sorted(DOCS.glob(f"{name}*")):
+        assert (tmp_path / file.name).read_text() == file.read_text(), file.name
 
 
 def test_a_part_may_be_added_to_a_record_and_is_written_down(whole: Path, tmp_path: Path) -> None:

@@ -180,7 +180,13 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
     assert dict(every.alarms)["white"].value == 0.05
     assert dict(every.alarms)["ar0.6"].value == 0.05
     reached = {f.name: f for f in contest(detection_curves(outcomes), list(curves.values()))}
-    assert reached["opponents at 1 % on white noise behind the diagnosis as it is, rich"].met
+    as_it_is = reached["opponents at 1 % on white noise behind the diagnosis as it is, rich"]
+    assert as_it_is.met
+    # Power is compared at equal false alarms: that is required, the other only wanted.
+    assert as_it_is.required == ""
+    alike = reached["opponents at 1 % on white noise behind the diagnosis at its own 1 %, rich"]
+    assert alike.required == "at least 1"
+    assert alike.met_required
     slower = "by d for 90 % alone, opponents at 1 % on white noise behind the diagnosis"
     assert reached[f"{slower} as it is, rich"].estimate.value == 1.0
     assert reached[f"{slower} at its own 1 %, rich"].estimate.value == 1.0

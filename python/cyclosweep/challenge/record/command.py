@@ -15,7 +15,7 @@ from rich.console import Console
 
 from cyclosweep.challenge.measured_run import SIZES_DEG, run_measured
 from cyclosweep.challenge.record.compare import compare
-from cyclosweep.challenge.record.paper import write_paper
+from cyclosweep.challenge.record.paper import write_pages, write_paper
 from cyclosweep.challenge.record.parts import CONTEST, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import FLAGS, Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
@@ -34,7 +34,11 @@ def _parser() -> argparse.ArgumentParser:
         description="Make the run of record, or go on with it; the same command goes on.",
     )
     add = parser.add_argument
-    add("--out", type=Path, required=True, metavar="DIR", help="folder of the record")
+    out = parser.add_mutually_exclusive_group(required=True)
+    out.add_argument("--out", type=Path, metavar="DIR", help="folder of the record")
+    out.add_argument(
+        "--pages", type=Path, metavar="DIR", help="write the pages there again, from their figures"
+    )
     add("--seed", type=int, default=RECORD_SEED, help="a multiple of ten (default %(default)s)")
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
     add("--minutes", type=float, metavar="M", help="begin nothing more after M minutes")
@@ -73,6 +77,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _run(given: argparse.Namespace) -> int:
     # What is piped or stored is not cut to the 80 columns of no terminal.
     screen = Console(stderr=True, width=None if sys.stderr.isatty() else 150)
+    if given.pages is not None:
+        for page in write_pages(given.pages):
+            screen.print(f"written: {page}")
+        return 0
     if not given.only_verify:
         _make(given, screen)
     if given.verify or given.only_verify:
@@ -99,8 +107,8 @@ def _make(given: argparse.Namespace, screen: Console) -> None:
         _real_drive(given, options, screen)
         run_record(record, screen)
         if given.docs is not None:
-            write_paper(given.out, given.docs)
-            screen.print(f"written: {given.docs / 'proof.md'}")
+            page = write_paper(given.out, given.docs)
+            screen.print(f"written: {page}")
         if given.against is not None:
             compare(given.out, given.against, screen)
 

@@ -39,16 +39,16 @@ worst family decides an opponent's threshold, as the shares below show; against 
 then far stricter than one in a hundred. Opponents that were not shown all families are left out."""
 
 
-def write_pictures(score: Plain, docs: Path) -> None:
-    """Write the power curves of a score, one picture for every programme and setting."""
+def write_pictures(score: Plain, docs: Path, page: str) -> None:
+    """Write the power curves of a page, one picture for every programme and setting."""
     for noise, setting in _settings(score):
         for programme in PROGRAMMES:
             drawn = _drawn(score, programme, noise, setting)
-            (docs / _picture(programme, noise, setting)).write_text(drawn)
+            (docs / _picture(page, programme, noise, setting)).write_text(drawn)
 
 
-def contest_section(score: Plain) -> str:
-    """Every comparison that a score holds."""
+def contest_section(score: Plain, page: str) -> str:
+    """Every comparison that a score holds, with the pictures of this page."""
     parts = [_HEAD]
     for noise, setting in _settings(score):
         if setting == EVERY:
@@ -61,7 +61,7 @@ def contest_section(score: Plain) -> str:
         for programme in PROGRAMMES:
             parts.append(
                 f"#### {programme.capitalize()} programme, {title}\n\n"
-                + _comparison(score, programme, noise, setting)
+                + _comparison(score, page, programme, noise, setting)
                 + _alarms(_rivals(score, programme, noise, setting), setting)
             )
     return "\n\n".join(parts)
@@ -89,13 +89,13 @@ def _curves(score: Plain, programme: str, noise: str) -> list[Plain]:
     return [c for c in score["curves"] if (c["programme"], c["noise"]) == (programme, noise)]
 
 
-def _picture(programme: str, noise: str, setting: str) -> str:
+def _picture(page: str, programme: str, noise: str, setting: str) -> str:
     """Name of a picture's file."""
     where = "-every-family" if setting == EVERY else "" if noise == "white" else f"-{noise}"
-    return f"proof-power-{programme}{where}.svg"
+    return f"{page}-power-{programme}{where}.svg"
 
 
-def _comparison(score: Plain, programme: str, noise: str, setting: str) -> str:
+def _comparison(score: Plain, page: str, programme: str, noise: str, setting: str) -> str:
     """Picture and table of who finds how much."""
     curves = _curves(score, programme, noise)
     levels = sorted({p["d"] for c in curves for p in c["points"]})
@@ -124,7 +124,7 @@ def _comparison(score: Plain, programme: str, noise: str, setting: str) -> str:
         "ahead alike",
         *(f"d = {d:g}" for d in levels),
     )
-    picture = _picture(programme, noise, setting)
+    picture = _picture(page, programme, noise, setting)
     return f"![Power against visibility]({picture})\n\n" + table(heads, rows)
 
 

@@ -108,6 +108,11 @@ class Size:
     samples: int = 3_000
     steps: int = STEPS
 
+    @property
+    def is_contest(self) -> bool:
+        """Whether this is the contest alone, without the rest of the proof."""
+        return self.null == 0 and self.rich_null > 0
+
     def parts(self) -> list[Part]:
         """Parts in the order in which a step runs through them."""
         shared = self.costly_nulls * 2 // 3
