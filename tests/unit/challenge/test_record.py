@@ -332,6 +332,21 @@ def test_figures_of_two_runs_agree_within_their_intervals(whole: Path) -> None:
     far = {"value": 0.60, "low": 0.50, "high": 0.70, "count": 90}
     assert fits(near, {**near, "value": 0.92, "low": 0.89, "high": 0.95})
     assert not fits(near, far)
-    names = ("x", "time of it", "calibration error of stated probabilities")
-    score = {"figures": [{"name": name, "estimate": near} for name in names]}
-    assert [p.name for p in pairs(score, score)] == ["x"]
+    kinds = {"x": True, "time of it": False}
+    ours = {"figures": [{"name": n, "estimate": near, "comparable": c} for n, c in kinds.items()]}
+    record = {"figures": [{"name": n, "estimate": near} for n in kinds]}
+    assert [p.name for p in pairs(ours, record)] == ["x"]
+
+
+def test_what_belongs_to_a_machine_or_a_number_of_cases_is_not_compared(whole: Path) -> None:
+    figures = json.loads((whole / "score.json").read_text())["figures"]
+    own = {f["name"] for f in figures if not f["comparable"]}
+    assert own == {
+        "calibration error of stated probabilities",
+        "the same if every stated probability were exact",
+        "time of a diagnosis as run here, s, median",
+        "time of the verdict alone, s, median",
+        "time of the verdict alone, s, 95 of 100 within",
+        "time of the whole report, s, median",
+        "time of the whole report, s, 95 of 100 within",
+    }

@@ -14,9 +14,6 @@ from rich.table import Table
 
 FEWEST = 10
 """Figures that rest on fewer cases are not compared."""
-OWN = ("time ", "calibration error", "the same if every stated probability")
-"""Beginnings of figures that belong to a machine or to a number of cases: departures of stated
-probabilities, summed without sign, are the larger the fewer cases there are."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,7 @@ def pairs(ours: Mapping[str, Any], record: Mapping[str, Any]) -> list[Pair]:
     for figure in ours["figures"]:
         name, here = figure["name"], figure["estimate"]
         there = known.get(name)
-        if there is None or name.startswith(OWN) or here["value"] is None:
+        if there is None or not figure["comparable"] or here["value"] is None:
             continue
         whole = all(e[k] is not None for e in (here, there) for k in ("value", "low", "high"))
         if whole and min(here["count"], there["count"]) >= FEWEST:
