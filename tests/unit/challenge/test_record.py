@@ -17,7 +17,7 @@ from cyclosweep.challenge.record import run as record_run
 from cyclosweep.challenge.record.command import main
 from cyclosweep.challenge.record.compare import fits, pairs
 from cyclosweep.challenge.record.ledger import Ledger
-from cyclosweep.challenge.record.paper import write_page, write_paper
+from cyclosweep.challenge.record.paper import write_pages, write_paper
 from cyclosweep.challenge.record.parts import COLOURED, CONTEST, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
@@ -238,7 +238,7 @@ def test_page_of_record_shows_every_contest(whole: Path, tmp_path: Path) -> None
 
 def test_parts_of_a_contest_are_of_one_programme_and_noise_and_share_no_seed() -> None:
     parts = {part.name: part for part in CONTEST.parts() if part.cases}
-    assert len({part.offset for part in parts.values()}) == len(parts)
+    assert [part.offset for part in Size().parts()] == list(range(10))
     kinds = {
         name: {(e.stratum.tier, e.stratum.programme, e.stratum.noise) for e in part.plan(50, 60, 9)}
         for name, part in parts.items()
@@ -266,26 +266,44 @@ def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Pa
     behind = words.split("## Who is behind")[1].split("##")[0]
     for row in (
         "| white | rich | bic_subset |",
-        "| white | poor | stlsq |",
+        "| white | poor | error_ladder |",
         "| ar0.6 | poor | aic_subset |",
     ):
         assert row in behind
-    # Noise for which every part has cases, none of the rest of the proof.
+    # Figures for which there are cases, none of the rest of the proof.
     assert "| false alarms, white |" in words
     assert "| false alarms, ar0.6 |" in words
     assert "| false alarms, jitter |" not in words
-    assert "named right, single effect" not in words
+    assert "two effects ten to one" not in words
     assert (docs / "contest-power-rich-ar0.6.svg").exists()
     # The table of targets of the whole proof shows it too.
-    assert "(seed 40, [contest.md](contest.md))" in write_page(docs, "proof").read_text()
+    assert "[contest.md](contest.md)" in (docs / "proof.md").read_text()
+    assert not (out / "measured").exists()
 
 
-@pytest.mark.parametrize("name", ["proof"])
-def test_committed_pages_are_what_their_figures_give(name: str, tmp_path: Path) -> None:
-    shutil.copytree(DOCS, tmp_path, dirs_exist_ok=True)
-    write_page(tmp_path, name)
-    for file in sorted(DOCS.glob(f"{name}*")):
-        assert (tmp_path / file.name).read_text() == file.read_text(), file.name
+def test_committed_pages_are_what_their_figures_give(tmp_path: Path) -> None:
+    for kind in ("*.json", "*-published.jsonl", "*-notes.md"):
+        for file in DOCS.glob(kind):
+            shutil.copy(file, tmp_path)
+    given = set(tmp_path.iterdir())
+    names = [page.stem for page in write_pages(tmp_path)]
+    made = {file.name: file.read_text() for file in set(tmp_path.iterdir()) - given}
+    assert "proof" in names
+    there = [f for name in names for f in (DOCS / f"{name}.md", *DOCS.glob(f"{name}-power-*.svg"))]
+    assert made == {file.name: file.read_text() for file in there}
+
+
+def test_a_record_begun_before_a_part_was_thought_of_is_the_same_without_it(
+    whole: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
+    file = tmp_path / "record.json"
+    about = json.loads(file.read_text())
+    del about["size"]["rich_open"], about["size"]["poor_null"]
+    file.write_text(json.dumps(about))
+    before = [f.read_text() for f in (file, tmp_path / "PUBLISHED.jsonl")]
+    Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    assert [f.read_text() for f in (file, tmp_path / "PUBLISHED.jsonl")] == before
 
 
 def test_a_part_may_be_added_to_a_record_and_is_written_down(whole: Path, tmp_path: Path) -> None:
@@ -325,6 +343,20 @@ def test_the_command_makes_goes_on_and_starts_afresh(tmp_path: Path) -> None:
         main([*words, "--fresh"])
     assert ended.value.code == 2
     assert (out / "record.json").exists()
+
+
+def test_pages_are_written_again_by_the_command(whole: Path, tmp_path: Path) -> None:
+    page = write_paper(whole, tmp_path)
+    good = page.read_text()
+    page.write_text("")
+    for words, status in ((["--pages", str(tmp_path)], 0), (["--pages", str(tmp_path / "x")], 2)):
+        with pytest.raises(SystemExit) as ended:
+            main(words)
+        assert ended.value.code == status
+    assert page.read_text() == good
+    (tmp_path / "proof-published.jsonl").unlink()
+    with pytest.raises(ValueError, match="missing, expected the log"):
+        write_pages(tmp_path)
 
 
 def test_figures_of_two_runs_agree_within_their_intervals(whole: Path) -> None:

@@ -20,11 +20,11 @@ _HEAD = """## Detection beside its opponents
 
 Share of recordings with a single effect in which something was found, on identical files. Every
 opponent stands at a threshold that one in a hundred recordings with nothing missing exceeds. Which
-recordings those are decides the comparison, so it is made three times. The diagnosis is the same in
-all of them and is not told the noise; it stands as it is, and once more with its own evidence tuned
-in the same way. `ahead` is the share found by the diagnosis minus that found by the opponent over
-d = 3 to 10, with the uncertainty of the threshold in its interval; `ahead alike` the same with both
-tuned. An opponent is behind where the whole interval is above zero."""
+recordings those are decides the comparison, so it is made more than once. The diagnosis is the
+same every time and is not told the noise; it stands as it is, and once more with its own evidence
+tuned in the same way. `ahead` is the share found by the diagnosis minus that found by the opponent
+over d = 3 to 10, with the uncertainty of the threshold in its interval; `ahead alike` the same with
+both tuned. An opponent is behind where the whole interval is above zero."""
 
 _WHITE = """Effects under white noise, thresholds set on white noise. This is what the opponents'
 formulas assume."""
@@ -136,8 +136,8 @@ def _alarms(rivals: Sequence[Plain], setting: str) -> str:
         return ""
     rows = ((o["who"], *(_alarm(o[setting]["alarms"], f) for f in families)) for o in there)
     return (
-        "\n\nFalse alarms at those thresholds, by family of noise; of the diagnosis as it is they "
-        "stand in the table of false alarms above.\n\n" + table(("who", *families), rows)
+        "\n\nFalse alarms at those thresholds, by family of noise; those of the diagnosis as it is "
+        "stand further up.\n\n" + table(("who", *families), rows)
     )
 
 

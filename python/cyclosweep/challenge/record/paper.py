@@ -12,23 +12,25 @@ from cyclosweep.challenge.record.parts import Size
 from cyclosweep.challenge.record.proof_page import proof_page
 from cyclosweep.challenge.record.tables import tables_of
 
-PROOF = "proof"
-CONTEST = "contest"
+PROOF_PAGE = "proof"
+CONTEST_PAGE = "contest"
 
 
 def write_paper(record: Path, docs: Path) -> Path:
     """Write figures, log and page of a record: ``proof`` or, of the contest alone, ``contest``.
+
+    The other page, where its figures are there, is written again: each shows some of the other.
 
     Parameters
     ----------
     record : pathlib.Path
         Folder of the record, scored.
     docs : pathlib.Path
-        Where they go: ``<name>.json``, ``<name>-published.jsonl``, and what ``write_page`` writes.
+        Where they go: ``<name>.json``, ``<name>-published.jsonl``, the page and its pictures.
     """
     docs.mkdir(parents=True, exist_ok=True)
     about = json.loads((record / "record.json").read_text())
-    name = CONTEST if Size(**about["size"]).is_contest else PROOF
+    name = CONTEST_PAGE if Size(**about["size"]).is_contest else PROOF_PAGE
     published, measured = record / "PUBLISHED.jsonl", record / "measured" / "measured.json"
     content = json.loads((record / "score.json").read_text()) | {
         "record": about,
@@ -38,37 +40,40 @@ def write_paper(record: Path, docs: Path) -> Path:
     log = published.read_text() if published.exists() else ""
     (docs / f"{name}-published.jsonl").write_text(log)
     (docs / f"{name}.json").write_text(json.dumps(content, indent=1) + "\n")
-    return write_page(docs, name)
+    write_pages(docs)
+    return docs / f"{name}.md"
 
 
 def write_pages(docs: Path) -> list[Path]:
-    """Write every page again whose figures are there."""
-    return [write_page(docs, name) for name in (PROOF, CONTEST) if (docs / f"{name}.json").exists()]
+    """Write every page again whose figures are there.
+
+    Raises
+    ------
+    ValueError
+        If there are none.
+    """
+    names = [name for name in (PROOF_PAGE, CONTEST_PAGE) if (docs / f"{name}.json").exists()]
+    if not names:
+        raise ValueError(f"{docs}: found no figures, expected proof.json or contest.json")
+    return [_write_page(docs, name) for name in names]
 
 
-def write_page(docs: Path, name: str) -> Path:
+def _write_page(docs: Path, name: str) -> Path:
     """Write a page and its pictures from its figures and its log, which lie beside it.
 
     What ``<name>-notes.md`` says is taken over word for word, with a remark above it where it
-    does not name the record's seed. Each of the two pages also shows figures of the other.
-
-    Parameters
-    ----------
-    docs : pathlib.Path
-        Folder of the page.
-    name : {"proof", "contest"}
-        Which page.
+    does not name the record's seed.
     """
-    content = _read(docs / f"{name}.json")
-    if content is None:
-        raise ValueError(f"{docs / name}.json: missing, expected the figures of a record")
-    lines = (docs / f"{name}-published.jsonl").read_text().splitlines()
-    log = [json.loads(line) for line in lines]
+    content = json.loads((docs / f"{name}.json").read_text())
+    published = docs / f"{name}-published.jsonl"
+    if not published.exists():
+        raise ValueError(f"{published}: missing, expected the log of the record")
+    log = [json.loads(line) for line in published.read_text().splitlines()]
     notes = _notes(docs / f"{name}-notes.md", content["record"]["seed"])
-    if name == CONTEST:
-        page = contest_page(content, log, notes, _read(docs / f"{PROOF}.json"))
+    if name == CONTEST_PAGE:
+        page = contest_page(content, log, notes, _read(docs / f"{PROOF_PAGE}.json"))
     else:
-        page = proof_page(content, log, notes, _read(docs / f"{CONTEST}.json"))
+        page = proof_page(content, log, notes, _read(docs / f"{CONTEST_PAGE}.json"))
     write_pictures(content, docs, name)
     file = docs / f"{name}.md"
     file.write_text(page, encoding="utf-8")
@@ -83,7 +88,7 @@ def _read(file: Path) -> dict[str, Any] | None:
 def _notes(file: Path, seed: int) -> str:
     """What was written by hand about this record; words about another one say so."""
     if not file.exists():
-        return "Nothing has been written yet."
+        return ""
     words = file.read_text().strip()
     if f"seed {seed}" in words:
         return words

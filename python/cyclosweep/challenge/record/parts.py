@@ -111,7 +111,8 @@ class Size:
     @property
     def is_contest(self) -> bool:
         """Whether this is the contest alone, without the rest of the proof."""
-        return self.null == 0 and self.rich_null > 0
+        rest = self.null + self.concealed + self.tuning
+        return rest == 0 and any(part.cases for part in self._parts_of_a_contest())
 
     def parts(self) -> list[Part]:
         """Parts in the order in which a step runs through them."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cyclosweep.challenge.record.contest import contest_section
-from cyclosweep.challenge.record.contest_page import detection_figures
 from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.record.origin import origin
 from cyclosweep.challenge.record.real import real_drive
-from cyclosweep.challenge.record.targets import target_tables
+from cyclosweep.challenge.record.targets import judged, target_tables
 from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.specimen import VOCABULARY
 
@@ -38,7 +37,7 @@ def proof_page(content: Plain, log: Sequence[Plain], notes: str, contest: Plain 
         _calibration(content),
         _unknowns(tables),
         real_drive(content["measured"]),
-        "## What the misses teach\n\n" + notes,
+        "## What the misses teach\n\n" + (notes or "Nothing has been written yet."),
         _checking(about),
     )
     return "\n\n".join(sections) + "\n"
@@ -64,11 +63,13 @@ def _head(content: Plain, log: Sequence[Plain]) -> str:
 def _targets(content: Plain, contest: Plain | None) -> str:
     parts = ["## The table of targets\n\n" + target_tables(content["figures"])]
     if contest is not None:
+        compared = [
+            f for f in contest["figures"] if f["target"] != "none" and "behind" in f["name"]
+        ]
         parts.append(
             "The contest with the opponents was run once more, with other recordings and more of "
-            f"them to set thresholds on (seed {contest['record']['seed']}, "
-            "[contest.md](contest.md)); its figures:\n\n"
-            + target_tables(detection_figures(contest["figures"]))
+            f"them to set thresholds on (seed {contest['record']['seed']}): how many of them are "
+            "behind there; all its figures are in [contest.md](contest.md).\n\n" + judged(compared)
         )
     return "\n\n".join(parts)
 

@@ -102,10 +102,13 @@ class Record:
         if not file.exists():
             _write(file, own | {"commit": commit(), "machine": machine()})
         self.about: dict[str, Any] = json.loads(file.read_text())
+        # A part that this record was begun without is one without a case.
+        begun = dict.fromkeys(asdict(size), 0) | self.about["size"]
         self.ledger = Ledger(out / "PUBLISHED.jsonl")
         added = self._added_parts(asdict(size))
         for key, value in own.items():
-            if self.about[key] != value and not (key == "size" and added):
+            found = begun if key == "size" else self.about[key]
+            if found != value and not (key == "size" and added):
                 raise ValueError(
                     f"{file}: {key}: found {self.about[key]}, expected {value}; "
                     "a record mixes no versions: start afresh or use another folder"
@@ -118,7 +121,7 @@ class Record:
     def _added_parts(self, size: dict[str, int]) -> dict[str, int]:
         """Parts that this record was begun without, if that is all that differs."""
         before = self.about["size"]
-        added = {name: cases for name, cases in size.items() if name not in before}
+        added = {name: cases for name, cases in size.items() if name not in before and cases}
         same = all(size.get(name) == cases for name, cases in before.items())
         return added if same else {}
 

@@ -9,10 +9,9 @@ from typing import Any
 from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record.markdown import Plain
 from cyclosweep.challenge.scoring.intervals import share
+from cyclosweep.challenge.scoring.outcome import ALARMS
 from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.specimen import VOCABULARY
-
-ALARMS = ("IDENTIFIED", "AMBIGUOUS", "UNKNOWN_PHYSICS")
 
 
 def tables_of(outcomes: Sequence[Plain]) -> dict[str, list[dict[str, Any]]]:

@@ -15,8 +15,26 @@ def _reached(figure: Plain) -> str:
     return "required only" if figure["met_required"] else "**missed**"
 
 
+def judged(figures: Sequence[Plain]) -> str:
+    """Table of figures beside their targets."""
+    return table(
+        ("figure", "reached [95 %]", "cases", "target", "required", ""),
+        (
+            (
+                f["name"],
+                text(f["estimate"]),
+                f["estimate"]["count"],
+                f["target"],
+                f["required"] or "",
+                _reached(f),
+            )
+            for f in figures
+        ),
+    )
+
+
 def target_tables(figures: Sequence[Plain]) -> str:
-    """Figures with a target, how many miss it, and the figures without one."""
+    """Figures with a target, how many miss it, and the figures without one; none is left out."""
     aimed = [f for f in figures if f["target"] != "none"]
     others = [f for f in figures if f["target"] == "none"]
     missed = sum(f["met"] is False for f in aimed)
@@ -24,20 +42,7 @@ def target_tables(figures: Sequence[Plain]) -> str:
     return (
         f"{len(aimed)} figures have a target, {missed} miss it, {failed} miss what is required. "
         "None is left out.\n\n"
-        + table(
-            ("figure", "reached [95 %]", "cases", "target", "required", ""),
-            (
-                (
-                    f["name"],
-                    text(f["estimate"]),
-                    f["estimate"]["count"],
-                    f["target"],
-                    f["required"] or "",
-                    _reached(f),
-                )
-                for f in aimed
-            ),
-        )
+        + judged(aimed)
         + "\n\nBeside them, without a target:\n\n"
         + table(
             ("figure", "reached [95 %]", "cases"),
