@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
-from cyclosweep.challenge.record.contest import OWN, contest_section
-from cyclosweep.challenge.record.markdown import Plain, table, text
+from cyclosweep.challenge.record.contest import contest_section
+from cyclosweep.challenge.record.markdown import Plain
 from cyclosweep.challenge.record.origin import origin
-from cyclosweep.challenge.record.targets import target_tables
-from cyclosweep.challenge.scoring.power import PROGRAMMES
-from cyclosweep.challenge.scoring.rivals import OURS
+from cyclosweep.challenge.record.targets import judged, target_tables
+from cyclosweep.challenge.record.together import behind_table, both_figures
 
 
 def contest_page(content: Plain, log: Sequence[Plain], notes: str, proof: Plain | None) -> str:
@@ -43,37 +42,12 @@ def contest_page(content: Plain, log: Sequence[Plain], notes: str, proof: Plain 
         "less the share that the opponent alone finds, on the same files. The opponent stands at "
         "the threshold that one in a hundred recordings with nothing missing and that noise "
         "exceeds; the diagnosis at the same (alike), or as it is, where it raises fewer "
-        "alarms.\n\n" + _behind(content, proof),
+        "alarms. The last column holds for the recordings of both records, whose code is the "
+        "same: the two distances, each weighted by its precision.\n\n"
+        + behind_table(content, proof)
+        + ("" if proof is None else "\n\n" + judged(both_figures(content, proof))),
         "## Figures\n\nEvery figure for which there are cases here.\n\n"
         + target_tables([f for f in content["figures"] if f["estimate"]["count"]]),
         contest_section(content, "contest"),
     )
     return "\n\n".join(part for part in sections if part) + "\n"
-
-
-def _behind(content: Plain, proof: Plain | None) -> str:
-    """Every opponent's distance in every comparison, beside that in the proof."""
-    before = {} if proof is None else dict(_keyed(proof))
-    rows = []
-    for key, o in _keyed(content):
-        there = before.get(key)
-        rows.append(
-            (
-                *key,
-                text(o[OWN]["tuned_ahead"], 2),
-                text(o[OWN]["ahead"], 2),
-                "–" if there is None else text(there[OWN]["tuned_ahead"], 2),
-            )
-        )
-    other = "–" if proof is None else f"alike in proof.md, seed {proof['record']['seed']}"
-    return table(("noise", "programme", "opponent", "alike", "as it is", other), rows)
-
-
-def _keyed(content: Plain) -> Iterator[tuple[tuple[str, str, str], Plain]]:
-    """Opponents of a score by noise, programme and name, in the order of the page."""
-    noises = dict.fromkeys(o["noise"] for o in content["opponents"])
-    for noise in noises:
-        for programme in PROGRAMMES:
-            for o in content["opponents"]:
-                if (o["noise"], o["programme"]) == (noise, programme) and o["who"] != OURS:
-                    yield (noise, programme, o["who"]), o

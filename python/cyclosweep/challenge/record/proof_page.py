@@ -9,6 +9,7 @@ from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.record.origin import origin
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.record.targets import judged, target_tables
+from cyclosweep.challenge.record.together import both_figures
 from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.specimen import VOCABULARY
 
@@ -69,7 +70,8 @@ def _targets(content: Plain, contest: Plain | None) -> str:
         parts.append(
             "The contest with the opponents was run once more, with other recordings and more of "
             f"them to set thresholds on (seed {contest['record']['seed']}): how many of them are "
-            "behind there; all its figures are in [contest.md](contest.md).\n\n" + judged(compared)
+            "behind there, and over both records; all its figures are in "
+            "[contest.md](contest.md).\n\n" + judged([*compared, *both_figures(contest, content)])
         )
     return "\n\n".join(parts)
 

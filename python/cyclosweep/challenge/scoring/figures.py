@@ -397,17 +397,24 @@ def _behind(
     it is, the diagnosis stands at half of that or less, and what it finds there is wanted too.
     """
     return [
-        _figure(
-            f"opponents at 1 % {where} behind the diagnosis {words}, {programme}",
-            share_of(behind),
-            at_least=wanted,
-            must=wanted if words == ALIKE else None,
-        )
+        share_behind(where, programme, words, behind, wanted)
         for words, behind in (
             (AS_IT_IS, [s.ahead.low > 0.0 for s in rivals]),
             (ALIKE, [s.tuned_ahead.low > 0.0 for s in rivals]),
         )
     ]
+
+
+def share_behind(
+    where: str, programme: str, words: str, behind: Sequence[bool], wanted: float | None
+) -> Figure:
+    """Share of opponents that are behind the diagnosis as it is, or tuned alike."""
+    return _figure(
+        f"opponents at 1 % {where} behind the diagnosis {words}, {programme}",
+        share_of(behind),
+        at_least=wanted,
+        must=wanted if words == ALIKE else None,
+    )
 
 
 def _slower(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,6 +57,23 @@ def share_of(flags: ArrayLike) -> Estimate:
     """Share of true flags with its exact interval."""
     table = np.asarray(flags, dtype=bool)
     return share(int(table.sum()), int(table.size))
+
+
+def together(estimates: Sequence[Estimate]) -> Estimate:
+    """Mean of independent estimates of one quantity, each weighted by its precision.
+
+    The variance of each is read from its 95 % interval, as if that were symmetric and normal.
+
+    Examples
+    --------
+    >>> both = together([Estimate(0.1, 0.0, 0.2, 50), Estimate(0.2, 0.1, 0.3, 50)])
+    >>> round(both.value, 3), round(both.low, 3), both.count
+    (0.15, 0.079, 100)
+    """
+    weights = np.array([max(e.high - e.low, 1e-9) ** -2 for e in estimates])
+    value = float(np.average([e.value for e in estimates], weights=weights))
+    half = 0.5 / float(np.sqrt(weights.sum()))
+    return Estimate(value, value - half, value + half, sum(e.count for e in estimates))
 
 
 def _summary(table: NDArray[np.float64], statistic: str) -> float:

@@ -1,0 +1,45 @@
+"""Two contests of the same code, taken together."""
+
+import pytest
+
+from cyclosweep.challenge.record.together import behind_table, both, both_figures
+from cyclosweep.challenge.scoring.intervals import Estimate, together
+
+
+def contest(seed: int, code: str, low: float, high: float, programme: str = "poor") -> dict:
+    there = {"value": (low + high) / 2, "low": low, "high": high, "count": 500}
+    who = {"who": "bic_subset", "programme": programme, "noise": "white"}
+    own = {"own": {"tuned_ahead": there, "ahead": {**there, "value": -0.5, "low": -0.6}}}
+    return {
+        "record": {"seed": seed, "diagnosis": code, "rig": "one rig"},
+        "opponents": [who | own, {**who, "who": "the diagnosis, tuned alike"} | own],
+    }
+
+
+def test_the_more_precise_counts_more_and_together_they_are_more_precise() -> None:
+    wide, narrow = Estimate(0.0, -0.2, 0.2, 30), Estimate(0.1, 0.0, 0.2, 50)
+    found = together([wide, narrow])
+    assert found.value == pytest.approx(0.08)
+    assert found.high - found.low == pytest.approx(2 * 0.1 * 0.8**0.5)
+    # Something certain, as where no draw differs, decides alone.
+    assert together([wide, Estimate(0.3, 0.3, 0.3, 9)]).value == pytest.approx(0.3)
+
+
+def test_neither_alone_but_both_show_that_an_opponent_is_behind() -> None:
+    one, other = contest(10, "a", -0.01, 0.07), contest(20, "a", -0.01, 0.07)
+    [figure] = both_figures(one, other)
+    assert figure["name"].endswith("poor, both records")
+    assert figure["met_required"]
+    [figure] = both_figures(one, contest(20, "a", -0.05, 0.03))
+    assert figure["met_required"] is False
+    assert "| white | poor | bic_subset | 0.03 [-0.01, 0.07] | -0.5 [-0.6, 0.07] |" in behind_table(
+        one, other
+    )
+
+
+def test_records_of_other_code_or_other_recordings_are_not_put_together() -> None:
+    one = contest(10, "a", 0.1, 0.2)
+    assert both(one, contest(20, "b", 0.1, 0.2)) == {}
+    assert both_figures(one, contest(20, "b", 0.1, 0.2)) == []
+    assert both(one, contest(20, "a", 0.1, 0.2, programme="rich")) == {}
+    assert behind_table(one, None).endswith("| – | – |")
