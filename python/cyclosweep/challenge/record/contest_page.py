@@ -26,6 +26,7 @@ def contest_page(content: Plain, log: Sequence[Plain], notes: str, proof: Plain 
         What ``proof.json`` holds: the contest within the whole proof, to lay beside.
     """
     seed = content["record"]["seed"]
+    over = [] if proof is None else both_figures(content, proof)
     sections = (
         "# The contest: who finds what is concealed, at one false alarm in a hundred\n\n"
         "Written by `make proof-contest`; not edited by hand. The contest of "
@@ -42,10 +43,10 @@ def contest_page(content: Plain, log: Sequence[Plain], notes: str, proof: Plain 
         "less the share that the opponent alone finds, on the same files. The opponent stands at "
         "the threshold that one in a hundred recordings with nothing missing and that noise "
         "exceeds; the diagnosis at the same (alike), or as it is, where it raises fewer "
-        "alarms. The last column holds for the recordings of both records, whose code is the "
-        "same: the two distances, each weighted by its precision.\n\n"
+        "alarms. The last column is for the recordings of both records, if one code diagnosed and "
+        "made them all: the two distances, each weighted by its precision.\n\n"
         + behind_table(content, proof)
-        + ("" if proof is None else "\n\n" + judged(both_figures(content, proof))),
+        + ("\n\n" + judged(over) if over else ""),
         "## Figures\n\nEvery figure for which there are cases here.\n\n"
         + target_tables([f for f in content["figures"] if f["estimate"]["count"]]),
         contest_section(content, "contest"),

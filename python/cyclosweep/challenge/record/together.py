@@ -55,7 +55,7 @@ def behind_table(contest: Plain, proof: Plain | None) -> str:
 
     return table(
         ("noise", "programme", "opponent", *columns),
-        ((*key, *(cell(column, key) for column in columns.values())) for key in columns["alike"]),
+        ((*key, *(cell(c, key) for c in columns.values())) for key, _ in _keyed(contest)),
     )
 
 
