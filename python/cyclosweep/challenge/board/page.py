@@ -70,8 +70,7 @@ def _power(score: Score, programme: str, noise: str) -> str:
     series = power_series(
         [(who, [(d, e.value, e.low, e.high) for d, e in points]) for who, points in named]
     )
-    reach = max((x for s in series for x in s.x), default=20.0)
-    return power_chart(f"{programme} programme, {noise} noise", series, (0.0, reach * 1.04))
+    return power_chart(f"{programme} programme, {noise} noise", series)
 
 
 def _opponents(score: Score) -> str:

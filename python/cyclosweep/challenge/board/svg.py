@@ -23,6 +23,7 @@ PALETTE = (
     "#525252",
     "#1e3a8a",
     "#854d0e",
+    "#111111",
 )
 
 
@@ -73,6 +74,8 @@ def chart(
     *,
     x_range: tuple[float, float],
     y_range: tuple[float, float],
+    x_ticks: Sequence[float] = (),
+    x_log: bool = False,
 ) -> str:
     """Draw a chart and return it as an ``svg`` element.
 
@@ -84,12 +87,17 @@ def chart(
         What is drawn.
     x_range, y_range : tuple of float
         Bounds of the axes.
+    x_ticks : sequence of float
+        Where the x axis is marked; round numbers if absent.
+    x_log : bool
+        Whether the x axis is logarithmic.
     """
     (x0, x1), (y0, y1) = x_range, y_range
     inner_w, inner_h = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
 
     def px(x: float) -> float:
-        return LEFT + (x - x0) / (x1 - x0) * inner_w
+        share = np.log(x / x0) / np.log(x1 / x0) if x_log else (x - x0) / (x1 - x0)
+        return float(LEFT + share * inner_w)
 
     def py(y: float) -> float:
         return TOP + (y1 - min(max(y, y0), y1)) / (y1 - y0) * inner_h
@@ -98,7 +106,7 @@ def chart(
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(title)}">',
         f'<text x="{LEFT}" y="16" class="title">{escape(title)}</text>',
     ]
-    for tick in _ticks(x0, x1):
+    for tick in x_ticks or _ticks(x0, x1):
         parts.append(
             f'<line x1="{px(tick):.1f}" x2="{px(tick):.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}" '
             f'class="grid"/><text x="{px(tick):.1f}" y="{HEIGHT - BOTTOM + 14}" '

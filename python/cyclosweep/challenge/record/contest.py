@@ -12,6 +12,7 @@ from cyclosweep.challenge.noise import NOISES
 from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.scoring.intervals import Estimate
 from cyclosweep.challenge.scoring.power import PROGRAMMES
+from cyclosweep.challenge.scoring.rivals import OURS
 
 EVERY = "every"
 OWN = "own"
@@ -24,7 +25,8 @@ recordings those are decides the comparison, so it is made more than once. The d
 same every time and is not told the noise; it stands as it is, and once more with its own evidence
 tuned in the same way. `ahead` is the share found by the diagnosis minus that found by the opponent
 over d = 3 to 10, with the uncertainty of the threshold in its interval; `ahead alike` the same with
-both tuned. An opponent is behind where the whole interval is above zero."""
+both tuned. An opponent is behind where the whole interval is above zero. In the pictures the points
+of one d stand side by side."""
 
 _WHITE = """Effects under white noise, thresholds set on white noise. This is what the opponents'
 formulas assume."""
@@ -162,19 +164,20 @@ def _at(points: Mapping[float, Plain], d: float) -> str:
 def _drawn(score: Plain, programme: str, noise: str, setting: str) -> str:
     """Curves of the diagnosis, the knowing test and all opponents, with intervals."""
     named = [(c["who"], c["points"]) for c in _curves(score, programme, noise)]
+    rivals = _rivals(score, programme, noise, setting)
     named += [
         (f"{o['who']} at 1 %", o[setting]["power"])
-        for o in _rivals(score, programme, noise, setting)
+        for o in sorted(rivals, key=lambda o: bool(o["who"] != OURS))
     ]
     series = power_series(
         [
             (who, [(p["d"], p["value"], p["low"], p["high"]) for p in points])
             for who, points in named
         ],
-        apart=0.05,
+        apart=1.008,
     )
     where = "one threshold for all families of noise" if setting == EVERY else f"{noise} noise"
-    drawn = power_chart(f"{programme} programme, {where}", series, (2.0, 21.0))
+    drawn = power_chart(f"{programme} programme, {where}", series)
     element = drawn[: drawn.index("</svg>")]
     legend = "".join(
         f'<rect x="480" y="{26 + 18 * k}" width="9" height="9" fill="{s.colour}"/>'
