@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from cyclosweep.challenge.record.contest import write_pictures
 from cyclosweep.challenge.record.contest_page import contest_page
+from cyclosweep.challenge.record.markdown import Plain
 from cyclosweep.challenge.record.parts import Size
 from cyclosweep.challenge.record.proof_page import proof_page
 from cyclosweep.challenge.record.tables import tables_of
@@ -52,37 +53,36 @@ def write_pages(docs: Path) -> list[Path]:
     ValueError
         If there are none.
     """
-    names = [name for name in (PROOF_PAGE, CONTEST_PAGE) if (docs / f"{name}.json").exists()]
-    if not names:
+    figures = {
+        name: json.loads(file.read_text())
+        for name in (PROOF_PAGE, CONTEST_PAGE)
+        if (file := docs / f"{name}.json").exists()
+    }
+    if not figures:
         raise ValueError(f"{docs}: found no figures, expected proof.json or contest.json")
-    return [_write_page(docs, name) for name in names]
+    return [_write_page(docs, name, figures) for name in figures]
 
 
-def _write_page(docs: Path, name: str) -> Path:
-    """Write a page and its pictures from its figures and its log, which lie beside it.
+def _write_page(docs: Path, name: str, figures: Mapping[str, Plain]) -> Path:
+    """Write a page and its pictures from the figures of both pages and the log beside it.
 
     What ``<name>-notes.md`` says is taken over word for word, with a remark above it where it
     does not name the record's seed.
     """
-    content = json.loads((docs / f"{name}.json").read_text())
+    content = figures[name]
     published = docs / f"{name}-published.jsonl"
     if not published.exists():
         raise ValueError(f"{published}: missing, expected the log of the record")
     log = [json.loads(line) for line in published.read_text().splitlines()]
     notes = _notes(docs / f"{name}-notes.md", content["record"]["seed"])
     if name == CONTEST_PAGE:
-        page = contest_page(content, log, notes, _read(docs / f"{PROOF_PAGE}.json"))
+        page = contest_page(content, log, notes, figures.get(PROOF_PAGE))
     else:
-        page = proof_page(content, log, notes, _read(docs / f"{CONTEST_PAGE}.json"))
+        page = proof_page(content, log, notes, figures.get(CONTEST_PAGE))
     write_pictures(content, docs, name)
     file = docs / f"{name}.md"
     file.write_text(page, encoding="utf-8")
     return file
-
-
-def _read(file: Path) -> dict[str, Any] | None:
-    """Figures of a page, where there are any."""
-    return json.loads(file.read_text()) if file.exists() else None
 
 
 def _notes(file: Path, seed: int) -> str:

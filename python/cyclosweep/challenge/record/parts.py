@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.runner.run import plan_of
@@ -13,8 +13,6 @@ COLOURED = "coloured"
 """Part in which the noise is correlated: for the contest alone, apart from all other figures."""
 CORRELATED = "ar0.6"
 """Family of noise of the parts in which it is correlated."""
-
-_IN_WORDS = {"tuning": "nothing missing", "open": "further single effects in the open"}
 
 
 @dataclass(frozen=True)
@@ -57,14 +55,9 @@ class Part:
             "mix": self.mix or self.name,
             "samples": samples,
             "noise": self.noise,
+            "programme": self.programme,
         }
-        plan = plan_of(about, last)
-        if not self.programme:
-            return plan
-        return [
-            replace(entry, stratum=replace(entry.stratum, programme=self.programme))
-            for entry in plan
-        ]
+        return plan_of(about, last)
 
     def slice(self, step: int, steps: int) -> tuple[int, int]:
         """First case of a step, and the first one after it."""
@@ -154,40 +147,35 @@ class Size:
 
     def _parts_of_a_contest(self) -> list[Part]:
         """Parts of one programme and noise, which only a record that is the contest alone has."""
-        few = self.costly_nulls
-        kinds = (
-            ("rich_null", self.rich_null, few, "tuning", "rich", "white"),
-            ("poor_null", self.poor_null, few, "tuning", "poor", "white"),
-            (
-                f"{COLOURED}_rich_null",
-                self.coloured_rich_null,
-                self.coloured_rich_null,
-                "tuning",
-                "rich",
-                CORRELATED,
-            ),
-            (
-                f"{COLOURED}_poor_null",
-                self.coloured_poor_null,
-                self.coloured_poor_null,
-                "tuning",
-                "poor",
-                CORRELATED,
-            ),
-            ("rich_open", self.rich_open, 0, "open", "rich", "white"),
+        nulls = (
+            ("rich_null", self.rich_null, "rich", "white"),
+            ("poor_null", self.poor_null, "poor", "white"),
+            ("coloured_rich_null", self.coloured_rich_null, "rich", CORRELATED),
+            ("coloured_poor_null", self.coloured_poor_null, "poor", CORRELATED),
         )
         return [
+            *(
+                Part(
+                    name,
+                    f"nothing missing, {programme} programme, {noise} noise",
+                    cases,
+                    5 + k,
+                    self.costly_nulls if noise == "white" else cases,
+                    mix="tuning",
+                    noise=noise,
+                    programme=programme,
+                )
+                for k, (name, cases, programme, noise) in enumerate(nulls)
+            ),
             Part(
-                name,
-                f"{_IN_WORDS[mix]}, {programme} programme, {noise} noise",
-                cases,
-                5 + k,
-                costly,
-                mix=mix,
-                noise=noise,
-                programme=programme,
-            )
-            for k, (name, cases, costly, mix, programme, noise) in enumerate(kinds)
+                "rich_open",
+                "further single effects in the open, rich programme, white noise",
+                self.rich_open,
+                9,
+                0,
+                mix="open",
+                programme="rich",
+            ),
         ]
 
     def slices(self) -> Iterator[tuple[Part, int, int]]:

@@ -102,13 +102,17 @@ class Record:
         if not file.exists():
             _write(file, own | {"commit": commit(), "machine": machine()})
         self.about: dict[str, Any] = json.loads(file.read_text())
-        # A part that this record was begun without is one without a case.
-        begun = dict.fromkeys(asdict(size), 0) | self.about["size"]
         self.ledger = Ledger(out / "PUBLISHED.jsonl")
-        added = self._added_parts(asdict(size))
+        # A part that this record was begun without is one without a case, until it is added.
+        begun = dict.fromkeys(asdict(size), 0) | self.about["size"]
+        added = {
+            name: cases
+            for name, cases in asdict(size).items()
+            if cases and name not in self.about["size"]
+        }
+        there = self.about | {"size": begun | added}
         for key, value in own.items():
-            found = begun if key == "size" else self.about[key]
-            if found != value and not (key == "size" and added):
+            if there[key] != value:
                 raise ValueError(
                     f"{file}: {key}: found {self.about[key]}, expected {value}; "
                     "a record mixes no versions: start afresh or use another folder"
@@ -117,13 +121,6 @@ class Record:
             self.ledger.append("part added", **added)
             self.about["size"] = asdict(size)
             _write(file, self.about)
-
-    def _added_parts(self, size: dict[str, int]) -> dict[str, int]:
-        """Parts that this record was begun without, if that is all that differs."""
-        before = self.about["size"]
-        added = {name: cases for name, cases in size.items() if name not in before and cases}
-        same = all(size.get(name) == cases for name, cases in before.items())
-        return added if same else {}
 
     def folders(self, part: Part) -> Folders:
         """Folders of a part."""

@@ -26,6 +26,7 @@ from cyclosweep.challenge.runner.stages import (
 )
 from cyclosweep.challenge.runner.work import Options, work
 from cyclosweep.challenge.scoring.score import Score, make_score
+from cyclosweep.challenge.tiers import Stratum
 
 RECORD_SEED = 100_000
 """Records use seeds from here on; development uses seeds below ten thousand."""
@@ -38,18 +39,22 @@ def plan_of(about: Mapping[str, Any], cases: int) -> list[Entry]:
     ----------
     about : mapping
         Seed, mix and samples, as ``plan.make_plan`` takes them; with ``noise``, a family of
-        noise that takes the place of white noise.
+        noise that takes the place of white noise; with ``programme``, one that takes the place
+        of every other.
     cases : int
         Number of cases.
     """
     plan = make_plan(cases, about["seed"], about["mix"], about["samples"])
-    noise = about.get("noise", "white")
-    return [
-        replace(entry, stratum=replace(entry.stratum, noise=noise))
-        if entry.stratum.noise == "white"
-        else entry
-        for entry in plan
-    ]
+    noise, programme = about.get("noise", "white"), about.get("programme")
+
+    def described(stratum: Stratum) -> Stratum:
+        return replace(
+            stratum,
+            noise=noise if stratum.noise == "white" else stratum.noise,
+            programme=programme or stratum.programme,
+        )
+
+    return [replace(entry, stratum=described(entry.stratum)) for entry in plan]
 
 
 def run_challenge(
