@@ -11,13 +11,15 @@ RECORD_SEED ?= 600000
 RECORD_FLAGS ?=
 CONTEST_OUT ?= build/contest
 CONTEST_SEED ?= 800000
+CONTEST_POOR_OUT ?= build/contest-poor
+CONTEST_POOR_SEED ?= 900000
 RECORD := $(BIN)/python -m cyclosweep.challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench docs golden proof \
-	proof-record proof-contest clean
+	proof-record proof-contest proof-contest-poor clean
 .DEFAULT_GOAL := help
 
 help:
@@ -29,6 +31,7 @@ help:
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
 	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
 	@echo "make proof-contest  the contest with the opponents once more and docs/contest.md; about two hours"
+	@echo "make proof-contest-poor  the same on poor programmes alone and docs/contest-poor.md; about two hours"
 	@echo "make docs    regenerate what in docs comes from code or from the figures of record"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
@@ -78,6 +81,9 @@ proof-record: env
 
 proof-contest: env
 	$(RECORD) --contest --out $(CONTEST_OUT) --seed $(CONTEST_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
+
+proof-contest-poor: env
+	$(RECORD) --contest-poor --out $(CONTEST_POOR_OUT) --seed $(CONTEST_POOR_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
 
 docs: env
 	$(BIN)/python docs/generate.py

@@ -18,7 +18,7 @@ from cyclosweep.challenge.record.command import main
 from cyclosweep.challenge.record.compare import fits, pairs
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.paper import write_pages, write_paper
-from cyclosweep.challenge.record.parts import COLOURED, CONTEST, FULL, SUBSET, Size
+from cyclosweep.challenge.record.parts import COLOURED, CONTEST, CONTEST_POOR, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
 from cyclosweep.challenge.runner.folders import LOCK
@@ -253,6 +253,30 @@ def test_parts_of_a_contest_are_of_one_programme_and_noise_and_share_no_seed() -
     }
 
 
+def test_a_contest_on_one_programme_has_no_other() -> None:
+    parts = [part for part in CONTEST_POOR.parts() if part.cases]
+    assert CONTEST_POOR.is_contest
+    kinds = {
+        part.name: {
+            (e.stratum.tier, e.stratum.programme, e.stratum.noise) for e in part.plan(60, 90, 9)
+        }
+        for part in parts
+    }
+    assert kinds == {
+        "open": {("C0", "poor", "white")},
+        COLOURED: {("C0", "poor", "ar0.6")},
+        "poor_null": {("C6", "poor", "white")},
+        "coloured_poor_null": {("C6", "poor", "ar0.6")},
+    }
+    assert "poor programme" in parts[0].what
+    # One that a part has of its own stays.
+    assert all(
+        p.programme == "rich"
+        for p in replace(CONTEST, programme="poor").parts()
+        if p.name.endswith("rich_null")
+    )
+
+
 def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Path) -> None:
     size = replace(CONTEST, opened=24, coloured=4, rich_open=12, samples=400, steps=1)
     size = replace(size, rich_null=4, poor_null=4, coloured_rich_null=4, coloured_poor_null=4)
@@ -299,7 +323,7 @@ def test_a_record_begun_before_a_part_was_thought_of_is_the_same_without_it(
     shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
     file = tmp_path / "record.json"
     about = json.loads(file.read_text())
-    del about["size"]["rich_open"], about["size"]["poor_null"]
+    del about["size"]["rich_open"], about["size"]["poor_null"], about["size"]["programme"]
     file.write_text(json.dumps(about))
     before = [f.read_text() for f in (file, tmp_path / "PUBLISHED.jsonl")]
     Record(tmp_path, 40, SMALL, Kept(OPTIONS))

@@ -16,7 +16,7 @@ from rich.console import Console
 from cyclosweep.challenge.measured_run import SIZES_DEG, run_measured
 from cyclosweep.challenge.record.compare import compare
 from cyclosweep.challenge.record.paper import write_pages, write_paper
-from cyclosweep.challenge.record.parts import CONTEST, FULL, SUBSET, Size
+from cyclosweep.challenge.record.parts import CONTEST, CONTEST_POOR, FULL, SUBSET, Size
 from cyclosweep.challenge.record.run import FLAGS, Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
 from cyclosweep.challenge.runner.folders import alone
@@ -47,8 +47,14 @@ def _parser() -> argparse.ArgumentParser:
     kind.add_argument(
         "--contest", action="store_true", help="the contest alone, with more to set thresholds on"
     )
+    kind.add_argument(
+        "--contest-poor", action="store_true", help="the contest on poor programmes alone"
+    )
     for field in fields(Size):
-        add(f"--{field.name.replace('_', '-')}", type=int, metavar="N", help="another size")
+        if field.name == "programme":
+            add("--programme", choices=("rich", "poor"), help="one programme for all parts")
+        else:
+            add(f"--{field.name.replace('_', '-')}", type=int, metavar="N", help="another size")
     add("--opponents", choices=("all", "cheap", "none"), default="all")
     add("--keep-recordings", action="store_true", help="do not delete what is diagnosed")
     add("--fresh", action="store_true", help="throw away what DIR holds")
@@ -91,7 +97,8 @@ def _run(given: argparse.Namespace) -> int:
 
 
 def _make(given: argparse.Namespace, screen: Console) -> None:
-    base = SUBSET if given.subset else CONTEST if given.contest else FULL
+    kinds = ((given.subset, SUBSET), (given.contest, CONTEST), (given.contest_poor, CONTEST_POOR))
+    base = next((size for chosen, size in kinds if chosen), FULL)
     sizes = {f.name: getattr(given, f.name) for f in fields(Size)}
     size = replace(base, **{name: value for name, value in sizes.items() if value is not None})
     until = math.inf if given.minutes is None else time.monotonic() + 60.0 * given.minutes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.runner.run import plan_of
@@ -84,6 +84,8 @@ class Size:
         Readings of each recording.
     steps : int
         Steps in which all parts grow together.
+    programme : str
+        Programme in place of those of all parts that do not have one of their own.
     """
 
     null: int = 10_000
@@ -100,6 +102,7 @@ class Size:
     costly_open: int = 60
     samples: int = 3_000
     steps: int = STEPS
+    programme: str = ""
 
     @property
     def is_contest(self) -> bool:
@@ -109,7 +112,14 @@ class Size:
 
     def parts(self) -> list[Part]:
         """Parts in the order in which a step runs through them."""
+        return [
+            replace(part, programme=part.programme or self.programme) for part in self._all_parts()
+        ]
+
+    def _all_parts(self) -> list[Part]:
+        """Parts on the programmes of their strata, or on the one that is theirs."""
         shared = self.costly_nulls * 2 // 3
+        programmes = f"{self.programme} programme" if self.programme else "rich and poor programmes"
         return [
             Part(
                 "null",
@@ -120,7 +130,7 @@ class Size:
             ),
             Part(
                 "open",
-                "single effects in the open, d = 3 to 20, rich and poor programmes",
+                f"single effects in the open, d = 3 to 20, {programmes}",
                 self.opened,
                 1,
                 self.costly_open,
@@ -214,3 +224,16 @@ CONTEST = Size(
     steps=10,
 )
 """The contest with the opponents alone, with more recordings to set thresholds on."""
+CONTEST_POOR = Size(
+    null=0,
+    opened=1_800,
+    concealed=0,
+    tuning=0,
+    coloured=1_000,
+    poor_null=6_000,
+    coloured_poor_null=3_000,
+    costly_open=30,
+    steps=10,
+    programme="poor",
+)
+"""The contest on poor programmes alone, of which ``CONTEST`` has few."""

@@ -104,7 +104,7 @@ class Record:
         self.about: dict[str, Any] = json.loads(file.read_text())
         self.ledger = Ledger(out / "PUBLISHED.jsonl")
         # A part that this record was begun without is one without a case, until it is added.
-        begun = dict.fromkeys(asdict(size), 0) | self.about["size"]
+        begun = {name: type(given)() for name, given in asdict(size).items()} | self.about["size"]
         added = {
             name: cases
             for name, cases in asdict(size).items()
