@@ -278,7 +278,7 @@ def test_a_contest_on_one_programme_has_no_other() -> None:
 
 
 def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Path) -> None:
-    size = replace(CONTEST, opened=24, coloured=4, rich_open=12, samples=400, steps=1)
+    size = replace(CONTEST, opened=24, coloured=12, rich_open=12, samples=400, steps=1)
     size = replace(size, rich_null=4, poor_null=4, coloured_rich_null=4, coloured_poor_null=4)
     out, docs = tmp_path / "contest", tmp_path / "docs"
     write_paper(whole, docs)
@@ -303,6 +303,23 @@ def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Pa
     # The table of targets of the whole proof shows it too.
     assert "[contest.md](contest.md)" in (docs / "proof.md").read_text()
     assert not (out / "measured").exists()
+
+    # A second contest, on one programme, has a page of its own that shows no other.
+    poor = replace(CONTEST_POOR, opened=24, coloured=12, samples=400, steps=1)
+    poor = replace(poor, poor_null=8, coloured_poor_null=8)
+    run_record(Record(tmp_path / "poor", 60, poor, kept), quiet())
+    page = write_paper(tmp_path / "poor", docs)
+    assert page.name == "contest-poor.md"
+    words = page.read_text()
+    assert "make proof-contest-poor CONTEST_POOR_SEED=60" in words
+    behind = words.split("## Who is behind")[1].split("##")[0]
+    assert "| ar0.6 | poor | bic_subset |" in behind
+    assert "| rich |" not in behind
+    assert "Rich programme" not in words
+    pictures = {picture.name for picture in docs.glob("contest-poor-*.svg")}
+    assert pictures == {"contest-poor-power-poor.svg", "contest-poor-power-poor-ar0.6.svg"}
+    for other in ("proof", "contest"):
+        assert "contest-poor.md" in (docs / f"{other}.md").read_text()
 
 
 def test_committed_pages_are_what_their_figures_give(tmp_path: Path) -> None:

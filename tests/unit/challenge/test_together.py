@@ -1,8 +1,8 @@
-"""Two contests of the same code, taken together."""
+"""Contests of the same code, taken together."""
 
 import pytest
 
-from cyclosweep.challenge.record.together import behind_table, both, both_figures
+from cyclosweep.challenge.record.together import behind_table, figures_over_all, over_all
 from cyclosweep.challenge.scoring.intervals import Estimate, together
 
 
@@ -25,21 +25,29 @@ def test_the_more_precise_counts_more_and_together_they_are_more_precise() -> No
     assert together([wide, Estimate(0.3, 0.3, 0.3, 9)]).value == pytest.approx(0.3)
 
 
-def test_neither_alone_but_both_show_that_an_opponent_is_behind() -> None:
+def test_none_alone_but_all_show_that_an_opponent_is_behind() -> None:
     one, other = contest(10, "a", -0.01, 0.07), contest(20, "a", -0.01, 0.07)
-    [figure] = both_figures(one, other)
-    assert figure["name"].endswith("poor, both records")
+    [figure] = figures_over_all(one, [other])
+    assert figure["name"].endswith("poor, all records")
     assert figure["met_required"]
-    [figure] = both_figures(one, contest(20, "a", -0.05, 0.03))
+    far = contest(20, "a", -0.05, 0.03)
+    [figure] = figures_over_all(one, [far])
     assert figure["met_required"] is False
-    assert "| white | poor | bic_subset | 0.03 [-0.01, 0.07] | -0.5 [-0.6, 0.07] |" in behind_table(
-        one, other
-    )
+    [figure] = figures_over_all(one, [far, other, contest(30, "a", 0.01, 0.09)])
+    assert figure["met_required"]
+    words = behind_table(one, {"proof": other})
+    assert "| white | poor | bic_subset | 0.03 [-0.01, 0.07] | -0.5 [-0.6, 0.07] |" in words
+    assert "| alike in [proof](proof.md) |" in words
 
 
 def test_records_of_other_code_or_other_recordings_are_not_put_together() -> None:
     one = contest(10, "a", 0.1, 0.2)
-    assert both(one, contest(20, "b", 0.1, 0.2)) == {}
-    assert both_figures(one, contest(20, "b", 0.1, 0.2)) == []
-    assert both(one, contest(20, "a", 0.1, 0.2, programme="rich")) == {}
-    assert behind_table(one, None).endswith("| – | – |")
+    other, rich = contest(20, "b", 0.1, 0.2), contest(20, "a", 0.1, 0.2, programme="rich")
+    assert over_all(one, [other]) == {}
+    assert figures_over_all(one, [other]) == []
+    assert over_all(one, [rich]) == {}
+    # Each comparison is taken from the records that have it.
+    assert over_all(one, [rich, other, contest(30, "a", 0.1, 0.2)]).keys() == {
+        ("white", "poor", "bic_subset")
+    }
+    assert behind_table(one, {}).endswith("| – |")

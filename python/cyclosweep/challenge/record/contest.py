@@ -44,7 +44,7 @@ then far stricter than one in a hundred. Opponents that were not shown all famil
 def write_pictures(score: Plain, docs: Path, page: str) -> None:
     """Write the power curves of a page, one picture for every programme and setting."""
     for noise, setting in _settings(score):
-        for programme in PROGRAMMES:
+        for programme in _programmes(score, noise):
             drawn = _drawn(score, programme, noise, setting)
             (docs / _picture(page, programme, noise, setting)).write_text(drawn)
 
@@ -60,7 +60,7 @@ def contest_section(score: Plain, page: str) -> str:
         else:
             title, words = f"noise {noise}", _COLOURED.format(noise=noise)
         parts.append(f"### {title[0].upper()}{title[1:]}\n\n{words}")
-        for programme in PROGRAMMES:
+        for programme in _programmes(score, noise):
             parts.append(
                 f"#### {programme.capitalize()} programme, {title}\n\n"
                 + _comparison(score, page, programme, noise, setting)
@@ -75,6 +75,11 @@ def _settings(score: Plain) -> Iterator[tuple[str, str]]:
         yield noise, OWN
     if any(_rivals(score, programme, "white", EVERY) for programme in PROGRAMMES):
         yield "white", EVERY
+
+
+def _programmes(score: Plain, noise: str) -> list[str]:
+    """Programmes on which there are effects to be found under this noise."""
+    return [p for p in PROGRAMMES if any(c["points"] for c in _curves(score, p, noise))]
 
 
 def _rivals(score: Plain, programme: str, noise: str, setting: str) -> list[Plain]:

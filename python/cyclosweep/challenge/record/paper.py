@@ -17,10 +17,17 @@ PROOF_PAGE = "proof"
 CONTEST_PAGE = "contest"
 
 
+def page_of(size: Size) -> str:
+    """Name of the page that a record of this size has."""
+    if not size.is_contest:
+        return PROOF_PAGE
+    return f"{CONTEST_PAGE}-{size.programme}" if size.programme else CONTEST_PAGE
+
+
 def write_paper(record: Path, docs: Path) -> Path:
     """Write figures, log and page of a record: ``proof`` or, of the contest alone, ``contest``.
 
-    The other page, where its figures are there, is written again: each shows some of the other.
+    The other pages, where their figures are there, are written again: each shows some of all.
 
     Parameters
     ----------
@@ -31,7 +38,7 @@ def write_paper(record: Path, docs: Path) -> Path:
     """
     docs.mkdir(parents=True, exist_ok=True)
     about = json.loads((record / "record.json").read_text())
-    name = CONTEST_PAGE if Size(**about["size"]).is_contest else PROOF_PAGE
+    name = page_of(Size(**about["size"]))
     published, measured = record / "PUBLISHED.jsonl", record / "measured" / "measured.json"
     content = json.loads((record / "score.json").read_text()) | {
         "record": about,
@@ -54,9 +61,9 @@ def write_pages(docs: Path) -> list[Path]:
         If there are none.
     """
     figures = {
-        name: json.loads(file.read_text())
-        for name in (PROOF_PAGE, CONTEST_PAGE)
-        if (file := docs / f"{name}.json").exists()
+        file.stem: json.loads(file.read_text())
+        for pattern in (PROOF_PAGE, CONTEST_PAGE, f"{CONTEST_PAGE}-*")
+        for file in sorted(docs.glob(f"{pattern}.json"))
     }
     if not figures:
         raise ValueError(f"{docs}: found no figures, expected proof.json or contest.json")
@@ -64,7 +71,7 @@ def write_pages(docs: Path) -> list[Path]:
 
 
 def _write_page(docs: Path, name: str, figures: Mapping[str, Plain]) -> Path:
-    """Write a page and its pictures from the figures of both pages and the log beside it.
+    """Write a page and its pictures from the figures of all pages and the log beside it.
 
     What ``<name>-notes.md`` says is taken over word for word, with a remark above it where it
     does not name the record's seed.
@@ -75,10 +82,11 @@ def _write_page(docs: Path, name: str, figures: Mapping[str, Plain]) -> Path:
         raise ValueError(f"{published}: missing, expected the log of the record")
     log = [json.loads(line) for line in published.read_text().splitlines()]
     notes = _notes(docs / f"{name}-notes.md", content["record"]["seed"])
-    if name == CONTEST_PAGE:
-        page = contest_page(content, log, notes, figures.get(PROOF_PAGE))
+    others = {other: there for other, there in figures.items() if other != name}
+    if name == PROOF_PAGE:
+        page = proof_page(content, log, notes, others)
     else:
-        page = proof_page(content, log, notes, figures.get(CONTEST_PAGE))
+        page = contest_page(name, content, log, notes, others)
     write_pictures(content, docs, name)
     file = docs / f"{name}.md"
     file.write_text(page, encoding="utf-8")

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from cyclosweep.challenge.record.contest import contest_section
 from cyclosweep.challenge.record.markdown import Plain, table, text
 from cyclosweep.challenge.record.origin import origin
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.record.targets import judged, target_tables
-from cyclosweep.challenge.record.together import both_figures
+from cyclosweep.challenge.record.together import figures_over_all
 from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.specimen import VOCABULARY
 
 
-def proof_page(content: Plain, log: Sequence[Plain], notes: str, contest: Plain | None) -> str:
+def proof_page(
+    content: Plain, log: Sequence[Plain], notes: str, contests: Mapping[str, Plain]
+) -> str:
     """Page of record.
 
     Parameters
@@ -25,13 +27,13 @@ def proof_page(content: Plain, log: Sequence[Plain], notes: str, contest: Plain 
         Lines of its log.
     notes : str
         What was written by hand about it.
-    contest : mapping or None
-        What ``contest.json`` holds, where the contest was run once more.
+    contests : mapping of str to mapping
+        Figures of the pages on which the contest was run again, by name.
     """
     tables, about = content["tables"], content["record"]
     sections = (
         _head(content, log),
-        _targets(content, contest),
+        _targets(content, contests),
         _alarms(tables["false_alarms"]),
         contest_section(content, "proof"),
         _naming(content, tables),
@@ -61,18 +63,26 @@ def _head(content: Plain, log: Sequence[Plain]) -> str:
     )
 
 
-def _targets(content: Plain, contest: Plain | None) -> str:
+def _targets(content: Plain, contests: Mapping[str, Plain]) -> str:
     parts = ["## The table of targets\n\n" + target_tables(content["figures"])]
-    if contest is not None:
+    if contests:
+        parts.append(
+            "The contest with the opponents was run again, with other recordings and more of them "
+            "to set thresholds on. How many of them are behind there, and over all records of one "
+            "code:"
+        )
+    for name, there in contests.items():
         compared = [
-            f for f in contest["figures"] if f["target"] != "none" and "behind" in f["name"]
+            f
+            for f in there["figures"]
+            if f["target"] != "none" and "behind" in f["name"] and f["estimate"]["count"]
         ]
         parts.append(
-            "The contest with the opponents was run once more, with other recordings and more of "
-            f"them to set thresholds on (seed {contest['record']['seed']}): how many of them are "
-            "behind there, and over both records; all its figures are in "
-            "[contest.md](contest.md).\n\n" + judged([*compared, *both_figures(contest, content)])
+            f"Seed {there['record']['seed']}, [{name}.md]({name}.md):\n\n" + judged(compared)
         )
+    over = figures_over_all(content, list(contests.values()))
+    if over:
+        parts.append("All records:\n\n" + judged(over))
     return "\n\n".join(parts)
 
 

@@ -1,8 +1,8 @@
-"""The contests of two records of the same code, taken together."""
+"""The contests of several records of the same code, taken together."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from cyclosweep.challenge.record.contest import OWN
 from cyclosweep.challenge.record.markdown import Plain, table, text
@@ -33,21 +33,29 @@ def _keyed(content: Plain) -> Iterator[tuple[Key, Plain]]:
                     yield (noise, programme, o["who"]), o
 
 
-def both(contest: Plain, proof: Plain) -> dict[Key, Estimate]:
-    """Distances over both records, alike; none where their code is not the same."""
-    if not same_code(contest, proof):
-        return {}
-    here, there = distances(contest), distances(proof)
-    return {key: together([here[key], there[key]]) for key in here if key in there}
+def over_all(content: Plain, others: Sequence[Plain]) -> dict[Key, Estimate]:
+    """Distances, alike, over all records of this one's code, where more than one has them."""
+    records = [distances(c) for c in (content, *others) if same_code(content, c)]
+    shared = {key: [there[key] for there in records if key in there] for key in records[0]}
+    return {key: together(found) for key, found in shared.items() if len(found) > 1}
 
 
-def behind_table(contest: Plain, proof: Plain | None) -> str:
-    """Every opponent's distance in every comparison, in the proof too, and over both."""
+def behind_table(content: Plain, others: Mapping[str, Plain]) -> str:
+    """Every opponent's distance in every comparison, in other records too, and over all.
+
+    Parameters
+    ----------
+    content : mapping
+        The record's figures.
+    others : mapping of str to mapping
+        Figures of other records, by the names of their pages.
+    """
+    alike = distances(content)
     columns = {
-        "alike": distances(contest),
-        "as it is": distances(contest, "ahead"),
-        "alike in the proof": {} if proof is None else distances(proof),
-        "alike, both": {} if proof is None else both(contest, proof),
+        "alike": alike,
+        "as it is": distances(content, "ahead"),
+        **{f"alike in [{name}]({name}.md)": distances(there) for name, there in others.items()},
+        "alike, all records": over_all(content, list(others.values())),
     }
 
     def cell(column: Mapping[Key, Estimate], key: Key) -> str:
@@ -55,17 +63,17 @@ def behind_table(contest: Plain, proof: Plain | None) -> str:
 
     return table(
         ("noise", "programme", "opponent", *columns),
-        ((*key, *(cell(c, key) for c in columns.values())) for key, _ in _keyed(contest)),
+        ((*key, *(cell(c, key) for c in columns.values())) for key in alike),
     )
 
 
-def both_figures(contest: Plain, proof: Plain) -> list[Plain]:
-    """Share of opponents that are behind over both records, for each noise and programme."""
-    over = both(contest, proof)
+def figures_over_all(content: Plain, others: Sequence[Plain]) -> list[Plain]:
+    """Share of opponents that are behind over all records, for each noise and programme."""
+    over = over_all(content, others)
     return [
         share_behind(
             f"on {noise} noise",
-            f"{programme}, both records",
+            f"{programme}, all records",
             ALIKE,
             [e.low > 0.0 for (n, p, _), e in over.items() if (n, p) == (noise, programme)],
             1.0,
