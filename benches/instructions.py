@@ -62,7 +62,7 @@ def _build() -> str:
         *("--message-format", "json"),
     )
     messages = [json.loads(line) for line in text.splitlines()]
-    return next(m["executable"] for m in reversed(messages) if m.get("executable"))
+    return next(str(m["executable"]) for m in reversed(messages) if m.get("executable"))
 
 
 def _per_variant(program: str, workload: str) -> float:

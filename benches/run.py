@@ -15,7 +15,7 @@ import sys
 import tempfile
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 import polars as pl
@@ -36,7 +36,8 @@ COMPLIANCE = (
     "output_stiffness_nm_per_arcmin",
     *(name for name in COLUMNS if name.startswith("twist_")),
 )
-CODECS = ("uncompressed", "snappy", "lz4", "zstd")
+Codec = Literal["uncompressed", "snappy", "lz4", "zstd"]
+CODECS: tuple[Codec, ...] = get_args(Codec)
 
 
 def main() -> None:
@@ -179,17 +180,24 @@ def _codecs(count: int, rounds: int, folder: Path) -> list[dict[str, Any]]:
     table = cs.sweep(bench_space(count))
     path = folder / "codec.parquet"
 
-    def writer(codec: str) -> Any:
+    def writer(codec: Codec) -> Any:
         return lambda: table.write_parquet(
             path, compression=codec, row_group_size=ROWS_PER_PART, statistics=True
         )
 
     timings = alternate({codec: (count, writer(codec)) for codec in CODECS}, rounds)
     rows = []
-    for codec, timing in timings.items():
+    for codec in CODECS:
         writer(codec)()
-        rows.append({"codec": codec, "bytes_per_variant": path.stat().st_size / count})
-        rows[-1] |= {"rate": timing.rate, "best": timing.best}
+        size, timing = path.stat().st_size / count, timings[codec]
+        rows.append(
+            {
+                "codec": codec,
+                "bytes_per_variant": size,
+                "rate": timing.rate,
+                "best": timing.best,
+            }
+        )
     path.unlink()
     return rows
 

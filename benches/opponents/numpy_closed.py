@@ -114,7 +114,7 @@ def run(axes: tuple[Reals, ...]) -> Reals:
     slope = np.degrees(efficiency * (reflected * C.nominal))
     force = 4.0 * C.torque / C.discs / (pins * circle)
     inside = inside_mean(pins, delta, clocking) / contacts
-    columns = [
+    columns: list[Reals | float] = [
         *(mean, least, most, efficiency, inside, efficiency),
         *(participation, 1.0 if C.discs <= 2 else 0.0),
         *(hole * 1e3, web * 1e3, k1, C.nominal),
