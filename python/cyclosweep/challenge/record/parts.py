@@ -226,12 +226,12 @@ CONTEST = Size(
 """The contest with the opponents alone, with more recordings to set thresholds on."""
 CONTEST_POOR = Size(
     null=0,
-    opened=1_800,
+    opened=3_600,
     concealed=0,
     tuning=0,
-    coloured=1_000,
-    poor_null=6_000,
-    coloured_poor_null=3_000,
+    coloured=1_800,
+    poor_null=12_000,
+    coloured_poor_null=6_000,
     costly_open=30,
     steps=10,
     programme="poor",

@@ -231,8 +231,10 @@ For someone who distrusts all of it:
 1. **Another seed gives the same picture.** `make proof` makes a smaller run of another seed in
    about ten minutes and lays every figure beside the record's; `PROOF_SEED=...` picks the
    seed, a multiple of ten. The whole record again: `make proof-record RECORD_SEED=...
-   RECORD_OUT=...`. It may be stopped and called again, or run in pieces with
-   `RECORD_FLAGS="--minutes M"`: all parts grow together, and what is finished is scored.
+   RECORD_OUT=...`; the contests with the opponents: `make proof-contest CONTEST_SEED=...
+   CONTEST_OUT=...` and `make proof-contest-poor CONTEST_POOR_SEED=... CONTEST_POOR_OUT=...`. Each
+   may be stopped and called again, or run in pieces with `RECORD_FLAGS="--minutes M"`: all parts
+   grow together, and what is finished is scored.
 2. **The answers were sealed before anything was diagnosed.** The root over the answers of each
    slice stands in the log before that slice is diagnosed, every line of the log holds the hash of
    the line before, and the last one's hash is printed above.
