@@ -65,7 +65,7 @@ def test_every_slice_is_published_before_it_is_diagnosed(whole: Path) -> None:
 def test_all_parts_grow_together(whole: Path) -> None:
     order = [part for event, part, _ in events(whole) if event == "sealed"]
     assert order == ["null", "open", "concealed", "tuning", COLOURED] * 2
-    for size in (FULL, SUBSET, CONTEST):
+    for size in (FULL, SUBSET, CONTEST, CONTEST_POOR):
         ends = {part.name: last for part, _, last in size.slices()}
         assert ends == {part.name: part.cases for part in size.parts() if part.cases}
 
@@ -268,13 +268,7 @@ def test_a_contest_on_one_programme_has_no_other() -> None:
         "poor_null": {("C6", "poor", "white")},
         "coloured_poor_null": {("C6", "poor", "ar0.6")},
     }
-    assert "poor programme" in parts[0].what
-    # One that a part has of its own stays.
-    assert all(
-        p.programme == "rich"
-        for p in replace(CONTEST, programme="poor").parts()
-        if p.name.endswith("rich_null")
-    )
+    assert all("poor programme" in part.what for part in parts)
 
 
 def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Path) -> None:
@@ -360,6 +354,12 @@ def test_a_part_may_be_added_to_a_record_and_is_written_down(whole: Path, tmp_pa
     assert json.loads(file.read_text())["size"][COLOURED] == more.coloured
     with pytest.raises(ValueError, match="size: found"):
         Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    # The programme of the effects is nothing that can be added.
+    about = json.loads(file.read_text())
+    del about["size"]["programme"]
+    file.write_text(json.dumps(about))
+    with pytest.raises(ValueError, match="size: found"):
+        Record(tmp_path, 40, replace(more, programme="poor"), Kept(OPTIONS))
 
 
 def test_notes_on_another_record_say_so(whole: Path, tmp_path: Path) -> None:

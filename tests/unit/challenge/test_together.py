@@ -29,12 +29,15 @@ def test_none_alone_but_all_show_that_an_opponent_is_behind() -> None:
     one, other = contest(10, "a", -0.01, 0.07), contest(20, "a", -0.01, 0.07)
     [figure] = figures_over_all(one, [other])
     assert figure["name"].endswith("poor, all records")
-    assert figure["met_required"]
+    assert figure["estimate"]["value"] == 1.0
+    # Shown, not judged: which record decides is settled beforehand.
+    assert figure["met"] is None
+    assert figure["met_required"] is None
     far = contest(20, "a", -0.05, 0.03)
     [figure] = figures_over_all(one, [far])
-    assert figure["met_required"] is False
+    assert figure["estimate"]["value"] == 0.0
     [figure] = figures_over_all(one, [far, other, contest(30, "a", 0.01, 0.09)])
-    assert figure["met_required"]
+    assert figure["estimate"]["value"] == 1.0
     words = behind_table(one, {"proof": other})
     assert "| white | poor | bic_subset | 0.03 [-0.01, 0.07] | -0.5 [-0.6, 0.07] |" in words
     assert "| alike in [proof](proof.md) |" in words
@@ -46,8 +49,13 @@ def test_records_of_other_code_or_other_recordings_are_not_put_together() -> Non
     assert over_all(one, [other]) == {}
     assert figures_over_all(one, [other]) == []
     assert over_all(one, [rich]) == {}
+    # The same record twice is no second one.
+    assert over_all(one, [one]) == {}
     # Each comparison is taken from the records that have it.
     assert over_all(one, [rich, other, contest(30, "a", 0.1, 0.2)]).keys() == {
         ("white", "poor", "bic_subset")
     }
     assert behind_table(one, {}).endswith("| – |")
+    # An opponent that met no case stays in the table.
+    one["opponents"][0]["own"]["tuned_ahead"]["count"] = 0
+    assert "| white | poor | bic_subset | – |" in behind_table(one, {})

@@ -26,6 +26,8 @@ from cyclosweep.challenge.seal import SealError
 
 MEASURED = "CYCLOSWEEP_MEASURED"
 """Environment variable with the folder of measured ramps."""
+COUNTS = tuple(field.name for field in fields(Size) if isinstance(field.default, int))
+"""What is counted of a record's size."""
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -50,11 +52,8 @@ def _parser() -> argparse.ArgumentParser:
     kind.add_argument(
         "--contest-poor", action="store_true", help="the contest on poor programmes alone"
     )
-    for field in fields(Size):
-        if field.name == "programme":
-            add("--programme", choices=("rich", "poor"), help="one programme for all parts")
-        else:
-            add(f"--{field.name.replace('_', '-')}", type=int, metavar="N", help="another size")
+    for name in COUNTS:
+        add(f"--{name.replace('_', '-')}", type=int, metavar="N", help="another size")
     add("--opponents", choices=("all", "cheap", "none"), default="all")
     add("--keep-recordings", action="store_true", help="do not delete what is diagnosed")
     add("--fresh", action="store_true", help="throw away what DIR holds")
@@ -99,7 +98,7 @@ def _run(given: argparse.Namespace) -> int:
 def _make(given: argparse.Namespace, screen: Console) -> None:
     kinds = ((given.subset, SUBSET), (given.contest, CONTEST), (given.contest_poor, CONTEST_POOR))
     base = next((size for chosen, size in kinds if chosen), FULL)
-    sizes = {f.name: getattr(given, f.name) for f in fields(Size)}
+    sizes = {name: getattr(given, name) for name in COUNTS}
     size = replace(base, **{name: value for name, value in sizes.items() if value is not None})
     until = math.inf if given.minutes is None else time.monotonic() + 60.0 * given.minutes
     options = Options(

@@ -49,11 +49,24 @@ def contest_page(
         "the threshold that one in a hundred recordings with nothing missing and that noise "
         "exceeds; the diagnosis at the same (alike), or as it is, where it raises fewer "
         "alarms. The last column is for the recordings of all records that one code made and "
-        "diagnosed: their distances, each weighted by its precision.\n\n"
+        "diagnosed: their distances, each weighted by its precision, as if their intervals were "
+        "symmetric and normal. To take records together was decided after the first two were "
+        "read; these figures stand beside the others, and no target is theirs. Which record "
+        "decides which comparison, and when that was settled: [challenge.md](challenge.md).\n\n"
         + behind_table(content, others)
         + ("\n\n" + judged(over) if over else ""),
-        "## Figures\n\nEvery figure for which there are cases here.\n\n"
+        f"## Figures\n\nEvery figure for which there are cases here{_only(programme)}.\n\n"
         + target_tables([f for f in content["figures"] if f["estimate"]["count"]]),
         contest_section(content, name),
     )
     return "\n\n".join(part for part in sections if part) + "\n"
+
+
+def _only(programme: str | None) -> str:
+    """What a figure that names no programme is of, where there is one programme only."""
+    if not programme:
+        return ""
+    return (
+        f". Those that name no programme are of {programme} ones here; their targets are for rich "
+        "and poor ones together"
+    )

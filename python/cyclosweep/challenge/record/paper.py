@@ -12,9 +12,11 @@ from cyclosweep.challenge.record.markdown import Plain
 from cyclosweep.challenge.record.parts import Size
 from cyclosweep.challenge.record.proof_page import proof_page
 from cyclosweep.challenge.record.tables import tables_of
+from cyclosweep.challenge.scoring.power import PROGRAMMES
 
 PROOF_PAGE = "proof"
 CONTEST_PAGE = "contest"
+PAGES = (PROOF_PAGE, CONTEST_PAGE, *(f"{CONTEST_PAGE}-{programme}" for programme in PROGRAMMES))
 
 
 def page_of(size: Size) -> str:
@@ -25,9 +27,9 @@ def page_of(size: Size) -> str:
 
 
 def write_paper(record: Path, docs: Path) -> Path:
-    """Write figures, log and page of a record: ``proof`` or, of the contest alone, ``contest``.
+    """Write figures, log and page of a record, and all other pages again.
 
-    The other pages, where their figures are there, are written again: each shows some of all.
+    Each page shows figures of the others, too; those without figures are left out.
 
     Parameters
     ----------
@@ -61,12 +63,12 @@ def write_pages(docs: Path) -> list[Path]:
         If there are none.
     """
     figures = {
-        file.stem: json.loads(file.read_text())
-        for pattern in (PROOF_PAGE, CONTEST_PAGE, f"{CONTEST_PAGE}-*")
-        for file in sorted(docs.glob(f"{pattern}.json"))
+        name: json.loads(file.read_text())
+        for name in PAGES
+        if (file := docs / f"{name}.json").exists()
     }
     if not figures:
-        raise ValueError(f"{docs}: found no figures, expected proof.json or contest.json")
+        raise ValueError(f"{docs}: found no figures, expected proof.json or a contest's")
     return [_write_page(docs, name, figures) for name in figures]
 
 

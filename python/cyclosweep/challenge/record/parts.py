@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.runner.run import plan_of
@@ -85,7 +85,7 @@ class Size:
     steps : int
         Steps in which all parts grow together.
     programme : str
-        Programme in place of those of all parts that do not have one of their own.
+        Programme of all single effects of the first parts, in place of both.
     """
 
     null: int = 10_000
@@ -112,14 +112,8 @@ class Size:
 
     def parts(self) -> list[Part]:
         """Parts in the order in which a step runs through them."""
-        return [
-            replace(part, programme=part.programme or self.programme) for part in self._all_parts()
-        ]
-
-    def _all_parts(self) -> list[Part]:
-        """Parts on the programmes of their strata, or on the one that is theirs."""
         shared = self.costly_nulls * 2 // 3
-        programmes = f"{self.programme} programme" if self.programme else "rich and poor programmes"
+        programmes = f"{self.programme or 'rich and poor'} programmes"
         return [
             Part(
                 "null",
@@ -134,6 +128,7 @@ class Size:
                 self.opened,
                 1,
                 self.costly_open,
+                programme=self.programme,
             ),
             Part("concealed", "the tiers C1 to C5 and C7", self.concealed, 2, 0),
             Part(
@@ -145,12 +140,14 @@ class Size:
             ),
             Part(
                 COLOURED,
-                "single effects under correlated noise, for the contest with the opponents",
+                "single effects under correlated noise, for the contest with the opponents"
+                + (f", {programmes}" if self.programme else ""),
                 self.coloured,
                 4,
                 self.coloured,
                 mix="open",
                 noise=CORRELATED,
+                programme=self.programme,
             ),
             *self._parts_of_a_contest(),
         ]

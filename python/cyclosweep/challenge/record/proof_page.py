@@ -68,8 +68,9 @@ def _targets(content: Plain, contests: Mapping[str, Plain]) -> str:
     if contests:
         parts.append(
             "The contest with the opponents was run again, with other recordings and more of them "
-            "to set thresholds on. How many of them are behind there, and over all records of one "
-            "code:"
+            "to set thresholds on. How many of them are behind stands below and, without a "
+            "target, over all records of one code. Which record decides which comparison, and "
+            "when that was settled: [challenge.md](challenge.md)."
         )
     for name, there in contests.items():
         compared = [
@@ -234,7 +235,8 @@ For someone who distrusts all of it:
    RECORD_OUT=...`; the contests with the opponents: `make proof-contest CONTEST_SEED=...
    CONTEST_OUT=...` and `make proof-contest-poor CONTEST_POOR_SEED=... CONTEST_POOR_OUT=...`. Each
    may be stopped and called again, or run in pieces with `RECORD_FLAGS="--minutes M"`: all parts
-   grow together, and what is finished is scored.
+   grow together, and what is finished is scored. They write their pages into `docs`: `git diff`
+   shows what is different, `git checkout docs` takes it back.
 2. **The answers were sealed before anything was diagnosed.** The root over the answers of each
    slice stands in the log before that slice is diagnosed, every line of the log holds the hash of
    the line before, and the last one's hash is printed above.

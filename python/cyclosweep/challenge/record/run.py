@@ -103,12 +103,13 @@ class Record:
             _write(file, own | {"commit": commit(), "machine": machine()})
         self.about: dict[str, Any] = json.loads(file.read_text())
         self.ledger = Ledger(out / "PUBLISHED.jsonl")
-        # A part that this record was begun without is one without a case, until it is added.
+        # A part that this record was begun without is one without a case, until it is added;
+        # what else it was begun without cannot be added.
         begun = {name: type(given)() for name, given in asdict(size).items()} | self.about["size"]
         added = {
             name: cases
             for name, cases in asdict(size).items()
-            if cases and name not in self.about["size"]
+            if cases and name not in self.about["size"] and isinstance(cases, int)
         }
         there = self.about | {"size": begun | added}
         for key, value in own.items():

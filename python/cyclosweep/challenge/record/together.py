@@ -35,8 +35,9 @@ def _keyed(content: Plain) -> Iterator[tuple[Key, Plain]]:
 
 def over_all(content: Plain, others: Sequence[Plain]) -> dict[Key, Estimate]:
     """Distances, alike, over all records of this one's code, where more than one has them."""
-    records = [distances(c) for c in (content, *others) if same_code(content, c)]
-    shared = {key: [there[key] for there in records if key in there] for key in records[0]}
+    seeds = {c["record"]["seed"]: c for c in (content, *others) if same_code(content, c)}
+    records = [distances(c) for c in seeds.values()]
+    shared = {key: [there[key] for there in records if key in there] for key in distances(content)}
     return {key: together(found) for key, found in shared.items() if len(found) > 1}
 
 
@@ -50,9 +51,8 @@ def behind_table(content: Plain, others: Mapping[str, Plain]) -> str:
     others : mapping of str to mapping
         Figures of other records, by the names of their pages.
     """
-    alike = distances(content)
     columns = {
-        "alike": alike,
+        "alike": distances(content),
         "as it is": distances(content, "ahead"),
         **{f"alike in [{name}]({name}.md)": distances(there) for name, there in others.items()},
         "alike, all records": over_all(content, list(others.values())),
@@ -63,12 +63,15 @@ def behind_table(content: Plain, others: Mapping[str, Plain]) -> str:
 
     return table(
         ("noise", "programme", "opponent", *columns),
-        ((*key, *(cell(c, key) for c in columns.values())) for key in alike),
+        ((*key, *(cell(c, key) for c in columns.values())) for key, _ in _keyed(content)),
     )
 
 
 def figures_over_all(content: Plain, others: Sequence[Plain]) -> list[Plain]:
-    """Share of opponents that are behind over all records, for each noise and programme."""
+    """Share of opponents that are behind over all records, for each noise and programme.
+
+    These are shown and have no target: which record decides is written down beforehand.
+    """
     over = over_all(content, others)
     return [
         share_behind(
@@ -76,7 +79,7 @@ def figures_over_all(content: Plain, others: Sequence[Plain]) -> list[Plain]:
             f"{programme}, all records",
             ALIKE,
             [e.low > 0.0 for (n, p, _), e in over.items() if (n, p) == (noise, programme)],
-            1.0,
+            None,
         ).as_dict()
         for noise, programme in dict.fromkeys((n, p) for n, p, _ in over)
     ]
