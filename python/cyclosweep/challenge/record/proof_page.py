@@ -10,6 +10,7 @@ from cyclosweep.challenge.record.origin import origin
 from cyclosweep.challenge.record.real import real_drive
 from cyclosweep.challenge.record.targets import judged, target_tables
 from cyclosweep.challenge.record.together import figures_over_all
+from cyclosweep.challenge.scoring.figures import OPPONENTS
 from cyclosweep.challenge.scoring.power import PROGRAMMES
 from cyclosweep.challenge.specimen import VOCABULARY
 
@@ -76,7 +77,7 @@ def _targets(content: Plain, contests: Mapping[str, Plain]) -> str:
         compared = [
             f
             for f in there["figures"]
-            if f["target"] != "none" and "behind" in f["name"] and f["estimate"]["count"]
+            if f["name"].startswith(OPPONENTS) and f["estimate"]["count"]
         ]
         parts.append(
             f"Seed {there['record']['seed']}, [{name}.md]({name}.md):\n\n" + judged(compared)

@@ -21,6 +21,8 @@ from cyclosweep.challenge.scoring.outcome import Outcome
 from cyclosweep.challenge.scoring.power import LEVEL, PROGRAMMES, relative_to_oracle
 from cyclosweep.challenge.scoring.rivals import OURS, OpponentCurve, Setting
 
+OPPONENTS = "opponents at 1 %"
+"""How figures begin that count the opponents left behind by the share found."""
 AS_IT_IS = "as it is"
 ALIKE = "at its own 1 %"
 """How the diagnosis meets its opponents: untouched, or with its evidence tuned as theirs is."""
@@ -410,7 +412,7 @@ def share_behind(
 ) -> Figure:
     """Share of opponents that are behind the diagnosis as it is, or tuned alike."""
     return _figure(
-        f"opponents at 1 % {where} behind the diagnosis {words}, {programme}",
+        f"{OPPONENTS} {where} behind the diagnosis {words}, {programme}",
         share_of(behind),
         at_least=wanted,
         must=wanted if words == ALIKE else None,
@@ -423,8 +425,7 @@ def _slower(
     """Share of opponents that need a larger d for nine detections in ten, by the estimates."""
     return [
         _figure(
-            f"by d for 90 % alone, opponents at 1 % {where} behind the diagnosis {words}, "
-            f"{programme}",
+            f"by d for 90 % alone, {OPPONENTS} {where} behind the diagnosis {words}, {programme}",
             share_of([s.needed.value > ours.value for s in rivals if ours.count]),
         )
         for words, ours in ((AS_IT_IS, as_it_is), (ALIKE, alike))
