@@ -31,7 +31,7 @@ help:
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
 	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
 	@echo "make proof-contest  the contest with the opponents once more and docs/contest.md; about two hours"
-	@echo "make proof-contest-poor  the same on poor programmes alone and docs/contest-poor.md; above two hours"
+	@echo "make proof-contest-poor  the same on poor programmes alone and docs/contest-poor.md; about two hours"
 	@echo "make docs    regenerate what in docs comes from code or from the figures of record"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
