@@ -8,7 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
@@ -16,7 +16,7 @@ from rich.console import Console
 from cyclosweep.challenge.measured_run import SIZES_DEG, run_measured
 from cyclosweep.challenge.record.compare import compare
 from cyclosweep.challenge.record.paper import write_pages, write_paper
-from cyclosweep.challenge.record.parts import CONTEST, CONTEST_POOR, FULL, SUBSET, Size
+from cyclosweep.challenge.record.parts import CONTEST, CONTEST_POOR, COUNTS, FULL, SUBSET
 from cyclosweep.challenge.record.run import FLAGS, Kept, Record, run_record
 from cyclosweep.challenge.record.verify import verify_record
 from cyclosweep.challenge.runner.folders import alone
@@ -26,8 +26,6 @@ from cyclosweep.challenge.seal import SealError
 
 MEASURED = "CYCLOSWEEP_MEASURED"
 """Environment variable with the folder of measured ramps."""
-COUNTS = tuple(field.name for field in fields(Size) if isinstance(field.default, int))
-"""What is counted of a record's size."""
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -45,13 +43,14 @@ def _parser() -> argparse.ArgumentParser:
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
     add("--minutes", type=float, metavar="M", help="begin nothing more after M minutes")
     kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--subset", action="store_true", help="a sample of about ten minutes")
-    kind.add_argument(
-        "--contest", action="store_true", help="the contest alone, with more to set thresholds on"
-    )
-    kind.add_argument(
-        "--contest-poor", action="store_true", help="the contest on poor programmes alone"
-    )
+    for name, size, words in (
+        ("subset", SUBSET, "a sample of about ten minutes"),
+        ("contest", CONTEST, "the contest alone, with more to set thresholds on"),
+        ("contest-poor", CONTEST_POOR, "the contest on poor programmes alone"),
+    ):
+        kind.add_argument(
+            f"--{name}", dest="base", action="store_const", const=size, default=FULL, help=words
+        )
     for name in COUNTS:
         add(f"--{name.replace('_', '-')}", type=int, metavar="N", help="another size")
     add("--opponents", choices=("all", "cheap", "none"), default="all")
@@ -96,10 +95,10 @@ def _run(given: argparse.Namespace) -> int:
 
 
 def _make(given: argparse.Namespace, screen: Console) -> None:
-    kinds = ((given.subset, SUBSET), (given.contest, CONTEST), (given.contest_poor, CONTEST_POOR))
-    base = next((size for chosen, size in kinds if chosen), FULL)
     sizes = {name: getattr(given, name) for name in COUNTS}
-    size = replace(base, **{name: value for name, value in sizes.items() if value is not None})
+    size = replace(
+        given.base, **{name: value for name, value in sizes.items() if value is not None}
+    )
     until = math.inf if given.minutes is None else time.monotonic() + 60.0 * given.minutes
     options = Options(
         workers=max(1, given.workers),
@@ -129,7 +128,7 @@ def _real_drive(given: argparse.Namespace, options: Options, screen: Console) ->
             "examples/measured-13-to-1/README.md says where the data are"
         )
         return
-    sizes, files = ((0.1, 0.4), 2) if given.subset else (SIZES_DEG, None)
+    sizes, files = ((0.1, 0.4), 2) if given.base is SUBSET else (SIZES_DEG, None)
     try:
         rows = run_measured(
             source,

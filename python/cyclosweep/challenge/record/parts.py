@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from cyclosweep.challenge.plan import Entry
 from cyclosweep.challenge.runner.run import plan_of
@@ -194,6 +194,8 @@ class Size:
                     yield part, first, last
 
 
+COUNTS = tuple(field.name for field in fields(Size) if isinstance(field.default, int))
+"""What is counted of a record's size: all but the programme."""
 FULL = Size()
 SUBSET = Size(
     null=480,

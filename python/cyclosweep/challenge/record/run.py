@@ -21,7 +21,7 @@ from cyclosweep.challenge.plan import Entry, make_entry
 from cyclosweep.challenge.record.code import code, commit
 from cyclosweep.challenge.record.ledger import Ledger
 from cyclosweep.challenge.record.machine import machine
-from cyclosweep.challenge.record.parts import COLOURED, FULL, Part, Size
+from cyclosweep.challenge.record.parts import COLOURED, COUNTS, FULL, Part, Size
 from cyclosweep.challenge.runner.folders import LOCK, Folders
 from cyclosweep.challenge.runner.stages import (
     diagnose,
@@ -108,8 +108,8 @@ class Record:
         begun = {name: type(given)() for name, given in asdict(size).items()} | self.about["size"]
         added = {
             name: cases
-            for name, cases in asdict(size).items()
-            if cases and name not in self.about["size"] and isinstance(cases, int)
+            for name in COUNTS
+            if name not in self.about["size"] and (cases := getattr(size, name))
         }
         there = self.about | {"size": begun | added}
         for key, value in own.items():

@@ -70,7 +70,7 @@ def behind_table(content: Plain, others: Mapping[str, Plain]) -> str:
 def figures_over_all(content: Plain, others: Sequence[Plain]) -> list[Plain]:
     """Share of opponents that are behind over all records, for each noise and programme.
 
-    These are shown and have no target: which record decides is written down beforehand.
+    These are shown and have no target: docs/challenge.md says which record decides.
     """
     over = over_all(content, others)
     return [
