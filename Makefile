@@ -13,7 +13,7 @@ CONTEST_OUT ?= build/contest
 CONTEST_SEED ?= 800000
 CONTEST_POOR_OUT ?= build/contest-poor
 CONTEST_POOR_SEED ?= 900000
-RECORD := $(BIN)/python -m cyclosweep.challenge.record --drive examples/measured-13-to-1/drive.toml
+RECORD := $(BIN)/python -m cyclosweep_challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
@@ -87,7 +87,7 @@ proof-contest-poor: env
 
 docs: env
 	$(BIN)/python docs/generate.py
-	$(BIN)/python -m cyclosweep.challenge.record --pages docs
+	$(BIN)/python -m cyclosweep_challenge.record --pages docs
 
 golden: env
 	$(BIN)/python -m tests.golden.regenerate

@@ -19,12 +19,12 @@ from pathlib import Path
 import numpy as np
 
 import cyclosweep as cs
-from cyclosweep.challenge.case import Case
-from cyclosweep.challenge.concealment import ConcealmentError, conceal
-from cyclosweep.challenge.noise import Noise
-from cyclosweep.challenge.plan import Entry, make_entry, make_plan
-from cyclosweep.challenge.programme import make_programme
-from cyclosweep.challenge.specimen import EITHER_SIGN, VOCABULARY, Specimen
+from cyclosweep_challenge.rig.noise import Noise
+from cyclosweep_challenge.rig.programme import make_programme
+from cyclosweep_challenge.rig.specimen import EITHER_SIGN, VOCABULARY, Specimen
+from cyclosweep_challenge.trial.case import Case
+from cyclosweep_challenge.trial.concealment import ConcealmentError, conceal
+from cyclosweep_challenge.trial.plan import Entry, make_entry, make_plan
 
 PART = {
     "load_asymmetry": "side_load",

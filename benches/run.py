@@ -21,7 +21,7 @@ import numpy as np
 import polars as pl
 
 import cyclosweep as cs
-from cyclosweep.dataset import COMPRESSION, ROWS_PER_PART
+from cyclosweep.sweep.dataset import COMPRESSION, ROWS_PER_PART
 from measure import Timing, alternate
 from opponents import numba_closed, numpy_closed, theta
 from opponents.common import COLUMNS, columns_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cyclosweep.units import INPUTS, OUTPUTS, Quantity
+from cyclosweep.design.units import INPUTS, OUTPUTS, Quantity
 
 _HEAD = "| name | symbol | unit | meaning |\n|---|---|---|---|\n"
 _SEGMENTS = {
@@ -23,7 +23,7 @@ def _table(quantities: dict[str, Quantity]) -> str:
 def nomenclature() -> str:
     """Return the page of every input and result."""
     return (
-        "# Nomenclature\n\nWritten by `make docs` from `python/cyclosweep/units.py`.\n\n"
+        "# Nomenclature\n\nWritten by `make docs` from `python/cyclosweep/design/units.py`.\n\n"
         "## Inputs: keys of a drive file, axes of a study\n\n"
         + _table(INPUTS)
         + "\nThe shaft's segments count from the free end to the flange:\n\n"

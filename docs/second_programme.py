@@ -14,10 +14,10 @@ import numpy as np
 import polars as pl
 
 import cyclosweep as cs
-from cyclosweep.challenge import make_case
 from cyclosweep.cli import app
-from cyclosweep.effects import effects as known_effects
 from cyclosweep.recording import Recording
+from cyclosweep.simulation.effects import effects as known_effects
+from cyclosweep_challenge import make_case
 
 CASES: tuple[tuple[str, ...], ...] = (
     ("friction_hysteresis",),

@@ -3,19 +3,21 @@
 import warnings as _warnings
 
 import cyclosweep._core as _core
-from cyclosweep.dataset import scan_dataset
+import cyclosweep._moved as _moved
+from cyclosweep.design.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.diagnosis import Diagnosis, diagnose
-from cyclosweep.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.recording import Recording
 from cyclosweep.reference.validation import validate
-from cyclosweep.scan import kernel_evaluations, scan, sweep
-from cyclosweep.shards import shard, sink
-from cyclosweep.simulate import Model, simulate
-from cyclosweep.space import Space, linspace
-from cyclosweep.study import Objective, Study
+from cyclosweep.simulation.simulate import Model, simulate
+from cyclosweep.sweep.dataset import scan_dataset
+from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
+from cyclosweep.sweep.shards import shard, sink
+from cyclosweep.sweep.space import Space, linspace
+from cyclosweep.sweep.study import Objective, Study
 
 __version__ = _core.__version__
+_moved.register()
 
 if _core.DEBUG_BUILD:
     _warnings.warn(

@@ -12,8 +12,8 @@ import time
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.cluster import dask_executor
-from cyclosweep.shards import Dataset, write_parts
+from cyclosweep.sweep.executors import dask_executor
+from cyclosweep.sweep.shards import Dataset, write_parts
 
 distributed = pytest.importorskip("distributed", reason="the dask extra is not installed")
 pytestmark = pytest.mark.filterwarnings("default")

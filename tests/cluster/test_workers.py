@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import cyclosweep as cs
-from cyclosweep import shards
+from cyclosweep.sweep import shards
 
 COUNT, ROWS = 2**14, 2**11
 

@@ -16,7 +16,7 @@ from tests.drives import random_drive, random_drives
 from tests.parity import twin
 
 import cyclosweep as cs
-from cyclosweep.drive import CRITERIA, Criterion
+from cyclosweep.design.drive import CRITERIA, Criterion
 
 DRIVES = int(os.environ.get("CYCLOSWEEP_GRID_DRIVES", "300"))
 STEP_DEG = 0.01

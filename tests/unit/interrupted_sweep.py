@@ -6,7 +6,7 @@ import sys
 import time
 
 import cyclosweep as cs
-from cyclosweep.dataset import Dataset
+from cyclosweep.sweep.dataset import Dataset
 
 _put = Dataset.put
 

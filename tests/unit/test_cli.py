@@ -195,7 +195,7 @@ def test_simulate_takes_the_least_programme_and_spares_what_it_reads(tmp_path: P
 
 
 def test_a_quick_diagnosis_writes_the_same_verdict_without_a_report(tmp_path: Path) -> None:
-    from cyclosweep.challenge import make_case
+    from cyclosweep_challenge import make_case
 
     make_case(7, effects=("friction_hysteresis",), d=30, programme="poor", samples=400).write(
         tmp_path

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from tests.unit.test_effects import history
 
-from cyclosweep import Drive, Recording, diagnose, effects
-from cyclosweep.diagnosis.alarm import LEVEL, probability, tail_quantile
-from cyclosweep.diagnosis.freeform import CLASSES
-from cyclosweep.diagnosis.problem import gaps
-from cyclosweep.diagnosis.scan import evidence
+from cyclosweep import Drive, Recording, diagnose
+from cyclosweep.diagnosis.hypotheses.freeform import CLASSES
+from cyclosweep.diagnosis.identify.alarm import LEVEL, probability, tail_quantile
+from cyclosweep.diagnosis.identify.scan import evidence
+from cyclosweep.diagnosis.prepare.problem import gaps
+from cyclosweep.simulation import effects
 
 
 def test_tail_quantile_of_evidences_is_right_on_average():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.noise import estimate_noise, interval_score, orthonormal
+from cyclosweep.diagnosis.prepare.noise import estimate_noise, interval_score, orthonormal
 
 
 def material(n=2000, seed=1):

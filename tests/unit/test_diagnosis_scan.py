@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.scan import (
+from cyclosweep.diagnosis.identify.scan import (
     evidence,
     likelihood_gain,
     price_of_choice,
     price_of_vector,
 )
-from cyclosweep.diagnosis.verdict import unit_slip
+from cyclosweep.diagnosis.identify.verdict import unit_slip
 
 
 def test_evidence_is_nothing_without_gain_and_grows_with_it():

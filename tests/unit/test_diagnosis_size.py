@@ -7,16 +7,16 @@ import pytest
 from tests.support.bench_rig import record
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.fit import Term, fit
-from cyclosweep.diagnosis.library import build_library
-from cyclosweep.diagnosis.noise import estimate_noise
-from cyclosweep.diagnosis.problem import prepare
-from cyclosweep.diagnosis.rich import rich_basis
-from cyclosweep.diagnosis.testability import size_of, spread_of_size
-from cyclosweep.diagnosis.words import statement
-from cyclosweep.effects import effects
+from cyclosweep.diagnosis.hypotheses.flexible_basis import rich_basis
+from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify.fit import Term, fit
+from cyclosweep.diagnosis.identify.testability import size_of, spread_of_size
+from cyclosweep.diagnosis.prepare.noise import estimate_noise
+from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.diagnosis.statement import statement
 from cyclosweep.recording import Recording
 from cyclosweep.report.wording import verdict_words
+from cyclosweep.simulation.effects import effects
 
 KNOWN = {effect.name: effect for effect in effects()}
 

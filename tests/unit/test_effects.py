@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cyclosweep import effects
-from cyclosweep.effects import VOCABULARY, Effect, History, Parameter
+from cyclosweep.simulation import effects
+from cyclosweep.simulation.effects import VOCABULARY, Effect, History, Parameter
 
 NAMES = [
     "friction_hysteresis",

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.holdout import distance_to_curve, replicate_floor
-from cyclosweep.diagnosis.problem import prepare
+from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.diagnosis.verify.holdout import distance_to_curve, replicate_floor
 from cyclosweep.recording import Recording
-from cyclosweep.simulate import EffectValue, Model, elastic_law
+from cyclosweep.simulation.simulate import EffectValue, Model, elastic_law
 
 SLIDE = {"slip_deg": 0.05, "scatter": 0.8, "slack": 0.0, "growth": 0.6, "reference_nm": 8.0}
 

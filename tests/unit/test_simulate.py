@@ -7,7 +7,7 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.recording import Recording
-from cyclosweep.simulate import EffectValue
+from cyclosweep.simulation.simulate import EffectValue
 
 C = 19.8 / 7.2575
 

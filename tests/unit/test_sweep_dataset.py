@@ -14,7 +14,7 @@ from filelock import FileLock
 from polars.testing import assert_frame_equal
 
 import cyclosweep as cs
-from cyclosweep.dataset import Dataset, Part, read_footer
+from cyclosweep.sweep.dataset import Dataset, Part, read_footer
 
 ROWS = 100
 SPACE = cs.Space.sobol(

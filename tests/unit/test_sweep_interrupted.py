@@ -16,7 +16,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 import cyclosweep as cs
-from cyclosweep.dataset import read_footer
+from cyclosweep.sweep.dataset import read_footer
 
 SCRIPT = Path(__file__).parent / "interrupted_sweep.py"
 PARTS = 40

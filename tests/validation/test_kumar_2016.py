@@ -13,7 +13,7 @@ import pytest
 
 import cyclosweep as cs
 import cyclosweep._core as _core
-from cyclosweep.drive import CRITERIA
+from cyclosweep.design.drive import CRITERIA
 
 # Section 2.1: 1.14 kW at 1500 rpm, 585 N m at the output, 87:1, 2 discs, 8 pins, 56 deg of play.
 SECTION_2_1 = {"ratio": 87, "disc_count": 2, "output_pin_count": 8}

@@ -36,9 +36,9 @@ def challenge(
 
     The same command on the same DIR goes on where it stopped; a larger N adds cases.
     """
-    from cyclosweep.challenge.runner.run import run_challenge
-    from cyclosweep.challenge.runner.work import Options
-    from cyclosweep.challenge.seal import SealError
+    from cyclosweep_challenge.runner.run import run_challenge
+    from cyclosweep_challenge.runner.work import Options
+    from cyclosweep_challenge.trial.seal import SealError
 
     try:
         with interruptible(f"the same command goes on from {out}"):

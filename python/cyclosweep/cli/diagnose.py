@@ -16,9 +16,9 @@ from cyclosweep.cli.output import AsJson, fail, interruptible, print_json
 from cyclosweep.errors import DesignError, InputError
 
 if TYPE_CHECKING:
-    from cyclosweep.drive import Drive
+    from cyclosweep.design.drive import Drive
     from cyclosweep.recording import Recording
-    from cyclosweep.simulate import Model
+    from cyclosweep.simulation.simulate import Model
 
 
 def simulate(
@@ -34,7 +34,7 @@ def simulate(
     """Predict the twist of a load programme by the published or by a repaired model."""
     from cyclosweep.recording import Recording
     from cyclosweep.recording.reading import stem
-    from cyclosweep.simulate import simulate as run
+    from cyclosweep.simulation.simulate import simulate as run
 
     inputs = [program, program.with_name(f"{stem(program)}.toml"), Path(model)]
     if any(path.exists() and out.exists() and path.samefile(out) for path in inputs):
@@ -56,8 +56,8 @@ def simulate(
 
 
 def _model(name: str) -> Model | Drive:
-    from cyclosweep.drive import Drive
-    from cyclosweep.simulate import Model
+    from cyclosweep.design.drive import Drive
+    from cyclosweep.simulation.simulate import Model
 
     return Model.from_json(name) if name.endswith(".json") else Drive.load(name)
 
@@ -97,7 +97,7 @@ def diagnose(
     Writes diagnosis.json, model.json and report.html: into DIR for one recording, into
     DIR/<stem>/ each for several. Exit status 0 whatever the verdict, 2 when a file is bad input.
     """
-    from cyclosweep.drive import Drive
+    from cyclosweep.design.drive import Drive
     from cyclosweep.recording.reading import stem
 
     if tolerance is not None and not tolerance > 0:

@@ -11,7 +11,7 @@ import typer
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 
 if TYPE_CHECKING:
-    from cyclosweep.study import Study
+    from cyclosweep.sweep.study import Study
 
 LEFT = "what is whole stays, the same command goes on from there"
 
@@ -40,7 +40,7 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """Sweep a study to a folder of Parquet parts; killed, the same command goes on from there."""
-    from cyclosweep.shards import sink
+    from cyclosweep.sweep.shards import sink
 
     with interruptible(LEFT):
         summary = sink(
@@ -52,7 +52,9 @@ def sweep(
             scheduler=scheduler,
         )
     if as_json:
-        print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
+        print_json(
+            {"schema": "cyclosweep.sweep.summary/1", "folder": str(out), **summary.to_json()}
+        )
     else:
         print_tables(summary.renderables())
         print(f"{summary.rows:,} variants in {out}")
@@ -66,18 +68,20 @@ def shard(
     as_json: AsJson = False,
 ) -> None:
     """Compute one task of a batch array; any mix of tasks gives the same dataset."""
-    from cyclosweep.shards import shard as run
+    from cyclosweep.sweep.shards import shard as run
 
     with interruptible(LEFT):
         summary = run(_study(study, None), out, index=index, of=of)
     if as_json:
-        print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
+        print_json(
+            {"schema": "cyclosweep.sweep.summary/1", "folder": str(out), **summary.to_json()}
+        )
     else:
         print(f"task {index} of {of}: {summary.rows:,} variants in {out}")
 
 
 def _study(path: Path, rows: int | None) -> Study:
-    from cyclosweep.study import Study
+    from cyclosweep.sweep.study import Study
 
     study = Study.from_toml(path)
     return study if rows is None else dataclasses.replace(study, space=study.space[:rows])

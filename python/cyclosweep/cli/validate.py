@@ -21,7 +21,7 @@ def validate(
 
     Exit status 1 when a fact is not met; facts that the model cannot compute do not count.
     """
-    from cyclosweep.drive import Drive
+    from cyclosweep.design.drive import Drive
     from cyclosweep.reference.validation import report_json, report_tables
 
     chosen = None if drive is None else Drive.load(drive)

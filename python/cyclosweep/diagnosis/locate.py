@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from cyclosweep.diagnosis.freeform import clock_of
-from cyclosweep.diagnosis.search import Node, Search
-from cyclosweep.diagnosis.split import recorded_runs
-from cyclosweep.effects.history import Flags
+from cyclosweep.diagnosis.hypotheses.freeform import clock_of
+from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.prepare.split import recorded_runs
+from cyclosweep.simulation.effects.history import Flags
 
 MOST_REGIONS = 4
 BANDS = 8

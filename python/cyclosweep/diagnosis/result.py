@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep.effects.history import Floats
 from cyclosweep.recording import Recording
 from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_report
-from cyclosweep.simulate import Model
+from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.simulate import Model
 
 SCHEMA = "cyclosweep.diagnosis/1"
 
@@ -27,7 +27,7 @@ class Diagnosis:
     content : dict
         Content of ``diagnosis.json``.
     model : Model or None
-        Calibrated baseline and accepted effects; `cyclosweep.simulate` takes it.
+        Calibrated baseline and accepted effects; `cyclosweep.simulation.simulate` takes it.
     before_deg, after_deg : ndarray or None
         Twist by the calibrated published model and by the repaired one, a value a sample [deg].
     """

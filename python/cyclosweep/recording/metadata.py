@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from cyclosweep.drive import one_line, read_toml
+from cyclosweep.design.drive import one_line, read_toml
 from cyclosweep.errors import InputError
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import polars as pl
 
 import cyclosweep._core as _core
-from cyclosweep.drive import CRITERIA, Drive
+from cyclosweep.design.drive import CRITERIA, Drive
 from cyclosweep.reference.facts import Fact, Mark
 
 __all__ = ["facts", "pulsation"]

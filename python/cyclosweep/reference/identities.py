@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 import cyclosweep._core as _core
-from cyclosweep.drive import Drive
+from cyclosweep.design.drive import Drive
 from cyclosweep.reference.facts import Fact, Mark
 
 __all__ = ["facts"]

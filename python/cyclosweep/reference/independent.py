@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cyclosweep.drive import Drive
+from cyclosweep.design.drive import Drive
 from cyclosweep.reference.facts import Fact
 
 __all__ = ["facts"]

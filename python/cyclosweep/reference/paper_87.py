@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 import cyclosweep._core as _core
-from cyclosweep.drive import CRITERIA, Drive
+from cyclosweep.design.drive import CRITERIA, Drive
 from cyclosweep.reference.facts import Fact, Mark
 
 __all__ = ["IDEAL_SECTORS", "facts", "ideal_sectors"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
-from cyclosweep.drive import Drive
+from cyclosweep.design.drive import Drive
 from cyclosweep.reference import criteria, identities, independent, paper_87
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cyclosweep.challenge.programme import Programme
-from cyclosweep.challenge.rig import measure
-from cyclosweep.challenge.specimen import Specimen
+from cyclosweep_challenge.rig.programme import Programme
+from cyclosweep_challenge.rig.rig import measure
+from cyclosweep_challenge.rig.specimen import Specimen
 
 levels = st.lists(st.floats(3.0, 25.0), min_size=3, max_size=25)
 

@@ -1,6 +1,6 @@
 """Answers and diagnoses made by hand, for tests of the scoring."""
 
-from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
+from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 
 
 def truth(*names: str, tier: str = "C0", kind: str = "effect", **more: object) -> dict:

@@ -2,7 +2,7 @@
 
 import re
 
-from cyclosweep.challenge.board.curves import power_chart, power_series
+from cyclosweep_challenge.board.curves import power_chart, power_series
 
 
 def curve(scale: float) -> list[tuple[float, float, float, float]]:

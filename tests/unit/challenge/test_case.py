@@ -6,8 +6,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from cyclosweep.challenge import ALIASES, NOISES, VOCABULARY, ConcealmentError, make_case
-from cyclosweep.challenge.oracle import oracle_d, oracle_power
+from cyclosweep_challenge import ALIASES, NOISES, VOCABULARY, ConcealmentError, make_case
+from cyclosweep_challenge.trial.oracle import oracle_d, oracle_power
 
 
 @pytest.mark.parametrize("name", VOCABULARY)

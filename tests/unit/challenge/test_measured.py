@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cyclosweep.challenge.measured import (
+from cyclosweep_challenge.measured.effects import (
     INJECTABLE,
     as_template,
     injected,
@@ -22,9 +22,9 @@ from cyclosweep.challenge.measured import (
     with_angle,
     write_loops,
 )
-from cyclosweep.challenge.measured_run import doubts, run_measured
-from cyclosweep.challenge.record.real import real_drive
-from cyclosweep.challenge.runner.work import Options
+from cyclosweep_challenge.measured.run import doubts, run_measured
+from cyclosweep_challenge.record.real import real_drive
+from cyclosweep_challenge.runner.work import Options
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
 

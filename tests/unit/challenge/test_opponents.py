@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from challenge_answers import outcome, said, truth
 
-from cyclosweep.challenge import make_case
-from cyclosweep.challenge.opponents import contest
-from cyclosweep.challenge.opponents.contest import CHEAP, CHEAPEST, COSTLY, NEEDS, meet_opponents
-from cyclosweep.challenge.opponents.seen import Seen
-from cyclosweep.challenge.opponents.subset import best_subset, bic_subset
-from cyclosweep.challenge.plan import make_plan
-from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves, tuned
+from cyclosweep_challenge import make_case
+from cyclosweep_challenge.opponents import contest
+from cyclosweep_challenge.opponents.contest import CHEAP, CHEAPEST, COSTLY, NEEDS, meet_opponents
+from cyclosweep_challenge.opponents.seen import Seen
+from cyclosweep_challenge.opponents.subset import best_subset, bic_subset
+from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves, tuned
+from cyclosweep_challenge.trial.plan import make_plan
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 

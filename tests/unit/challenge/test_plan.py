@@ -4,9 +4,9 @@ from collections import Counter
 
 import pytest
 
-from cyclosweep.challenge.noise import NOISES
-from cyclosweep.challenge.plan import MIXES, make_entry, make_plan
-from cyclosweep.challenge.tiers import TIERS
+from cyclosweep_challenge.rig.noise import NOISES
+from cyclosweep_challenge.trial.plan import MIXES, make_entry, make_plan
+from cyclosweep_challenge.trial.tiers import TIERS
 
 
 def test_a_longer_plan_begins_with_the_shorter_one() -> None:

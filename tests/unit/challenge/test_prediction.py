@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.challenge import make_case
+from cyclosweep_challenge import make_case
 
 
 def test_with_nothing_missing_it_is_the_spread_of_a_straight_line_s_prediction() -> None:

@@ -12,18 +12,18 @@ import pytest
 from filelock import FileLock
 from rich.console import Console
 
-from cyclosweep.challenge.noise import NOISES
-from cyclosweep.challenge.record import run as record_run
-from cyclosweep.challenge.record.command import main
-from cyclosweep.challenge.record.compare import fits, pairs
-from cyclosweep.challenge.record.ledger import Ledger
-from cyclosweep.challenge.record.paper import write_pages, write_paper
-from cyclosweep.challenge.record.parts import COLOURED, CONTEST, CONTEST_POOR, FULL, SUBSET, Size
-from cyclosweep.challenge.record.run import Kept, Record, run_record
-from cyclosweep.challenge.record.verify import verify_record
-from cyclosweep.challenge.runner.folders import LOCK
-from cyclosweep.challenge.runner.work import Options
-from cyclosweep.challenge.seal import SealError
+from cyclosweep_challenge.record import run as record_run
+from cyclosweep_challenge.record.command import main
+from cyclosweep_challenge.record.compare import fits, pairs
+from cyclosweep_challenge.record.ledger import Ledger
+from cyclosweep_challenge.record.paper import write_pages, write_paper
+from cyclosweep_challenge.record.parts import COLOURED, CONTEST, CONTEST_POOR, FULL, SUBSET, Size
+from cyclosweep_challenge.record.run import Kept, Record, run_record
+from cyclosweep_challenge.record.verify import verify_record
+from cyclosweep_challenge.rig.noise import NOISES
+from cyclosweep_challenge.runner.folders import LOCK
+from cyclosweep_challenge.runner.work import Options
+from cyclosweep_challenge.trial.seal import SealError
 
 DOCS = Path(__file__).parents[3] / "docs"
 STAND_IN = Path(__file__).parent / "stand_in.py"

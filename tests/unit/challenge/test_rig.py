@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cyclosweep.challenge import ALIENS, PROGRAMMES, VOCABULARY
-from cyclosweep.challenge.nominal import RATED_INPUT_TORQUE_NM
-from cyclosweep.challenge.programme import Programme, make_programme
-from cyclosweep.challenge.rig import measure
-from cyclosweep.challenge.specimen import Specimen
+from cyclosweep_challenge import ALIENS, PROGRAMMES, VOCABULARY
+from cyclosweep_challenge.rig.nominal import RATED_INPUT_TORQUE_NM
+from cyclosweep_challenge.rig.programme import Programme, make_programme
+from cyclosweep_challenge.rig.rig import measure
+from cyclosweep_challenge.rig.specimen import Specimen
 
 
 def specimen(seed: int = 1) -> Specimen:

@@ -9,11 +9,11 @@ import pytest
 from filelock import FileLock
 from rich.console import Console
 
-from cyclosweep.challenge.runner.folders import LOCK
-from cyclosweep.challenge.runner.run import run_challenge
-from cyclosweep.challenge.runner.work import Options
-from cyclosweep.challenge.seal import SealError
-from cyclosweep.challenge.verify import verify_run
+from cyclosweep_challenge.runner.folders import LOCK
+from cyclosweep_challenge.runner.run import run_challenge
+from cyclosweep_challenge.runner.verify import verify_run
+from cyclosweep_challenge.runner.work import Options
+from cyclosweep_challenge.trial.seal import SealError
 
 STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)

@@ -8,17 +8,17 @@ import pytest
 from challenge_answers import outcome, said, truth
 from scipy import stats
 
-from cyclosweep.challenge.board.terminal import within_reach
-from cyclosweep.challenge.noise import NOISES
-from cyclosweep.challenge.oracle import oracle_d
-from cyclosweep.challenge.scoring.calibration import calibration_error, chance_error
-from cyclosweep.challenge.scoring.confusion import confusion
-from cyclosweep.challenge.scoring.curves import detection_curves
-from cyclosweep.challenge.scoring.figures import Figure, all_figures, contest
-from cyclosweep.challenge.scoring.intervals import bootstrapped, share
-from cyclosweep.challenge.scoring.outcome import HeldOut, Outcome, make_outcome
-from cyclosweep.challenge.scoring.power import d_for_power, relative_to_oracle
-from cyclosweep.challenge.scoring.rivals import OURS, opponent_curves
+from cyclosweep_challenge.board.terminal import within_reach
+from cyclosweep_challenge.rig.noise import NOISES
+from cyclosweep_challenge.scoring.calibration import calibration_error, chance_error
+from cyclosweep_challenge.scoring.confusion import confusion
+from cyclosweep_challenge.scoring.curves import detection_curves
+from cyclosweep_challenge.scoring.figures import Figure, all_figures, contest
+from cyclosweep_challenge.scoring.intervals import bootstrapped, share
+from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
+from cyclosweep_challenge.scoring.power import d_for_power, relative_to_oracle
+from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves
+from cyclosweep_challenge.trial.oracle import oracle_d
 
 
 def _table(outcomes: list[Outcome]) -> list[Figure]:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cyclosweep.challenge.seal import SealError, new_passphrase, root_hash, seal, unseal
+from cyclosweep_challenge.trial.seal import SealError, new_passphrase, root_hash, seal, unseal
 
 ANSWER = {"effects": ["creep"], "d": 12.0}
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from cyclosweep.challenge.record.together import behind_table, figures_over_all, over_all
-from cyclosweep.challenge.scoring.intervals import Estimate, together
+from cyclosweep_challenge.record.together import behind_table, figures_over_all, over_all
+from cyclosweep_challenge.scoring.intervals import Estimate, together
 
 
 def contest(seed: int, code: str, low: float, high: float, programme: str = "poor") -> dict:

@@ -1,0 +1,68 @@
+"""Old names of modules that moved: importing them still works and warns."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import types
+import warnings
+from typing import Any
+
+_DESIGN = {"cyclosweep.drive": "design.drive", "cyclosweep.units": "design.units"}
+_SWEEP = {
+    f"cyclosweep.{old}": f"sweep.{new}"
+    for old, new in {
+        "space": "space",
+        "study": "study",
+        "scan": "scan",
+        "dataset": "dataset",
+        "shards": "shards",
+        "cluster": "executors",
+        "summary": "summary",
+        "progress": "progress",
+    }.items()
+}
+_SIMULATION = {"cyclosweep.simulate": "simulation.simulate"} | {
+    f"cyclosweep.effects{part}": f"simulation.effects{part}"
+    for part in ("", ".base", ".history", ".orders", ".slip")
+}
+MOVED: dict[str, str] = {
+    old: f"cyclosweep.{new}" for old, new in (_DESIGN | _SWEEP | _SIMULATION).items()
+} | {
+    "cyclosweep.challenge": "cyclosweep_challenge",
+    "cyclosweep.challenge.case": "cyclosweep_challenge.trial.case",
+    "cyclosweep.challenge.plan": "cyclosweep_challenge.trial.plan",
+    "cyclosweep.challenge.programme": "cyclosweep_challenge.rig.programme",
+    "cyclosweep.challenge.rig": "cyclosweep_challenge.rig.rig",
+    "cyclosweep.challenge.verify": "cyclosweep_challenge.runner.verify",
+    "cyclosweep.challenge.measured_run": "cyclosweep_challenge.measured.run",
+}
+"""Where the modules of version 0.1 stand now, by their old names."""
+
+
+class _MovedModule(types.ModuleType):
+    """A module that looks every name up where its contents stand now."""
+
+    def __init__(self, old: str, new: str) -> None:
+        super().__init__(old, f"Moved to `{new}`.")
+        self.__path__: list[str] = []
+        self.__dict__["_new"] = new
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        new = self.__dict__["_new"]
+        # importlib, because a name in `cyclosweep` may be a function and a module at once.
+        value = getattr(importlib.import_module(new), name)
+        warnings.warn(f"{self.__name__} has moved: use {new}", DeprecationWarning, stacklevel=2)
+        return value
+
+
+def register() -> None:
+    """Make the old names importable.
+
+    They are put into `sys.modules` rather than found on import, because an import that finds a
+    module also sets it as attribute of the package, over functions such as `cyclosweep.scan`.
+    """
+    for old, new in MOVED.items():
+        sys.modules.setdefault(old, _MovedModule(old, new))

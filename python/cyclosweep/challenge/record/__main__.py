@@ -1,5 +1,0 @@
-"""`python -m cyclosweep.challenge.record`."""
-
-from cyclosweep.challenge.record.command import main
-
-main()

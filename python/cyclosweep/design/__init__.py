@@ -1,0 +1,1 @@
+"""One cycloidal drive: its dimensions, ratings and the units of every quantity."""

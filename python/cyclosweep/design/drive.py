@@ -1,0 +1,605 @@
+"""One cycloidal drive: its dimensions, ratings and where each number comes from."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+import polars as pl
+import tomli_w
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+import cyclosweep._core as _core
+from cyclosweep.errors import InputError
+
+__all__ = [
+    "CRITERIA",
+    "ActivePins",
+    "Criterion",
+    "Cylinder",
+    "Drive",
+    "Frustum",
+    "Keyway",
+    "NominalLine",
+]
+
+Criterion = Literal["published-map", "inside", "statics"]
+CRITERIA: tuple[Criterion, ...] = ("published-map", "inside", "statics")
+Side = Literal["input", "output"]
+
+_MARKS = ("published", "derived", "reading", "assumed", "measured")
+_BUILT_IN = {"reference-87": "reference_87.toml"}
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class Keyway(_Part):
+    """Cylindrical shaft segment with a keyway, Eq. (5).
+
+    Attributes
+    ----------
+    diameter_mm, length_mm, keyway_depth_mm : float
+        Dimensions [mm]; the keyway must not reach the axis.
+
+    Notes
+    -----
+    ``c = 32 / (pi G) (l + k h l / D) / D^4`` is a reading of an ambiguous print: its form is 85 %
+    sure, k = 10 (``keyway_coefficient``) about 75 %. A Saint-Venant torsion solution of standard
+    keyways gives k of about 1.2 to 1.3 on the same depth.
+    """
+
+    kind: Literal["keyway"] = "keyway"
+    diameter_mm: Positive
+    length_mm: Positive
+    keyway_depth_mm: NonNegative
+
+
+class Cylinder(_Part):
+    """Plain cylindrical shaft segment.
+
+    Attributes
+    ----------
+    diameter_mm, length_mm : float
+        Dimensions [mm].
+    """
+
+    kind: Literal["cylinder"] = "cylinder"
+    diameter_mm: Positive
+    length_mm: Positive
+
+
+class Frustum(_Part):
+    """Conical shaft segment, Eq. (7).
+
+    Attributes
+    ----------
+    diameter_mm, end_diameter_mm, length_mm : float
+        Diameter at the free end and at the flange end, length [mm].
+    """
+
+    kind: Literal["frustum"] = "frustum"
+    diameter_mm: Positive
+    end_diameter_mm: Positive
+    length_mm: Positive
+
+
+Segment = Annotated[Keyway | Cylinder | Frustum, Field(discriminator="kind")]
+
+
+class NominalLine(NamedTuple):
+    """The published model as a test engineer sees it: a dead zone and a straight line.
+
+    Attributes
+    ----------
+    free_play_deg : float
+        Half width of the dead zone [deg] at the side asked for.
+    compliance_deg_per_nm : float
+        Slope beyond it [deg/(N m)], torque transfer efficiency included.
+    """
+
+    free_play_deg: float
+    compliance_deg_per_nm: float
+
+
+class ActivePins(NamedTuple):
+    """Active hole-pin contacts of one drive, all discs together, over one turn.
+
+    Attributes
+    ----------
+    mean, minimum, maximum : float, int, int
+        Number of active contacts [1].
+    torque_transfer_efficiency : float
+        eta_OP [1], Eqs. (1)-(3).
+    sectors : polars.DataFrame
+        Columns ``start_deg``, ``end_deg`` (position of the mesh zone) and ``active``.
+    """
+
+    mean: float
+    minimum: int
+    maximum: int
+    torque_transfer_efficiency: float
+    sectors: pl.DataFrame
+
+
+class Drive(_Part):
+    """A single-stage cycloidal drive, frozen and checked.
+
+    Every attribute is a key of a drive file, an axis of a study and a column of a sweep; its
+    meaning and unit stand in :data:`cyclosweep.design.units.INPUTS`. ``shaft`` lists the output
+    shaft's segments from the free end to the flange, each length once; instead of it
+    ``output_stiffness_nm_per_arcmin`` may be given, which is then taken as it is: the torque
+    transfer efficiency does not multiply a measured stiffness. ``provenance`` says of each number
+    whether it is published, derived, reading, assumed or measured, with its source.
+
+    Eq. (13) multiplies the whole compliance by the torque transfer efficiency: *fewer* active pins
+    then mean *less* twist, and an optimiser will exploit it. ``criterion`` decides which count of
+    active pins feeds the twist; every other result is by Eqs. (11) and (12) whatever the criterion.
+
+    Whether the parts fit each other is not asked here (a study's axes may still change them), but
+    by :meth:`explain` and by the status of a sweep.
+
+    References
+    ----------
+    .. [1] Kumar, Kosse and Oloyede, "A new method to estimate effective elastic torsional
+       compliance of single-stage Cycloidal drives", Mechanism and Machine Theory 105 (2016)
+       185-198, doi 10.1016/j.mechmachtheory.2016.06.023.
+
+    Examples
+    --------
+    >>> drive = Drive.reference_87()
+    >>> drive.ratio, drive.output_pin_count
+    (87, 8)
+    >>> round(drive.nominal_torque_nm, 4)
+    7.2575
+    """
+
+    name: str = "drive"
+    ratio: Annotated[int, Field(ge=3, le=300)]
+    disc_count: Annotated[int, Field(ge=1, le=4)]
+    eccentricity_mm: Positive
+    ring_pin_circle_radius_mm: Positive
+    hole_clocking_deg: Annotated[float, Field(allow_inf_nan=False)] = 0.0
+    output_pin_count: Annotated[int, Field(ge=3, le=64)]
+    output_pin_circle_radius_mm: Positive
+    output_pin_diameter_mm: Positive
+    output_pin_bore_mm: NonNegative = 0.0
+    output_pin_length_mm: Positive
+    bush_wall_mm: NonNegative = 0.0
+    disc_outer_radius_mm: Positive
+    disc_bore_radius_mm: NonNegative
+    youngs_modulus_gpa: Positive
+    poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] = 0.3
+    keyway_coefficient: NonNegative = 10.0
+    input_power_kw: Positive
+    input_speed_rpm: Positive
+    output_torque_nm: Positive
+    free_play_deg: NonNegative = 0.0
+    input_inertia_kg_m2: Positive | None = None
+    output_stiffness_nm_per_arcmin: Positive | None = None
+    criterion: Criterion = "published-map"
+    shaft: tuple[Segment, ...] = ()
+    provenance: dict[str, str] = Field(default_factory=dict)
+
+    _SCALARS: ClassVar[tuple[str, ...]] = tuple(name for name, _, _ in _core.input_table())
+
+    @field_validator("shaft", mode="before")
+    @classmethod
+    def _shaft_is_a_sequence(cls, value: object) -> object:
+        return tuple(value) if isinstance(value, list) else value
+
+    @model_validator(mode="after")
+    def _is_complete(self) -> Self:
+        if not self.shaft and self.output_stiffness_nm_per_arcmin is None:
+            raise ValueError(
+                "neither [[shaft]] nor output_stiffness_nm_per_arcmin, expected one of them"
+            )
+        for key, mark in self.provenance.items():
+            if key not in self.inputs():
+                raise ValueError(f"provenance.{key}: no such input of this drive")
+            if mark.partition(":")[0].strip() not in _MARKS:
+                raise ValueError(
+                    f"provenance.{key}: found {mark!r}, expected one of {', '.join(_MARKS)}"
+                )
+        return self
+
+    @classmethod
+    def reference_87(cls) -> Drive:
+        """Return the built-in drive of the 87:1 reference case.
+
+        Published are the ratings, counts and free play; the dimensions are assumed, buildable and
+        chosen so that the loading line falls into the published band. ``provenance`` marks each.
+
+        Returns
+        -------
+        Drive
+        """
+        return cls.built_in("reference-87")
+
+    @classmethod
+    def built_in(cls, name: str) -> Drive:
+        """Return a built-in drive by its name.
+
+        Parameters
+        ----------
+        name : str
+            ``reference-87``.
+
+        Raises
+        ------
+        InputError
+            For another name.
+        """
+        if name not in _BUILT_IN:
+            known = ", ".join(_BUILT_IN)
+            raise InputError(f"drive {name!r}: no such built-in drive, expected {known} or a file")
+        text = resources.files("cyclosweep.design").joinpath(_BUILT_IN[name]).read_text("utf-8")
+        return cls._from_table(tomllib.loads(text), name)
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Drive:
+        """Read a drive file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Drive
+
+        Raises
+        ------
+        InputError
+            One line that names the file, the key, what was found and what was expected.
+        """
+        return cls._from_table(read_toml(path), str(path))
+
+    @classmethod
+    def load(cls, name_or_path: str | Path, beside: Path | None = None) -> Drive:
+        """Return a built-in drive or read a drive file.
+
+        Parameters
+        ----------
+        name_or_path : str or Path
+            A built-in name, or a file; what ends in ``.toml`` is a file.
+        beside : Path, optional
+            Folder against which a relative path is taken.
+
+        Raises
+        ------
+        InputError
+            When neither fits.
+        """
+        text = str(name_or_path)
+        if not text.endswith(".toml"):
+            return cls.built_in(text)
+        return cls.from_toml(beside / text if beside is not None else text)
+
+    @classmethod
+    def _from_table(cls, table: dict[str, Any], source: str) -> Drive:
+        try:
+            return cls.model_validate(table)
+        except ValidationError as error:
+            raise InputError(f"{source}: {one_line(error)}") from None
+
+    def to_toml(self, path: str | Path) -> None:
+        """Write the drive file that reads back as this drive.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        """
+        table = self.model_dump(exclude_none=True)
+        table["shaft"] = list(table["shaft"])
+        if not table["shaft"]:
+            del table["shaft"]
+        Path(path).write_text(tomli_w.dumps(table), encoding="utf-8")
+
+    def inputs(self) -> tuple[str, ...]:
+        """Names of every input that can be an axis of a study of this drive, in order."""
+        segments = (
+            f"shaft_{number}_{field}"
+            for number, segment in enumerate(self.shaft, start=1)
+            for field in _core.SEGMENT_FIELDS
+            if field in type(segment).model_fields
+        )
+        return (*self._SCALARS, *segments)
+
+    def values(self) -> dict[str, float]:
+        """Every input's value by name, NaN where left out, the criterion by its number."""
+        values: dict[str, float] = {}
+        for name in self._SCALARS:
+            value = getattr(self, name)
+            if name == "criterion":
+                value = CRITERIA.index(value)
+            values[name] = math.nan if value is None else float(value)
+        for number, segment in enumerate(self.shaft, start=1):
+            for field in _core.SEGMENT_FIELDS:
+                if field in type(segment).model_fields:
+                    values[f"shaft_{number}_{field}"] = float(getattr(segment, field))
+        return values
+
+    def replace(self, **changes: Any) -> Drive:
+        """Return this drive with some inputs changed.
+
+        Parameters
+        ----------
+        **changes
+            New values by input name, ``shaft_2_diameter_mm`` and the like included.
+
+        Returns
+        -------
+        Drive
+            Without the provenance marks of what was changed.
+
+        Raises
+        ------
+        InputError
+            For an unknown name or a value that is not allowed.
+
+        Examples
+        --------
+        >>> Drive.reference_87().replace(eccentricity_mm=0.7).eccentricity_mm
+        0.7
+        """
+        table = self.model_dump()
+        for name, value in changes.items():
+            if match := re.fullmatch(r"shaft_(\d+)_(\w+)", name):
+                if name not in self.inputs():
+                    raise InputError(f"{name}: no such input of this drive")
+                table["shaft"][int(match[1]) - 1][match[2]] = value
+            elif name in table:
+                table[name] = value
+            else:
+                raise InputError(f"{name}: no such input of this drive")
+            table["provenance"] = {
+                key: mark
+                for key, mark in table["provenance"].items()
+                if key != name and not (name == "shaft" and key.startswith("shaft_"))
+            }
+        return self._from_table(table, self.name)
+
+    @property
+    def nominal_torque_nm(self) -> float:
+        """Nominal input torque T_N = P / omega [N m]."""
+        return self.input_power_kw * 1e3 / (self.input_speed_rpm * math.pi / 30)
+
+    @property
+    def overall_efficiency(self) -> float:
+        """Rated output torque over i T_N [1]."""
+        return self.output_torque_nm / (self.ratio * self.nominal_torque_nm)
+
+    def study(self, loads_tn: tuple[float, ...] = ()) -> _core.Study:
+        """Return the core's study of this drive alone."""
+        kinds = [segment.kind for segment in self.shaft]
+        return _core.Study(list(self.values().items()), kinds, [], "grid", 1, 0, list(loads_tn), [])
+
+    def explain(self) -> str | None:
+        """Why this drive cannot be built, with the numbers that show it; None when it can."""
+        return self.study().explain(0)
+
+    def evaluate(self, loads_tn: tuple[float, ...] = (1, 2, 3, 4, 4.5)) -> dict[str, float | None]:
+        """Evaluate the published compliance model for this drive.
+
+        Parameters
+        ----------
+        loads_tn : tuple of float
+            Loads [T_N] at which twists are computed.
+
+        Returns
+        -------
+        dict
+            Every result column of a sweep; None where it does not apply.
+
+        Raises
+        ------
+        DesignError
+            When the drive cannot be built.
+
+        Examples
+        --------
+        >>> results = Drive.reference_87().evaluate()
+        >>> round(results["twist_1tn_deg"], 1)
+        47.8
+        """
+        study = self.study(loads_tn)
+        if (reason := study.explain(0)) is not None:
+            raise _core.DesignError(f"{self.name}: {reason}")
+        names = [name for name, _ in _core.output_table(list(loads_tn))]
+        _, _, columns = study.evaluate_range(0, 1, names)
+        values = (float(column[0]) for column in columns)
+        return {
+            name: None if math.isnan(value) else value
+            for name, value in zip(names, values, strict=True)
+        }
+
+    def nominal_line(self, side: Side = "input") -> NominalLine:
+        """Dead zone and slope that the published model gives this drive.
+
+        Parameters
+        ----------
+        side : {"input", "output"}
+            Shaft at which torque and angle are meant, the other one locked.
+
+        Returns
+        -------
+        NominalLine
+
+        Raises
+        ------
+        DesignError
+            When the drive cannot be built and gives no stiffness of its own.
+
+        Examples
+        --------
+        >>> line = Drive.reference_87().nominal_line("input")
+        >>> line.free_play_deg
+        28.0
+        """
+        if self.output_stiffness_nm_per_arcmin is not None:
+            at_output = 1.0 / (60.0 * self.output_stiffness_nm_per_arcmin)
+            at_input = at_output * self.ratio**2
+        else:
+            twist = self.evaluate((1.0,))["twist_1tn_deg"]
+            assert twist is not None
+            at_input = (twist - self.free_play_deg) / self.nominal_torque_nm
+        if side == "input":
+            return NominalLine(self.free_play_deg, at_input)
+        return NominalLine(self.free_play_deg / self.ratio, at_input / self.ratio**2)
+
+    def active_pins(self, criterion: Criterion | None = None) -> ActivePins:
+        """Active hole-pin contacts over one turn of the mesh zone.
+
+        Parameters
+        ----------
+        criterion : {"published-map", "inside", "statics"}, optional
+            The rule; this drive's own by default.
+
+        Returns
+        -------
+        ActivePins
+
+        Raises
+        ------
+        DesignError
+            When no hole ever crosses the pins' pitch circle.
+
+        Notes
+        -----
+        ``inside``: the hole's centre lies inside the pitch circle, ``cos(theta (1 + 1/i) - phi)
+        < -e / (2 R_OP)``. ``statics``: the hole pushes its pin in the sense of the torque.
+        ``published-map`` is *a reconstruction that matches the published map*, not the authors'
+        rule: hole angles are reduced to (-180, 180] deg, and a hole at or below zero belongs to
+        the left half. A left hole's window is ``[phi + 90 + delta, phi + 270 - delta] i / (i + 1)``
+        with ``delta = asin(e / (2 R_OP))``; its start is clipped at 0, its end at 180 deg except
+        for the hole of that half nearest ring pin 0, which at a low ratio opens a second time
+        before the turn ends. The right half follows the same rule on its own holes and is then
+        mirrored. One disc's count is multiplied by the number of discs.
+
+        Examples
+        --------
+        >>> Drive.reference_87().active_pins().minimum
+        4
+        """
+        chosen = criterion or self.criterion
+        code = CRITERIA.index(chosen)
+        half_sine = self.eccentricity_mm / (2 * self.output_pin_circle_radius_mm)
+        if half_sine >= 1:
+            raise _core.DesignError(f"{self.name}: {self.explain()}")
+        arrangement = (
+            float(self.ratio),
+            self.disc_count,
+            self.output_pin_count,
+            math.asin(half_sine) / math.tau,
+            self.hole_clocking_deg / 360,
+        )
+        (mean, low, high), _, _ = _core.active_pins(code, *arrangement)
+        starts, ends, active = zip(*_core.sectors(code, *arrangement), strict=True)
+        sectors = pl.DataFrame({"start_deg": starts, "end_deg": ends, "active": active})
+        contacts = self.disc_count * self.output_pin_count
+        return ActivePins(
+            mean,
+            low,
+            high,
+            mean / (0.5 * contacts),
+            sectors.with_columns(pl.col("start_deg", "end_deg") * 360),
+        )
+
+    def hole_locus(self, theta_deg: npt.ArrayLike, hole: int = 0) -> pl.DataFrame:
+        """Path of a hole's centre, a hypotrochoid that crosses the pins' pitch circle.
+
+        Parameters
+        ----------
+        theta_deg : array_like
+            Positions of the mesh zone [deg], clockwise from ring pin 0.
+        hole : int
+            Which hole of disc 1, from 0.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``theta_deg``, ``x_mm``, ``y_mm``, ``radius_mm``.
+
+        Examples
+        --------
+        >>> Drive.reference_87().hole_locus([0.0, 90.0]).height
+        2
+        """
+        theta = np.atleast_1d(np.asarray(theta_deg, dtype=np.float64))
+        angle = math.radians(self.hole_clocking_deg + (hole + 0.5) * 360 / self.output_pin_count)
+        centres = _core.hole_locus(
+            self.eccentricity_mm,
+            self.output_pin_circle_radius_mm,
+            self.ratio,
+            angle,
+            np.radians(theta),
+        )
+        return pl.DataFrame(
+            {
+                "theta_deg": theta,
+                "x_mm": centres[:, 0],
+                "y_mm": centres[:, 1],
+                "radius_mm": np.hypot(centres[:, 0], centres[:, 1]),
+            }
+        )
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        When it is not there, not text or not TOML.
+    """
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file in UTF-8, expected TOML") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+
+
+def one_line(error: ValidationError) -> str:
+    """Put a validation error into one line: key, what was found, what was expected."""
+    problems = error.errors(include_url=False)
+    first = problems[0]
+    tags = ("keyway", "cylinder", "frustum")
+    where = ".".join(
+        str(part + 1 if isinstance(part, int) else part)
+        for part in first["loc"]
+        if part not in tags
+    )
+    kind = first["type"]
+    if kind == "missing":
+        text = f"{where}: missing"
+    elif kind == "extra_forbidden":
+        text = f"{where}: unknown key"
+    elif kind == "value_error":
+        text = first["msg"].removeprefix("Value error, ")
+        text = f"{where}: {text}" if where else text
+    else:
+        wanted = first["msg"].removeprefix("Input should be ").removeprefix("a valid ")
+        text = f"{where}: found {first['input']!r}, expected {wanted}"
+    more = len(problems) - 1
+    return f"{text} (and {more} more)" if more else text

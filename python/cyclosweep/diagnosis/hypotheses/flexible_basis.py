@@ -1,0 +1,50 @@
+"""A model rich enough that hardly anything but noise is left, for estimating that noise."""
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.library import Library
+from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.simulation.effects.history import Floats
+
+SMOOTH = (
+    "torque and direction",
+    "smooth odd curve",
+    "even curve",
+    "hysteresis",
+    "compliance by run",
+    "compliance by position",
+    "position offsets",
+)
+"""Families of free forms that join the named effects in the rich model."""
+
+
+def rich_basis(problem: Problem, library: Library, extra: Floats | None = None) -> Floats:
+    """Orthonormal columns: the baseline exactly, then what else there is to see, strongest first.
+
+    Parameters
+    ----------
+    extra : ndarray, shape (n, q), optional
+        Further columns that must be in it, as the tangent space of an accepted model.
+    """
+    use = problem.fitted
+    history = problem.history
+    parts = [np.ones(int(use.sum())), history.applied_nm[use]]
+    if not problem.one_sided:
+        parts.append(history.side[use])
+    certain = np.column_stack(parts if extra is None else [*parts, extra])
+    inner = orthonormal(certain, 1e-10)
+    wanted = [b for b in library.blocks if b.named or b.hypothesis in SMOOTH]
+    if not wanted:
+        return inner
+    index = np.concatenate([np.arange(b.first, b.stop) for b in wanted])
+    rest = library.columns[:, index] / np.sqrt(len(inner))
+    rest = rest - inner @ (inner.T @ rest)
+    # Directions by the small matrix of inner products: what is kept lies far above its rounding.
+    size, mix = np.linalg.eigh(rest.T @ rest)
+    strongest = np.argsort(-size)
+    strongest = strongest[size[strongest] > (2e-3) ** 2 * max(size[-1], 1e-300)]
+    most = max(len(inner) // 4 - inner.shape[1], 0)
+    strongest = strongest[:most]
+    kept = rest @ (mix[:, strongest] / np.sqrt(size[strongest]))
+    return np.column_stack([inner, kept])

@@ -1,0 +1,335 @@
+"""Shapes without a name that compete with the named effects, so that wrong names stay away."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+import cyclosweep._core as _core
+from cyclosweep.simulation.effects.creep import FEWEST_STEPS
+from cyclosweep.simulation.effects.history import Flags, Floats, History
+
+
+@dataclass(frozen=True, eq=False)
+class FreeForm:
+    """One shape without a name.
+
+    Attributes
+    ----------
+    family : str
+        What kind of shape it is, in words for a reader.
+    place : str
+        Where it sits, in words for a reader.
+    make : callable
+        Columns [deg] for a history.
+    positive : bool
+        Whether its amplitude cannot be negative.
+    """
+
+    family: str
+    place: str
+    make: Callable[[History], Floats]
+    positive: bool = False
+
+
+_OFFSETS = frozenset({"run offsets"})
+_LOOPS = frozenset({"hysteresis"})
+_PLACES = frozenset({"position"})
+_CURVES = frozenset({"smooth odd curve", "dial"})
+CLASSES = {
+    "step of the angle": _OFFSETS,
+    "slip within a run": _OFFSETS,
+    "change of play": _OFFSETS | _PLACES,
+    "one run apart": _OFFSETS,
+    "drift in time": _OFFSETS,
+    "drift within runs": _OFFSETS,
+    "wandering of the zero": _OFFSETS | _PLACES,
+    "position offsets": _OFFSETS,
+    "compliance by run": _PLACES,
+    "compliance by position": _PLACES,
+    "change of compliance": _PLACES,
+    "bump at a load": _CURVES | {"even curve"},
+    "saturation at the end of the range": _CURVES | {"even curve"},
+    "smooth odd curve": _CURVES,
+    "even curve": frozenset({"even curve", "dial"}),
+    "hysteresis": _LOOPS,
+    "loop by rate": _LOOPS,
+    "torque and direction": _LOOPS,
+    "relaxation": frozenset({"relaxation"}),
+}
+"""Families of effects from which a shape without a name cannot be told: beside it they are not
+named, for part of what they explain is its."""
+
+
+def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
+    """All shapes without a name that this recording can show."""
+    yield from _steps(history, fitted)
+    yield from _bumps(history)
+    yield from _clips(history)
+    yield from _curves(history)
+    yield from _cells(history)
+    yield from _runs(history)
+    yield from _trends(history)
+    yield from _windows(history, fitted)
+    yield from _positions(history)
+
+
+def clock_of(history: History) -> Floats:
+    """Time, or the number of the row where there is no clock."""
+    if history.time_s is None:
+        return np.arange(len(history), dtype=np.float64)
+    return history.time_s
+
+
+def hats(values: Floats, knots: Floats) -> Floats:
+    """Piecewise linear basis functions on the given knots."""
+    return np.column_stack([np.interp(values, knots, row) for row in np.eye(len(knots))])
+
+
+def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
+    index = np.flatnonzero(fitted)
+    count = min(60, len(index) // 8)
+    if count < 1:
+        return
+    places = index[np.linspace(0, len(index) - 1, count + 2)[1:-1].astype(int)]
+    clock = clock_of(history)
+    what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
+    for place in places:
+        label = f"from {what.format(clock[place])} (run {history.run[place] + 1})"
+        yield FreeForm(
+            "step of the angle",
+            label,
+            partial(_after, place, None),
+        )
+        yield FreeForm(
+            "slip within a run",
+            label + " to the end of that run",
+            partial(_after, place, int(history.run[place])),
+        )
+        if np.any(history.side > 0) and np.any(history.side < 0):
+            yield FreeForm("change of play", label, partial(_wider_after, place))
+    for place in places[::3]:
+        yield FreeForm(
+            "change of compliance",
+            f"from {what.format(clock[place])} (run {history.run[place] + 1})",
+            partial(_softer_after, place),
+        )
+
+
+def _after(place: int, run: int | None, history: History) -> Floats:
+    rows = np.arange(len(history)) >= place
+    if run is not None:
+        rows &= history.run == run
+    return np.asarray(rows, dtype=np.float64)[:, None]
+
+
+def _wider_after(place: int, history: History) -> Floats:
+    return np.asarray((np.arange(len(history)) >= place) * history.side)[:, None]
+
+
+def _softer_after(place: int, history: History) -> Floats:
+    return np.asarray((np.arange(len(history)) >= place) * history.elastic_nm)[:, None]
+
+
+def _one_run(number: int, history: History) -> Floats:
+    return np.asarray(history.run == number, dtype=np.float64)[:, None]
+
+
+def _constant(columns: Floats, history: History) -> Floats:
+    return columns
+
+
+def _bumps(history: History) -> Iterator[FreeForm]:
+    top = history.largest_torque_nm
+    for width in (0.03, 0.06, 0.12):
+        for centre in np.arange(0.05, 1.0, 1.2 * width):
+            for flank in (0, 1, -1):
+                if flank and not np.any(history.side == flank):
+                    continue
+                where = "" if flank == 0 else f" {'positive' if flank > 0 else 'negative'}"
+                yield FreeForm(
+                    "bump at a load",
+                    f"near{where} {centre * top:.3g} N m",
+                    partial(_bump, centre=centre * top, width=width * top, flank=flank),
+                )
+
+
+def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
+    bump = np.exp(-0.5 * ((np.abs(history.applied_nm) - centre) / width) ** 2)
+    return (bump * (history.side if flank == 0 else (history.side == flank)))[:, None]
+
+
+def _clips(history: History) -> Iterator[FreeForm]:
+    """Sensors at a limit, of the reading or of the load, on both flanks or on one."""
+    widest = float(np.max(np.abs(history.angle_deg), initial=0.0))
+    for share in np.linspace(0.45, 0.97, 14):
+        yield FreeForm(
+            "saturation at the end of the range",
+            f"beyond {share * widest:.3g} deg",
+            partial(_clipped, limit=float(share) * widest),
+            positive=True,
+        )
+    top = history.largest_torque_nm
+    for share in (0.46, 0.53, 0.6, 0.67, 0.74, 0.81, 0.87, 0.93, 0.97):
+        for flank in (0, 1, -1):
+            if flank and not np.any(history.side == flank):
+                continue
+            yield FreeForm(
+                "saturation at the end of the range",
+                f"beyond {(flank or 1) * share * top:.3g} N m",
+                partial(_over, start=share * top, flank=flank),
+                positive=True,
+            )
+
+
+def _clipped(history: History, limit: float) -> Floats:
+    # A sensor at its limit shows too little, never too much.
+    over = np.maximum(np.abs(history.angle_deg) - limit, 0.0)
+    return np.asarray(-np.sign(history.angle_deg) * over)[:, None]
+
+
+def _over(history: History, start: float, flank: int) -> Floats:
+    over = -np.maximum(np.abs(history.applied_nm) - start, 0.0)
+    here = 1.0 if flank == 0 else (history.side == flank)
+    return np.asarray(over * history.side * here)[:, None]
+
+
+def _curves(history: History) -> Iterator[FreeForm]:
+    top = history.largest_torque_nm
+    knots = np.array([0.0, 0.08, 0.2, 0.4, 0.65, 1.0]) * top
+    yield FreeForm(
+        "smooth odd curve",
+        "over the whole range of torque",
+        lambda h: h.side[:, None] * hats(h.load_nm, knots),
+    )
+    if np.any(history.side > 0) and np.any(history.side < 0):
+        yield FreeForm(
+            "even curve", "over the whole range of torque", lambda h: hats(h.load_nm, knots)
+        )
+    rough = np.array([0.0, 0.3, 1.0]) * top
+    yield FreeForm(
+        "hysteresis",
+        "loading against unloading",
+        lambda h: h.sense[:, None] * hats(h.load_nm, rough),
+    )
+    if history.time_s is not None and history.usual_step_s > 0:
+        yield FreeForm("loop by rate", "where the rate is high", _rates)
+        longest = float(np.bincount(history.run, _lapse(history)).max())
+        delays = np.geomspace(FEWEST_STEPS * history.usual_step_s, max(longest, 1e-9), 5)[:4]
+        yield FreeForm(
+            "relaxation", "at holds and after reversals", partial(_relaxing, delays=delays)
+        )
+
+
+def _lapse(history: History) -> Floats:
+    """Time since the sample before, none at the start of a run [s]."""
+    assert history.time_s is not None
+    step = np.diff(history.time_s, prepend=history.time_s[:1])
+    step[history.run_starts] = 0.0
+    return step
+
+
+def _rates(history: History) -> Floats:
+    """Rate of the torque, plain and with a digressive power."""
+    step, lapse = np.diff(history.applied_nm, prepend=history.applied_nm[:1]), _lapse(history)
+    rate = np.divide(step, lapse, out=np.zeros_like(step), where=lapse > 0)
+    first = history.run_starts
+    rate[first] = rate[np.minimum(first + 1, len(rate) - 1)]
+    return np.column_stack([rate, np.sign(rate) * np.sqrt(np.abs(rate))])
+
+
+def _relaxing(history: History, delays: Floats) -> Floats:
+    """Torque followed late, with any sign."""
+    assert history.time_s is not None
+    return np.column_stack(
+        [
+            _core.creep_state(history.applied_nm, history.time_s, history.restart, float(delay))
+            for delay in delays
+        ]
+    )
+
+
+def _cells(history: History) -> Iterator[FreeForm]:
+    knots = np.linspace(0.0, 1.0, 5) * history.largest_torque_nm
+
+    def cells(h: History) -> Floats:
+        basis = hats(h.load_nm, knots)
+        parts = [
+            basis * ((h.side == flank) & (h.sense == sense))[:, None]
+            for flank in (1, -1)
+            for sense in (1, -1)
+        ]
+        return np.column_stack(parts)
+
+    yield FreeForm("torque and direction", "over torque and direction", cells)
+
+
+def _runs(history: History) -> Iterator[FreeForm]:
+    if not 3 <= history.run_count <= 60:
+        return
+    runs = np.arange(history.run_count)
+    yield FreeForm(
+        "compliance by run",
+        "from run to run",
+        lambda h: (h.run[:, None] == runs) * h.elastic_nm[:, None],
+    )
+    for number in range(history.run_count):
+        yield FreeForm(
+            "one run apart",
+            f"run {number + 1}",
+            partial(_one_run, number),
+        )
+
+
+def _trends(history: History) -> Iterator[FreeForm]:
+    clock = clock_of(history)
+    length = max(float(np.ptp(clock)), 1e-12)
+    share = (clock - clock[0]) / length
+    starts = clock[history.run_starts][history.run]
+    since = (clock - starts) / length
+    yield FreeForm("drift in time", "over the recording", lambda h: share[:, None])
+    yield FreeForm(
+        "drift in time",
+        "over the recording",
+        lambda h: np.column_stack([share, share**2, share**3]),
+    )
+    if history.run_count > 1:
+        yield FreeForm("drift within runs", "over each run", lambda h: since[:, None])
+    for tau in (0.02, 0.1, 0.3):
+        yield FreeForm(
+            "drift in time",
+            "dying out over the recording",
+            partial(_constant, np.exp(-share / tau)[:, None]),
+        )
+
+
+def _windows(history: History, fitted: Flags) -> Iterator[FreeForm]:
+    index = np.flatnonzero(fitted)
+    for count in (15, 40):
+        if len(index) < 12 * count:
+            continue
+        window = np.zeros(len(history), dtype=np.int64)
+        window[index] = np.arange(len(index)) * count // len(index)
+        window = np.maximum.accumulate(window)
+        yield FreeForm(
+            "wandering of the zero",
+            "over the whole recording",
+            partial(_constant, (window[:, None] == np.arange(count)).astype(np.float64)),
+        )
+
+
+def _positions(history: History) -> Iterator[FreeForm]:
+    if history.crank_deg is None:
+        return
+    places = np.unique(np.round(history.crank_deg % 360.0, 1))
+    if not 3 <= len(places) <= 40:
+        return
+    which = np.searchsorted(places, np.round(history.crank_deg % 360.0, 1))
+    one = (which[:, None] == np.arange(len(places))).astype(np.float64)
+    if len(places) > 7:
+        # With fewer positions the first three orders of the mesh say the same.
+        yield FreeForm("position offsets", "from position to position", lambda h: one)
+    yield FreeForm(
+        "compliance by position", "from position to position", lambda h: one * h.elastic_nm[:, None]
+    )

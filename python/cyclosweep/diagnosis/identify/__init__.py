@@ -1,0 +1,1 @@
+"""Which hypotheses a recording supports: joint fits, their evidence, the verdict."""

@@ -1,0 +1,294 @@
+"""Projected library scan: the evidence of every hypothesis after the model at hand is taken out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.library import Block, Library
+from cyclosweep.simulation.effects.history import Floats
+
+SEEN = 1e-4
+"""Share of a column's energy that must survive the projection for it to be testable."""
+
+
+def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
+    """Log evidence of a gain by a block of this projected rank, under an empirical-Bayes prior.
+
+    ``chi2/2 - k/2 - (k/2) ln(chi2/k)``, zero where the gain is below its expectation: the
+    likelihood ratio averaged over amplitudes of the best-fitting size.
+    """
+    chi2, rank = np.asarray(chi2, dtype=np.float64), np.asarray(rank, dtype=np.float64)
+    safe = np.maximum(chi2, 1e-12)
+    value = 0.5 * (chi2 - rank - rank * np.log(safe / np.maximum(rank, 1e-12)))
+    return np.where((chi2 > rank) & (rank > 0), value, 0.0)
+
+
+def price_of_vector(size: Floats, information: Floats) -> float:
+    """Log evidence that a vector of amplitudes costs, every direction as likely as any other.
+
+    The components are independent and normal beforehand, of the spread that suits them best. A
+    direction that must be met within a hair, as where one component shows a hundred times more
+    than the other, costs the odds against meeting it; a component that does not show at all costs
+    nothing.
+    """
+    strength, axes = np.linalg.eigh(information)
+    strength = np.maximum(strength, 0.0)
+    gain = strength * (axes.T @ size) ** 2
+    top = float(strength.max(initial=0.0))
+    if top == 0.0:
+        return 0.0
+    least = 1e-2 / top
+    spread2 = np.geomspace(least, max(10.0 * float(size @ size), 1e2 * least), 81)[:, None]
+    seen = 1.0 + spread2 * strength
+    return float(np.min(0.5 * np.sum(np.log(seen) + gain / seen, axis=1)))
+
+
+def price_of_choice(information: Floats, ranges: Floats) -> float:
+    """Log of how many values of some parameters a recording tells apart within their ranges.
+
+    Laplace's approximation: the range over the error; nothing for what it does not determine.
+    """
+    told = np.maximum(np.linalg.eigvalsh(information * np.outer(ranges, ranges)), 0.0)
+    return float(0.5 * np.sum(np.log1p(told / (2.0 * np.pi))))
+
+
+def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
+    """Twice the log-likelihood gained by taking chi2 away from an excess over pure noise.
+
+    The noise is known with so many degrees of freedom only, so gains count by the logarithm; they
+    add up over nested models, whatever the order.
+    """
+    before = np.log1p(np.maximum(excess, chi2) / freedom)
+    after = np.log1p(np.maximum(excess - chi2, 0.0) / freedom)
+    return np.asarray(freedom * (before - after))
+
+
+def average_evidence(values: Floats) -> float:
+    """Log of the average likelihood over shapes."""
+    top = float(values.max())
+    return top + float(np.log(np.mean(np.exp(values - top))))
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """Library projected on what the model at hand leaves free.
+
+    Attributes
+    ----------
+    library : Library
+    score : ndarray, shape (k,)
+        Product of each projected whitened column with the white residual.
+    gram : ndarray, shape (k, k)
+        Inner products of the projected columns.
+    energy : ndarray, shape (k,)
+        Inner products of the columns before the projection.
+    freedom : float
+        Degrees of freedom with which the noise is known.
+    excess : float
+        Chi-squared of the residual beyond what noise explains.
+    """
+
+    library: Library
+    score: Floats
+    gram: Floats
+    energy: Floats
+    freedom: float
+    excess: float = 0.0
+
+    @cached_property
+    def transforms(self) -> list[Floats]:
+        """Orthonormal coordinates of each block, shape (columns, rank)."""
+        out = []
+        for block in self.library.blocks:
+            part = slice(block.first, block.stop)
+            inner = self.gram[part, part]
+            out.append(_whitener(inner, self.energy[part]))
+        return out
+
+    @cached_property
+    def ranks(self) -> Floats:
+        """Projected rank of each block."""
+        return np.array([t.shape[1] for t in self.transforms], dtype=np.float64)
+
+    def gains(self, score: Floats) -> Floats:
+        """Chi-squared that each block takes away, shape (blocks,) or (blocks, draws)."""
+        out = np.zeros((len(self.library.blocks), *score.shape[1:]))
+        alone = self._single
+        if len(alone[0]):
+            index, column, factor, sign = alone
+            z = score[column] * factor.reshape((-1,) + (1,) * (score.ndim - 1))
+            wrong = sign.reshape((-1,) + (1,) * (score.ndim - 1)) * z < 0
+            out[index] = np.where(wrong, 0.0, z**2)
+        for k, block in enumerate(self.library.blocks):
+            transform = self.transforms[k]
+            if transform.shape[1] == 0 or block.stop - block.first == 1:
+                continue
+            part = score[block.first : block.stop]
+            gain = np.sum((transform.T @ part) ** 2, axis=0)
+            if np.any(block.signs):
+                amplitude = transform @ (transform.T @ part)
+                signs = block.signs.reshape((-1,) + (1,) * (score.ndim - 1))
+                gain = np.where(np.any(signs * amplitude < 0, axis=0), 0.0, gain)
+            out[k] = gain
+        return out
+
+    @cached_property
+    def _single(self) -> tuple[np.ndarray, np.ndarray, Floats, Floats]:
+        index, column, factor, sign = [], [], [], []
+        for k, block in enumerate(self.library.blocks):
+            if block.stop - block.first == 1 and self.transforms[k].shape[1] == 1:
+                index.append(k)
+                column.append(block.first)
+                factor.append(self.transforms[k][0, 0])
+                sign.append(block.signs[0])
+        return np.array(index, int), np.array(column, int), np.array(factor), np.array(sign)
+
+    @cached_property
+    def groups(self) -> dict[str, np.ndarray]:
+        """Blocks of each hypothesis that the recording can show."""
+        names = np.array([block.hypothesis for block in self.library.blocks])
+        found: dict[str, np.ndarray] = {}
+        for name in dict.fromkeys(names.tolist()):
+            members = np.flatnonzero((names == name) & (self.ranks > 0))
+            if len(members):
+                found[name] = members
+        return found
+
+    def evidences(self, gains: Floats) -> Floats:
+        """Evidence of each hypothesis averaged over its shapes, shape (hypotheses, ...)."""
+        ranks = self.ranks.reshape((-1,) + (1,) * (gains.ndim - 1))
+        each = evidence(gains, ranks)
+        rows = []
+        for members in self.groups.values():
+            part = each[members]
+            top = part.max(axis=0)
+            rows.append(top + np.log(np.mean(np.exp(part - top), axis=0)))
+        return np.array(rows)
+
+    @cached_property
+    def observed(self) -> Floats:
+        """Gain of each block on the recording."""
+        return likelihood_gain(self.gains(self.score), self.excess, self.freedom)
+
+    @cached_property
+    def by_hypothesis(self) -> dict[str, float]:
+        """Evidence of each hypothesis on the recording."""
+        values = self.evidences(self.observed)
+        return dict(zip(self.groups, map(float, values), strict=True))
+
+    def best_block(self, hypothesis: str) -> int:
+        """Index of the block with the largest evidence within a hypothesis."""
+        members = self.groups[hypothesis]
+        each = evidence(self.observed[members], self.ranks[members])
+        return int(members[int(np.argmax(each))])
+
+    @cached_property
+    def _root(self) -> Floats:
+        """Square root of the projected gram."""
+        # Far below what has to survive the projection, and enough to make it definite.
+        lifted = self.gram + np.diag(1e-4 * SEEN * self.energy + 1e-300)
+        try:
+            return np.asarray(np.linalg.cholesky(lifted))
+        except np.linalg.LinAlgError:
+            pass
+        values, vectors = np.linalg.eigh(self.gram)
+        keep = values > 1e-10 * max(values[-1], 1e-300)
+        return np.asarray(vectors[:, keep] * np.sqrt(values[keep]))
+
+    def draws(self, count: int, rng: np.random.Generator) -> Floats:
+        """Scores of recordings with nothing beyond the model at hand, shape (k, count)."""
+        root = self._root
+        score = root @ rng.standard_normal((root.shape[1], count))
+        if self.freedom < 1000:
+            score /= np.sqrt(rng.chisquare(self.freedom, count) / self.freedom)
+        return np.asarray(score)
+
+    def null_evidences(self, count: int, rng: np.random.Generator) -> Floats:
+        """Evidence of every hypothesis in recordings with nothing more to find.
+
+        Returns
+        -------
+        ndarray, shape (hypotheses, count)
+        """
+        parts = []
+        left = count
+        while left > 0:
+            part = min(left, 500)
+            gains = likelihood_gain(self.gains(self.draws(part, rng)), 0.0, self.freedom)
+            parts.append(self.evidences(gains))
+            left -= part
+        return np.concatenate(parts, axis=1)
+
+    def restricted(self, keep: Sequence[bool]) -> "Scan":
+        """Same scan on some of the blocks only."""
+        blocks, columns, first = [], [], 0
+        for block, kept in zip(self.library.blocks, keep, strict=True):
+            if not kept:
+                continue
+            width = block.stop - block.first
+            columns.append(np.arange(block.first, block.stop))
+            blocks.append(
+                Block(
+                    block.hypothesis,
+                    block.effect,
+                    block.shape,
+                    block.free,
+                    first,
+                    first + width,
+                    block.signs,
+                    block.scale,
+                )
+            )
+            first += width
+        index = np.concatenate(columns) if columns else np.zeros(0, dtype=int)
+        library = Library(tuple(blocks), self.library.columns[:, index], self.library.untestable)
+        return Scan(
+            library,
+            self.score[index],
+            self.gram[np.ix_(index, index)],
+            self.energy[index],
+            self.freedom,
+            self.excess,
+        )
+
+
+def _whitener(inner: Floats, energy: Floats) -> Floats:
+    """Matrix that turns a block's scores into independent unit-variance ones."""
+    if len(energy) == 1:
+        if energy[0] <= 0 or inner[0, 0] < SEEN * energy[0]:
+            return np.zeros((1, 0))
+        return np.array([[1.0 / np.sqrt(inner[0, 0])]])
+    scale = np.where(energy > 0, 1.0 / np.sqrt(np.maximum(energy, 1e-300)), 0.0)
+    values, vectors = np.linalg.eigh(inner * np.outer(scale, scale))
+    keep = values > SEEN
+    return np.asarray(scale[:, None] * vectors[:, keep] / np.sqrt(values[keep]))
+
+
+def scan(
+    library: Library,
+    whitened: Floats,
+    gram: Floats,
+    tangent: Floats,
+    residual: Floats,
+    freedom: float,
+    excess: float = 0.0,
+) -> Scan:
+    """Project the library's whitened columns off a tangent basis and score the residual.
+
+    Parameters
+    ----------
+    whitened : ndarray, shape (n, k)
+        Whitened columns of the library.
+    gram : ndarray, shape (k, k)
+        Their inner products.
+    tangent : ndarray, shape (n, q)
+        Orthonormal basis of the tangent space of the model at hand.
+    residual : ndarray, shape (n,)
+        White unit-variance residual of that model.
+    """
+    shadow = tangent.T @ whitened
+    projected = gram - shadow.T @ shadow
+    score = whitened.T @ residual - shadow.T @ (tangent.T @ residual)
+    return Scan(library, score, projected, np.diag(gram).copy(), freedom, excess)

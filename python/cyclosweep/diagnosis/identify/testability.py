@@ -1,0 +1,179 @@
+"""What a recording can show: absorbed share, smallest detectable size, and upper bounds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fit import Fit
+from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.simulation.effects.history import Floats
+
+HIDDEN = 0.9999
+"""An effect absorbed to this share by the calibration cannot be tested."""
+
+
+@dataclass(frozen=True, slots=True)
+class Testability:
+    """How well a recording shows one effect.
+
+    Attributes
+    ----------
+    name : str
+    absorbed_share : float
+        Share of the signature's energy that the calibration hides, for its clearest shape.
+    upper95_deg : float
+        95 % upper bound of its size after re-calibration [deg], over all shapes.
+    estimate_deg : float
+        Its best-fitting size [deg].
+    smallest_detectable_deg : float
+        Size found with 90 % power [deg], for its clearest shape.
+    p_value : float
+        Probability of as much evidence for anything when this model is all there is.
+    """
+
+    name: str
+    absorbed_share: float
+    upper95_deg: float
+    estimate_deg: float
+    smallest_detectable_deg: float
+    p_value: float
+
+
+ALWAYS_HIDDEN = (
+    (
+        "rig_compliance",
+        "a compliance of the rig in series is the drive's compliance",
+        "a rigid blank in place of the drive, on the same rig",
+    ),
+    (
+        "torque_offset",
+        "a constant error of the torque is a shift of the datum",
+        "a reading of the torque sensor without load",
+    ),
+    (
+        "torque_gain",
+        "a scale error of the torque is a change of the compliance",
+        "a calibrated weight on a known arm",
+    ),
+)
+"""Exact aliases of the calibration: name, reason, what would show them."""
+
+
+def testability(search: Search, node: Node, p_of: "dict[str, float]") -> list[Testability]:
+    """Judge every testable named effect against the residual of a node."""
+    fitted = node.fit
+    raw = _recalibration(node)(search.library.columns)
+    rest = node.rest
+    out: list[Testability] = []
+    accepted = set(fitted.names)
+    for name, members in rest.groups.items():
+        if rest.library.blocks[members[0]].effect is None or name in accepted:
+            continue
+        upper, estimate, detect, absorbed = 0.0, 0.0, np.inf, 1.0
+        best_gain = -1.0
+        for index in members:
+            block = rest.library.blocks[index]
+            part = slice(block.first, block.stop)
+            transform = rest.transforms[index]
+            z = transform.T @ rest.score[part]
+            rows = raw[:, part] @ transform
+            spreads = np.sqrt(np.sum(rows**2, axis=1))
+            shape = rows @ z
+            if np.any(block.signs * (transform @ z) < 0):
+                z, shape = 0.0 * z, 0.0 * shape
+            peak = float(np.max(np.abs(shape)))
+            upper = max(upper, float(np.max(np.abs(shape) + 1.645 * spreads)))
+            gain = float(z @ z)
+            if gain > best_gain:
+                best_gain, estimate = gain, peak
+            need = np.sqrt(2.0 * search.threshold) + 1.28
+            detect = min(detect, float(spreads.max()) * need / np.sqrt(transform.shape[1]))
+            before = float(np.sum(rest.energy[part]))
+            after = float(np.trace(rest.gram[part, part]))
+            absorbed = min(absorbed, 1.0 - after / max(before, 1e-300))
+        out.append(
+            Testability(
+                name, float(np.clip(absorbed, 0, 1)), upper, estimate, detect, p_of.get(name, 1.0)
+            )
+        )
+    return out
+
+
+def size_of(node: Node, index: int) -> Floats:
+    """Twist of a term after re-calibration, on the fitted rows [deg]."""
+    return _recalibration(node)(node.fit.contribution(index)[node.fit.problem.fitted])
+
+
+def spread_of_size(node: Node, index: int) -> float:
+    """Standard error of the largest twist of a term: of its amplitudes and its shape [deg]."""
+    fitted = node.fit
+    use = fitted.problem.fitted
+    recalibrated = _recalibration(node)
+
+    def twist(changed: Fit) -> Floats:
+        return recalibrated(changed.contribution(index)[use])
+
+    here = twist(fitted)
+    place = int(np.argmax(np.abs(here)))
+    spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    chosen = fitted.places_of(index)
+    slope = np.zeros(len(chosen))
+    for j, k in enumerate(chosen):
+        step = 0.1 * spread[k]
+        if step > 0 and np.isfinite(step):
+            slope[j] = (twist(fitted.moved(k, step))[place] - here[place]) / step
+    variance = float(slope @ fitted.covariance[np.ix_(chosen, chosen)] @ slope)
+    return float(np.sqrt(max(variance, 0.0)))
+
+
+def _recalibration(node: Node) -> Callable[[Floats], Floats]:
+    """What takes out of signatures on the fitted rows all that a calibration takes up."""
+    basis = orthonormal(_raw_base(node))
+    return lambda part: np.asarray(part - basis @ (basis.T @ part))
+
+
+def _raw_base(node: Node) -> Floats:
+    """Columns of the baseline on the fitted rows."""
+    problem = node.fit.problem
+    use = problem.fitted
+    history = node.fit.history
+    parts = [np.ones(int(use.sum())), history.applied_nm[use]]
+    if not problem.one_sided:
+        parts.append(history.side[use])
+    return np.column_stack(parts)
+
+
+def hidden_effects(search: Search) -> list[dict[str, str]]:
+    """Effects that this recording cannot show, with reason and remedy."""
+    out = [{"name": n, "reason": r, "needs": w} for n, r, w in ALWAYS_HIDDEN]
+    for name, reason in search.library.untestable.items():
+        out.append({"name": name, "reason": reason, "needs": NEEDS.get(name, "another programme")})
+    shown = set(search.root.rest.groups)
+    for name in {b.hypothesis for b in search.library.blocks if b.named} - shown:
+        out.append(
+            {
+                "name": name,
+                "reason": "the calibration of stiffness, play and datum hides all of it",
+                "needs": NEEDS.get(name, "another programme"),
+            }
+        )
+    return out
+
+
+NEEDS = {
+    "friction_hysteresis": "loading and unloading",
+    "load_dependent_friction": "loading and unloading to several amplitudes",
+    "contact_stiffening": "more samples at small load",
+    "clearance_takeup": "a wider range of torque",
+    "overload_softening": "loads beyond 2.5 times the nominal torque",
+    "datum_drift": "three or more runs without a reset between them",
+    "creep": "a clock, and holds at constant torque",
+    "phase_dependent_compliance": "runs at three or more recorded mesh positions",
+    "transmission_error": "runs at three or more recorded mesh positions",
+    "thermal_drift": "a recorded temperature that changes",
+    "viscous_drag": "a clock, and runs at different rates",
+    "load_asymmetry": "loading in both directions",
+    "dial_eccentricity": "twists over a good part of a turn of the dial",
+}

@@ -1,0 +1,77 @@
+"""Splitting a problem into parts to fit and parts to judge, always in whole blocks."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.prepare.problem import Problem, gaps
+from cyclosweep.simulation.effects.history import Flags
+
+FOLDS = 4
+
+
+def restrict(problem: Problem, noise: Noise, rows: Flags) -> tuple[Problem, Noise]:
+    """Return the problem and its noise with only these of the fitted rows fitted."""
+    kept = problem.fitted & rows
+    gap = gaps(kept, problem.history.run, problem.history.time_s)
+    part = replace(problem, fitted=kept, held_out=problem.fitted & ~rows, gap=gap)
+    return part, replace(noise, gap=gap[kept])
+
+
+def folds(problem: Problem) -> list[tuple[str, Flags]]:
+    """Blocks to leave out in turn: whole runs, dealt so that each block has large and small ones.
+
+    With fewer than four runs: consecutive stretches of the recording.
+    """
+    history = problem.history
+    use = problem.fitted
+    runs = np.unique(history.run[use])
+    if len(runs) >= FOLDS:
+        largest = [float(np.abs(history.applied_nm[use & (history.run == r)]).max()) for r in runs]
+        order = runs[np.argsort(largest, kind="stable")]
+        labels = recorded_runs(problem)
+        out = []
+        for k in range(FOLDS):
+            chosen = np.sort(order[k::FOLDS])
+            names = ", ".join(str(labels[r]) for r in chosen)
+            out.append((f"runs {names}", np.isin(history.run, chosen)))
+        return out
+    return stretches(problem, 2)
+
+
+def stretches(problem: Problem, each: int) -> list[tuple[str, Flags]]:
+    """Blocks to leave out in turn, each of so many consecutive stretches of the recording."""
+    use = problem.fitted
+    index = np.flatnonzero(use)
+    count = each * FOLDS
+    block = np.full(len(use), -1)
+    block[index] = np.arange(len(index)) * count // max(len(index), 1)
+    return [
+        (
+            f"every {FOLDS}th of {count} stretches from number {k + 1}",
+            (block >= 0) & (block % FOLDS == k),
+        )
+        for k in range(FOLDS)
+        if np.any(block % FOLDS == k)
+    ]
+
+
+def whole_stretches(problem: Problem, each: int = 4) -> list[tuple[str, Flags]]:
+    """Stretches of the fitted runs to leave out in turn, crossings of the dead zone included."""
+    index = np.flatnonzero(problem.whole_fitted)
+    block = np.full(len(problem.whole_fitted), -1)
+    block[index] = np.arange(len(index)) * (each * FOLDS) // max(len(index), 1)
+    return [
+        (
+            f"every {FOLDS}th of {each * FOLDS} stretches from number {k + 1}",
+            (block % FOLDS == k) & (block >= 0),
+        )
+        for k in range(FOLDS)
+    ]
+
+
+def recorded_runs(problem: Problem) -> list[int]:
+    """Numbers of the runs as recorded, by their index."""
+    run = problem.recording.run
+    return [int(v) for v in run[np.r_[True, np.diff(run) != 0]]]

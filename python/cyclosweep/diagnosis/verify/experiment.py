@@ -1,0 +1,212 @@
+"""The next experiment: the load programme from a menu that best separates what is left."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fit import Term
+from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.simulation.effects.history import Floats, History
+
+Load = tuple[Floats, Floats, Floats, Floats]
+"""Torque [N m], run, position [deg] and temperature [degC]."""
+
+STEP_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A load programme in words and the history it makes, for a largest torque."""
+
+    words: str
+    make: Callable[[float], Load]
+
+
+def _line(points: Sequence[float], seconds: float) -> Floats:
+    """Torque along straight ramps of equal duration."""
+    count = max(int(seconds / STEP_S / max(len(points) - 1, 1)), 4)
+    parts = [np.linspace(a, b, count, endpoint=False) for a, b in pairwise(points)]
+    return np.concatenate([*parts, [points[-1]]])
+
+
+def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0) -> Load:
+    """Torque, run, position and temperature of consecutive runs."""
+    run = np.concatenate([np.full(len(t), k, dtype=np.float64) for k, t in enumerate(torques)])
+    crank = np.concatenate([np.full(len(t), c) for t, c in zip(torques, cranks, strict=True)])
+    share = np.arange(len(run)) / max(len(run) - 1, 1)
+    return np.concatenate(torques), run, crank, 20.0 + warm * share
+
+
+def _nested(top: float) -> Load:
+    points = [0, top, -top, 0.6 * top, -0.4 * top, top, 0.4 * top, 0.8 * top, 0]
+    return _runs([_line(points, 500), _line(points, 500)], [0, 0])
+
+
+def _rates(top: float) -> Load:
+    points = [0, top, -top, 0]
+    return _runs([_line(points, s) for s in (60, 200, 700)], [0, 0, 0])
+
+
+def _holds(top: float) -> Load:
+    up, down = _line([0, top], 40), _line([top, 0], 40)
+    path = np.concatenate([up, np.full(300, top), down, np.full(200, 0.02 * top)])
+    return _runs([path, -path], [0, 0])
+
+
+def _places(top: float) -> Load:
+    points = [0, top, -top, 0]
+    spots = [0, 45, 90, 135, 180, 225, 270, 315]
+    return _runs([_line(points, 120) for _ in spots], spots)
+
+
+def _returns(top: float) -> Load:
+    points = [0, 0.5 * top, -0.5 * top, 0]
+    spots = [0, 120, 240, 0, 120, 240, 0, 120]
+    return _runs([_line(points, 120) for _ in spots], spots, warm=4.0)
+
+
+def _soak(top: float) -> Load:
+    points = [0, 0.3 * top, -0.3 * top, 0]
+    return _runs([_line(points, 120) for _ in range(8)], [0] * 8, warm=10.0)
+
+
+def _ladder(top: float) -> Load:
+    return _runs(
+        [_line([0, s * top, -s * top, 0], 150) for s in (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)], [0] * 6
+    )
+
+
+def _wide(top: float) -> Load:
+    return _runs([_line([0, 1.4 * top, -1.4 * top, 0], 600) for _ in range(2)], [0, 0])
+
+
+MENU: tuple[Plan, ...] = (
+    Plan("nested and biased loops to the largest torque, twice", _nested),
+    Plan("the same loop at three rates, one to ten", _rates),
+    Plan("holds of five minutes at full load and without load, both directions", _holds),
+    Plan("the same loop at eight positions of the mesh zone", _places),
+    Plan("small loops returning to three positions while the rig warms up by 4 K", _returns),
+    Plan("small loops at one position while the rig warms up by 10 K", _soak),
+    Plan("loops of growing amplitude, then a small one again", _ladder),
+    Plan("two loops to 1.4 times the largest torque", _wide),
+)
+
+
+def next_experiment(
+    search: Search, rivals: list[Node], weakest: str | None, tolerance_deg: float
+) -> dict[str, object]:
+    """Choose the programme that separates the best two explanations, or shows the weakest effect.
+
+    Returns
+    -------
+    dict
+        ``program``, ``separates``, ``detectability`` (projected signal-to-noise of what tells the
+        two apart) and ``minutes``.
+    """
+    terms = _contested(rivals)
+    if terms:
+        first, second = terms
+        names = [first[0], second[0]]
+    elif weakest is not None:
+        names = [weakest]
+    else:
+        return {"program": "none needed", "separates": [], "detectability": None, "minutes": 0}
+    best: tuple[float, Plan, int] | None = None
+    for plan in MENU:
+        history = _history(search, plan)
+        try:
+            value = _detectability(search, history, terms, weakest, tolerance_deg)
+        except (ValueError, AssertionError, KeyError):
+            continue
+        if np.isfinite(value) and (best is None or value > 1.05 * best[0]):
+            best = (value, plan, len(history))
+    if best is None:
+        return {"program": MENU[0].words, "separates": names, "detectability": None, "minutes": 20}
+    value, plan, rows = best
+    minutes = int(np.ceil(rows * STEP_S / 60.0)) + 5
+    return {
+        "program": plan.words,
+        "separates": names,
+        "detectability": round(float(value), 2),
+        "minutes": minutes,
+    }
+
+
+def _contested(rivals: list[Node]) -> list[tuple[str, list[Term], Node]]:
+    """Terms in which the two best explanations differ."""
+    if len(rivals) < 2:
+        return []
+    out = []
+    for node, other in ((rivals[0], rivals[1]), (rivals[1], rivals[0])):
+        own = [t for t in node.fit.terms if t.name not in other.names]
+        if any(t.effect is None for t in own):
+            return []
+        out.append(("+".join(t.name for t in own) or "nothing more", own, node))
+    return out
+
+
+def _history(search: Search, plan: Plan) -> History:
+    base = search.root.fit.history
+    torque, run, crank, warm = plan.make(base.largest_torque_nm)
+    side = np.where(torque < 0, -1.0, 1.0)
+    angle = base.datum_deg + side * base.free_play_deg + base.compliance_deg_per_nm * torque
+    index = run.astype(np.int64)
+    return base.with_state(
+        applied_nm=torque,
+        elastic_nm=torque,
+        angle_deg=angle,
+        side=side,
+        run=index,
+        restart=np.r_[True, np.diff(index) != 0],
+        time_s=np.arange(len(torque)) * STEP_S + 200.0 * index,
+        crank_deg=crank,
+        temperature_c=warm,
+        resets_datum=False,
+    )
+
+
+def _detectability(
+    search: Search,
+    history: History,
+    terms: list[tuple[str, list[Term], Node]],
+    weakest: str | None,
+    tolerance_deg: float,
+) -> float:
+    base = np.column_stack([np.ones(len(history)), history.applied_nm, history.side])
+    sigma = search.noise.sigma_deg
+    if terms:
+        first = np.zeros(len(history))
+        for term in terms[0][1]:
+            first += _twist(terms[0][2], term, history)
+        second = [t.columns(history) for t in terms[1][1]]
+        known = orthonormal(np.column_stack([base, *second]), 1e-9)
+        return float(np.linalg.norm(first - known @ (known.T @ first)) / sigma)
+    from cyclosweep.simulation.effects import find
+
+    assert weakest is not None
+    effect = find(weakest)
+    if effect.untestable(history) is not None:
+        return -np.inf
+    known = orthonormal(base, 1e-9)
+    values = []
+    for shape in effect.shapes(history):
+        column = effect.columns(history, shape)[:, 0]
+        left = column - known @ (known.T @ column)
+        peak = float(np.max(np.abs(left)))
+        if peak > 0:
+            values.append(np.linalg.norm(left) / peak * tolerance_deg / sigma)
+    return float(np.median(values)) if values else -np.inf
+
+
+def _twist(node: Node, term: Term, history: History) -> Floats:
+    """Twist of a fitted term on another history."""
+    columns = term.columns(history)
+    if term.slips:
+        return np.asarray(columns[:, 0] * term.amplitude)
+    index = next(k for k, t in enumerate(node.fit.terms) if t.name == term.name)
+    beta = node.fit.beta[node.fit.column_range(index)]
+    width = min(columns.shape[1], len(beta))
+    return np.asarray(columns[:, :width] @ beta[:width])

@@ -1,0 +1,77 @@
+"""Synthetic twins of this very recording: how often the search errs on it, and how often not."""
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.scan import likelihood_gain
+from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.simulation.effects.history import Floats
+
+TWINS = 300
+
+
+def self_check(search: Search, best: Node | None, rivals: list[Node]) -> dict[str, object]:
+    """False-alarm rate, power and confusion on twins of the recording.
+
+    Twins have this recording's programme and noise, and nothing, the found effect, or a rival
+    beyond the baseline. They are drawn on the projected problem, one accepted effect at a time.
+
+    Returns
+    -------
+    dict
+        ``false_alarm``, ``power`` and ``confusion`` (true name -> named -> share).
+    """
+    rng = np.random.default_rng([search.seed, 3])
+    nothing = search.alarm.null(search.root.rest, rng, 2 * TWINS)
+    out: dict[str, object] = {
+        "false_alarm": float(np.mean(nothing > search.threshold)),
+        "power": None,
+        "confusion": {},
+        "twins": TWINS,
+    }
+    if best is None:
+        return out
+    confusion: dict[str, dict[str, float]] = {}
+    powers = []
+    for number, node in enumerate([best, *rivals]):
+        for index, term in enumerate(node.fit.terms):
+            parent = search.nodes.get(node.names - {term.name}, search.root)
+            if len(node.names) > 1 and parent is search.root:
+                continue
+            if term.name in confusion:
+                continue
+            power, row = _twins(search, parent, node, index, rng)
+            confusion[term.name] = row
+            if number == 0:
+                powers.append(power)
+    out["power"] = float(min(powers)) if powers else None
+    out["confusion"] = confusion
+    return out
+
+
+def _twins(
+    search: Search, parent: Node, node: Node, index: int, rng: np.random.Generator
+) -> tuple[float, dict[str, float]]:
+    """Power, and the share of twins in which each hypothesis comes out on top."""
+    signal = _whitened_signal(search, parent, node, index)
+    tangent = parent.fit.tangent
+    left = signal - tangent @ (tangent.T @ signal)
+    rest = parent.rest
+    score = rest.draws(TWINS, rng) + (search.whitened.T @ left)[:, None]
+    excess = float(left @ left)
+    gains = likelihood_gain(rest.gains(score), excess, search.noise.freedom)
+    names = np.array(list(rest.groups))
+    start = np.array([search.alarm.start.get(str(name), 0.0) for name in names])
+    values = rest.evidences(gains) - start[:, None]
+    found = values.max(axis=0) > search.threshold
+    top = names[np.argmax(values, axis=0)]
+    row = {str(name): float(np.mean(found & (top == name))) for name in np.unique(top[found])}
+    row["nothing"] = float(np.mean(~found))
+    return float(np.mean(found)), dict(sorted(row.items(), key=lambda item: -item[1]))
+
+
+def _whitened_signal(search: Search, parent: Node, node: Node, index: int) -> Floats:
+    """Whitened twist of one term, on the fitted rows."""
+    use = search.problem.fitted
+    part = node.fit.contribution(index)[use]
+    _, weight = search.noise.residual(search.problem.angle_deg[use], node.fit.mean_deg[use])
+    return search.noise.design(part, weight)

@@ -1,0 +1,382 @@
+"""Fit of a model that predicts the whole loop, the crossings of the dead zone included.
+
+Everywhere else the flank in contact is told by the recording. A forecast has to find it: the shaft
+leaves a flank where the torque no longer overcomes friction, and that place, not the slope, decides
+most of a forecast's error. Here the simulation itself is fitted to all rows, so that what is
+written to ``model.json`` is what was fitted.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from cyclosweep.diagnosis.identify.fit import Slot, Term, slots_of
+from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.simulation.effects.base import Parameter
+from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.simulate import EffectValue, Model, settle
+
+ROUNDS = 4
+"""Rounds of effects that depend on more than the elastic torque, while fitting."""
+BLUR = 0.01
+"""Blur of the last stage, see `fit_forecast`."""
+STEP = 0.02
+"""Step of a difference quotient in units of a parameter's scale: over several rows of a crossing,
+which a smaller step would see either jump or stand."""
+GROWTH = Parameter("growth", "", "power by which presliding distances grow with the limit")
+LEAST = 1e-6
+PIECES = 40.0
+"""Rough number of independent pieces of a structured residual, by which parameters are charged."""
+
+
+@dataclass(frozen=True, slots=True)
+class Knob:
+    """One parameter of the simulation: where it sits, its bounds and its scale."""
+
+    kind: str
+    term: int
+    name: str
+    lower: float
+    upper: float
+    scale: float
+    parameter: Parameter
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """A simulation fitted to all rows.
+
+    Attributes
+    ----------
+    model : Model
+    terms : tuple of Term
+        Its effects as terms of a structure.
+    history : History
+        All rows with the predicted path.
+    values : ndarray
+        Parameters in the fit's own scale, in the order of ``knobs``.
+    jacobian : ndarray, shape (rows, p)
+        Derivative of the prediction on the fitted rows [deg].
+    error_deg : float
+        Root mean square on the fitted rows [deg].
+    """
+
+    problem: Problem
+    model: Model
+    terms: tuple[Term, ...]
+    knobs: tuple[Knob, ...]
+    values: Floats
+    history: History
+    jacobian: Floats
+    rows: Flags
+
+    @property
+    def angle_deg(self) -> Floats:
+        """Predicted twist of all rows [deg]."""
+        return self.history.angle_deg
+
+    @cached_property
+    def error_deg(self) -> float:
+        """Root mean square on the fitted rows [deg]."""
+        return rms(self.problem, self.angle_deg, self.rows)
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """Covariance of the parameters in the fit's own scale.
+
+        The residual repeats itself along the loop, so it tells far less than its rows.
+        """
+        scale = np.linalg.norm(self.jacobian, axis=0)
+        scale = np.where(scale > 0, scale, 1.0)
+        gram = (self.jacobian / scale).T @ (self.jacobian / scale)
+        inner = np.linalg.pinv(gram, rcond=1e-8, hermitian=True) / np.outer(scale, scale)
+        repeated = max(len(self.jacobian) / PIECES, 1.0)
+        return np.asarray(inner * self.error_deg**2 * repeated)
+
+    def slope(self, knob: int, path: Callable[[Problem, Model], History]) -> Floats:
+        """Derivative by a parameter of the twist along a path of all rows."""
+        step = STEP * self.knobs[knob].scale
+        if self.values[knob] + step > self.knobs[knob].upper:
+            step = -step
+        ahead = self.values.copy()
+        ahead[knob] += step
+        turned, _ = _turned(self.knobs, ahead, self.model, self.terms)
+        there, here = path(self.problem, turned), path(self.problem, self.model)
+        return np.asarray((there.angle_deg - here.angle_deg) / step)
+
+    @property
+    def has_zero(self) -> bool:
+        """Whether the reading of torque without load was fitted."""
+        return any(knob.kind == "zero" for knob in self.knobs)
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of the effects."""
+        return frozenset(term.name for term in self.terms)
+
+
+def rms(problem: Problem, angle_deg: Floats, rows: Flags) -> float:
+    """Root mean square of measured less predicted [deg]."""
+    difference = (problem.angle_deg - angle_deg)[rows]
+    if not len(difference):
+        return float("nan")
+    return float(np.sqrt(np.average(difference**2, weights=problem.weight[rows])))
+
+
+def model_of(
+    problem: Problem,
+    terms: Sequence[Term],
+    amplitudes: Sequence[Sequence[float]],
+    *,
+    compliance: float,
+    play: float,
+    datum: float,
+    zero: float = 0.0,
+) -> Model:
+    """Model of a structure with these parameters."""
+    return Model(
+        compliance_deg_per_nm=compliance,
+        free_play_deg=play,
+        datum_deg=datum,
+        torque_zero_nm=zero,
+        side=problem.recording.side,
+        effects=tuple(
+            EffectValue(t.name, dict(t.shape), tuple(map(float, a)))
+            for t, a in zip(terms, amplitudes, strict=True)
+        ),
+        output_pin_count=problem.history.output_pin_count,
+    )
+
+
+def start(problem: Problem) -> Model:
+    """Spring and play as read off the recording."""
+    history = problem.history
+    return model_of(
+        problem,
+        (),
+        (),
+        compliance=history.compliance_deg_per_nm,
+        play=max(history.free_play_deg, 0.0),
+        datum=history.datum_deg,
+    )
+
+
+def run(problem: Problem, model: Model, rounds: int = ROUNDS) -> History:
+    """Path of the shaft by a model along all rows of a problem."""
+    return settle(model, at_start(problem.history, model), rounds)
+
+
+def at_start(history: History, model: Model, side: Floats | None = None) -> History:
+    """Load history with the torque's zero taken out, in the state of the model's line alone.
+
+    ``side`` is the flank in contact, where a recording tells it.
+    """
+    applied = history.applied_nm - model.torque_zero_nm
+    side = np.where(applied >= 0, 1.0, -1.0) if side is None else side
+    return history.with_state(
+        applied_nm=applied,
+        elastic_nm=applied,
+        angle_deg=model.datum_deg
+        + side * model.free_play_deg
+        + model.compliance_deg_per_nm * applied,
+        side=side,
+        compliance_deg_per_nm=model.compliance_deg_per_nm,
+        free_play_deg=model.free_play_deg,
+        datum_deg=model.datum_deg,
+    )
+
+
+def knobs_of(problem: Problem, model: Model, terms: Sequence[Term], zero: bool) -> list[Knob]:
+    """Parameters of a structure that a fit turns."""
+    top, twist = problem.history.largest_torque_nm, problem.history.largest_twist_deg
+    span = float(np.ptp(problem.angle_deg))
+    nothing = Parameter("", "", "")
+    knobs = [
+        Knob("datum", -1, "datum", -np.inf, np.inf, 0.2 * span, nothing),
+        Knob("compliance", -1, "compliance", -12.0, 12.0, 1.0, nothing, True),
+    ]
+    if not problem.one_sided:
+        knobs.append(
+            Knob("play", -1, "play", np.log(1e-4 * span), np.log(span), 1.0, nothing, True)
+        )
+    if zero:
+        knobs.append(Knob("zero", -1, "zero", -0.3 * top, 0.3 * top, 0.1 * top, nothing))
+    first = next((k for k, term in enumerate(terms) if term.slips), None)
+    if first is not None and "growth" in terms[first].shape:
+        knobs.append(Knob("growth", first, "growth", 0.0, 1.0, 1.0, GROWTH))
+    slots: tuple[Slot, ...] = slots_of(terms, problem)
+    for slot in slots:
+        lower, upper = slot.inward(slot.parameter.lower), slot.inward(slot.parameter.upper)
+        if slot.name == "amplitude":
+            lower = max(lower, 0.0)
+            size = 1.0 if upper <= 1.0 else 0.1 * top
+        else:
+            size = 1.0 if slot.parameter.logarithmic else 0.5 * min(upper - lower, 2.0 * top)
+        knobs.append(
+            Knob(
+                "slot", slot.term, slot.name, lower, upper, size, slot.parameter,
+                slot.parameter.logarithmic,
+            )
+        )  # fmt: skip
+    for index, term in enumerate(terms):
+        if term.slips or term.effect is None:
+            continue
+        columns = term.columns(problem.history)
+        for place, parameter in enumerate(term.effect.amplitudes(term.shape)):
+            largest = float(np.abs(columns[:, place]).max(initial=0.0)) or 1.0
+            knobs.append(
+                Knob(
+                    "amplitude", index, str(place), parameter.lower, parameter.upper,
+                    0.5 * twist / largest, parameter,
+                )
+            )  # fmt: skip
+    return knobs
+
+
+def _values(knobs: Sequence[Knob], model: Model, terms: Sequence[Term]) -> Floats:
+    base = {
+        "datum": model.datum_deg,
+        "compliance": model.compliance_deg_per_nm,
+        "play": model.free_play_deg,
+        "zero": model.torque_zero_nm,
+    }
+    out = []
+    for knob in knobs:
+        if knob.kind in base:
+            value = base[knob.kind]
+        elif knob.kind == "amplitude":
+            value = model.effects[knob.term].amplitudes[int(knob.name)]
+        elif knob.name == "amplitude":
+            value = model.effects[knob.term].amplitudes[0]
+        else:
+            value = float(terms[knob.term].shape[knob.name])
+        out.append(np.log(max(value, 1e-300)) if knob.logarithmic else value)
+    return np.array(out, dtype=np.float64)
+
+
+def _turned(
+    knobs: Sequence[Knob], values: Floats, model: Model, terms: Sequence[Term]
+) -> tuple[Model, tuple[Term, ...]]:
+    """Model and terms with the parameters at these values."""
+    base = {"datum": model.datum_deg, "compliance": model.compliance_deg_per_nm}
+    base |= {"play": model.free_play_deg, "zero": model.torque_zero_nm}
+    shapes = [dict(term.shape) for term in terms]
+    amplitudes = [list(value.amplitudes) for value in model.effects]
+    for knob, inner in zip(knobs, values, strict=True):
+        value = float(np.exp(inner)) if knob.logarithmic else float(inner)
+        if knob.kind in base:
+            base[knob.kind] = value
+        elif knob.kind == "amplitude":
+            amplitudes[knob.term][int(knob.name)] = value
+        elif knob.name == "amplitude":
+            amplitudes[knob.term][0] = value
+        else:
+            shapes[knob.term][knob.name] = value
+    slide = next((k for k, term in enumerate(terms) if term.slips), None)
+    for k, term in enumerate(terms):
+        if term.slips and slide is not None:
+            shapes[k] = dict(shapes[slide])
+    turned = tuple(
+        replace(term, shape=shape, amplitude=amplitude[0] if term.slips else term.amplitude)
+        for term, shape, amplitude in zip(terms, shapes, amplitudes, strict=True)
+    )
+    changed = replace(
+        model,
+        compliance_deg_per_nm=base["compliance"],
+        free_play_deg=base["play"],
+        datum_deg=base["datum"],
+        torque_zero_nm=base["zero"],
+        effects=tuple(
+            EffectValue(t.name, shape, tuple(amplitude))
+            for t, shape, amplitude in zip(terms, shapes, amplitudes, strict=True)
+        ),
+    )
+    return changed, turned
+
+
+def fit_forecast(
+    problem: Problem,
+    model: Model,
+    terms: Sequence[Term],
+    *,
+    zero: bool,
+    rows: Flags | None = None,
+    most: int = 25,
+    blur: float = 0.0,
+) -> Forecast:
+    """Fit a simulation to rows, starting from a model of the same structure.
+
+    Parameters
+    ----------
+    model : Model
+        Starting values, its effects in the order of ``terms``.
+    zero : bool
+        Whether the reading of torque without load is fitted.
+    rows : ndarray of bool, optional
+        Rows to fit; default: all that count, crossings included.
+    most : int
+        Most iterations.
+    blur : float
+        Share of the largest torque by which the torque is also shifted up and down: a crossing
+        that fits by the accident of one row then counts for less.
+    """
+    rows = problem.whole_fitted if rows is None else rows
+    terms = tuple(terms)
+    knobs = knobs_of(problem, model, terms, zero)
+    weight = np.sqrt(problem.weight[rows] / problem.weight[rows].mean())
+    measured = problem.angle_deg[rows]
+    lower = np.array([k.lower for k in knobs])
+    upper = np.array([k.upper for k in knobs])
+    scale = np.array([k.scale for k in knobs])
+    room = np.minimum(upper - lower, 1e6)
+    first = np.clip(_values(knobs, model, terms), lower + LEAST * room, upper - LEAST * room)
+
+    top = problem.history.largest_torque_nm
+    shifts = (0.0,) if blur == 0.0 else (0.0, -blur * top, blur * top)
+
+    def residual(values: Floats) -> Floats:
+        turned, _ = _turned(knobs, values, model, terms)
+        parts = []
+        for shift in shifts:
+            shifted = replace(turned, torque_zero_nm=turned.torque_zero_nm + shift)
+            parts.append((run(problem, shifted).angle_deg[rows] - measured) * weight)
+        return np.asarray(np.concatenate(parts) / np.sqrt(len(shifts)))
+
+    def slopes(values: Floats) -> Floats:
+        at = residual(values)
+        out = np.empty((len(at), len(values)))
+        for k in range(len(values)):
+            step = STEP * scale[k]
+            if values[k] + step > upper[k]:
+                step = -step
+            ahead = values.copy()
+            ahead[k] += step
+            out[:, k] = (residual(ahead) - at) / step
+        return out
+
+    found = least_squares(
+        residual, first, jac=slopes, bounds=(lower, upper), x_scale=scale, max_nfev=most,
+        ftol=1e-4, xtol=1e-4,
+    )  # fmt: skip
+    turned, shaped = _turned(knobs, found.x, model, terms)
+    return Forecast(
+        problem=problem,
+        model=turned,
+        terms=shaped,
+        knobs=tuple(knobs),
+        values=found.x,
+        history=run(problem, turned, 12),
+        jacobian=np.asarray(found.jac)[: len(weight)] * np.sqrt(len(shifts)) / weight[:, None],
+        rows=rows,
+    )
+
+
+def refit(known: Forecast, *, rows: Flags | None = None, most: int) -> Forecast:
+    """Fit the same structure again, on other rows or for longer."""
+    return fit_forecast(
+        known.problem, known.model, known.terms, zero=known.has_zero, rows=rows, most=most
+    )

@@ -1,0 +1,144 @@
+"""What every effect is: physics in words, its parameters, and its response to a load history."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cyclosweep.simulation.effects.history import Flags, Floats, History
+
+Shape = Mapping[str, float]
+"""Values of the parameters that enter an effect's response nonlinearly, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of an effect: what it means, in what unit, and where it can lie."""
+
+    name: str
+    unit: str
+    meaning: str
+    lower: float = -np.inf
+    upper: float = np.inf
+    logarithmic: bool = False
+
+
+class Effect:
+    """A kind of physics that the published model leaves out.
+
+    A subclass states the physics and gives its response as columns that enter the twist linearly,
+    for any value of the shape parameters. Registering an instance with
+    `cyclosweep.simulation.effects.register` is all it takes to have a new effect diagnosed.
+
+    Attributes
+    ----------
+    name, physics, source, tell_tale : str
+        Name in the vocabulary; two sentences; literature; what betrays it in a recording.
+    family : str
+        Class of look-alikes, named in the report where the recording cannot go further.
+    needs : tuple of str
+        Columns without which the effect cannot be tested.
+    shape_parameters : tuple of Parameter
+        Parameters that enter nonlinearly and are refined by the fit.
+    slips : bool
+        The effect is a friction torque on slip elements, solved in the angle.
+    elastic : bool
+        The twist is a function of the elastic torque alone: part of the drive's elastic law.
+    dense : bool
+        The grid of shapes stands for what is believed of them beforehand: they weigh the same, and
+        the evidence is averaged over them.
+    vector : bool
+        The amplitudes are the components of one vector of unknown direction.
+    """
+
+    name: ClassVar[str]
+    physics: ClassVar[str]
+    source: ClassVar[str]
+    tell_tale: ClassVar[str]
+    family: ClassVar[str]
+    needs: ClassVar[tuple[str, ...]] = ()
+    shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
+    slips: ClassVar[bool] = False
+    elastic: ClassVar[bool] = False
+    dense: ClassVar[bool] = False
+    vector: ClassVar[bool] = False
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Grid of shapes over which the effect is looked for in this recording."""
+        raise NotImplementedError
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Twist for unit amplitudes [deg], one column an amplitude.
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        raise NotImplementedError
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Parameters that multiply the columns, with their signs as bounds."""
+        raise NotImplementedError
+
+    def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Shapes alike at first sight, between which only a joint fit decides."""
+        return [shape]
+
+    def caution(self, shape: Shape) -> float:
+        """Log prior odds against a shape so free that it holds other effects whole [nat]."""
+        return 0.0
+
+    def expected(self, history: History, shape: Shape) -> Floats | None:
+        """Size that amplitudes are expected to have, which holds those that nothing else holds.
+
+        None where nothing is expected.
+        """
+        return None
+
+    def portable(
+        self, history: History, shape: Shape, amplitudes: Floats
+    ) -> tuple[Shape, Sequence[float]]:
+        """Shape and amplitudes by which another programme can be predicted."""
+        return shape, amplitudes.tolist()
+
+    def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
+        """Shape in which what follows from the amplitudes agrees with them."""
+        return shape
+
+    def telling(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
+        """Whether what was found is this effect's own, and not just any shape of its class."""
+        return True
+
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Shape with what a search found besides it; None where the effect cannot hold both."""
+        return None
+
+    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Shape without the parts whose amplitudes have the wrong sign; None if none is left."""
+        return None
+
+    def untestable(self, history: History) -> str | None:
+        """Reason why this recording cannot show the effect; None where it can."""
+        labels = {
+            "time_s": "a clock",
+            "crank_deg": "the position of the mesh zone",
+            "temperature_c": "a temperature",
+        }
+        for column in self.needs:
+            if getattr(history, column) is None:
+                return f"the recording has no {column}: it needs {labels[column]}"
+        return None
+
+
+def listed(name: str, values: Iterable[float], most: int = 4) -> Shape | None:
+    """Shape ``name_1 ... name_k`` of distinct values in order; None for none or too many."""
+    distinct = sorted(set(map(float, values)))
+    if not 0 < len(distinct) <= most:
+        return None
+    return {name.format(k): value for k, value in enumerate(distinct, 1)}
+
+
+def spread(values: Floats) -> float:
+    """Range of values; zero where there are none."""
+    return float(np.ptp(values)) if len(values) else 0.0

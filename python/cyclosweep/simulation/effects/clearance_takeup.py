@@ -1,0 +1,84 @@
+"""Pins or teeth with unequal clearances come into contact one after another."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, listed
+from cyclosweep.simulation.effects.history import Flags, Floats, History
+
+FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
+"""Loads of first engagement, and ranges, in which it is looked for, over the largest load."""
+
+
+class ClearanceTakeup(Effect):
+    """Compliance that drops while further pins engage, between two loads.
+
+    Below `first_nm` the first pins carry alone; up to `first_nm + range_nm` the others engage, and
+    the compliance falls by the amplitude. A range of zero is a single kink. Clearances are small
+    against the elastic twist and differ from pin to pin, so the first engagement lies in the lower
+    half of the range, and the others follow over a part of it or all; one kink far up is what a
+    sensor at its limit shows.
+    """
+
+    name = "clearance_takeup"
+    physics = (
+        "Pins or teeth with larger clearance join in only after some twist. Each one that engages "
+        "drops the slope of the curve by a step."
+    )
+    source = "Kumar et al. 2016, section 4 (pins that come to carry one after another)"
+    tell_tale = "slope drops in steps at certain twists"
+    family = "smooth odd curve"
+    elastic = True
+    dense = True
+    shape_parameters = (
+        Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
+        Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
+    )
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Loads of first engagement and ranges, as shares of the largest load."""
+        top = history.largest_torque_nm
+        return [
+            {"first_nm": first * top, "range_nm": width * top}
+            for first in np.linspace(*FIRST, 8)
+            for width in np.linspace(*WIDTH, 6)
+        ]
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Twist lost for a unit drop of compliance [deg]."""
+        load, side = history.load_nm, history.side
+        if "first_nm" not in shape:
+            return np.column_stack(
+                [-side * np.maximum(load - kink, 0.0) for kink in shape.values()]
+            )
+        first, width = shape["first_nm"], max(shape["range_nm"], 1e-9)
+        begun = np.maximum(load - first, 0.0)
+        done = np.maximum(load - first - width, 0.0)
+        return np.asarray(-side * (begun**2 - done**2) / (2 * width))[:, None]
+
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Kinks of both; a range of engagement becomes a kink at either end."""
+        return listed("kink_{}_nm", [*_kinks(shape), *_kinks(found)])
+
+    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Kinks at which the slope drops."""
+        if "first_nm" in shape:
+            return None
+        kept = [kink for kink, w in zip(shape.values(), wrong, strict=True) if not w]
+        return listed("kink_{}_nm", kept)
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Compliance lost by the engagement."""
+        count = 1 if "first_nm" in shape else len(shape)
+        return tuple(
+            Parameter(f"compliance_drop_{k}", "deg/(N m)", "compliance lost by engagement", 0.0)
+            for k in range(1, count + 1)
+        )
+
+
+def _kinks(shape: Shape) -> list[float]:
+    """Loads at which the slope drops."""
+    if "first_nm" not in shape:
+        return list(shape.values())
+    return [shape["first_nm"], shape["first_nm"] + shape["range_nm"]]

@@ -1,0 +1,79 @@
+"""Delayed elasticity under held or changing load."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+import cyclosweep._core as _core
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, listed, spread
+from cyclosweep.simulation.effects.history import Flags, Floats, History
+
+FEWEST_STEPS = 3.0
+"""Steps between samples below which a delay cannot be told from drag."""
+
+
+class Creep(Effect):
+    """Kelvin-Voigt elements in series: their twist follows the torque with time constants.
+
+    One element with a free time constant, or a spectrum of fixed ones, as real materials show.
+    """
+
+    name = "creep"
+    physics = (
+        "Plastic parts, bushes and lubricated contacts give way with delay. The delayed twist "
+        "follows the load with a time constant and recovers when the load is gone."
+    )
+    source = "Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, 1976"
+    tell_tale = "angle goes on moving at constant torque; recovers"
+    family = "relaxation"
+    needs = ("time_s",)
+    shape_parameters = (
+        Parameter("time_constant_s", "s", "time constant of the delayed twist", 1e-6, 1e9, True),
+    )
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Time constants from a few samples to the length of the longest run."""
+        assert history.time_s is not None
+        starts = history.run_starts
+        stops = np.r_[starts[1:], len(history)]
+        longest = max(spread(history.time_s[a:b]) for a, b in zip(starts, stops, strict=True))
+        shortest = min(max(FEWEST_STEPS * history.usual_step_s, longest / 2000.0), longest / 4.0)
+        if not longest > 0:
+            return []
+        single: list[Shape] = [
+            {"time_constant_s": float(t)} for t in np.geomspace(shortest, longest, 8)
+        ]
+        series = np.geomspace(shortest, longest, 6)
+        spectra = (series[1:4:2], series[1:5], series[2:6])
+        return single + [
+            {f"tau_{k}_s": float(t) for k, t in enumerate(spectrum, 1)} for spectrum in spectra
+        ]
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Delayed twist for a delayed compliance of 1 deg/(N m) [deg]."""
+        assert history.time_s is not None
+        return np.column_stack(
+            [
+                _core.creep_state(history.elastic_nm, history.time_s, history.restart, float(tau))
+                for tau in shape.values()
+            ]
+        )
+
+    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+        """Time constants of both."""
+        return listed("tau_{}_s", [*shape.values(), *found.values()], most=5)
+
+    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Time constants of positive weight."""
+        return listed("tau_{}_s", [v for v, w in zip(shape.values(), wrong, strict=True) if not w])
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Delayed compliance, one a time constant."""
+        if "time_constant_s" in shape:
+            return (
+                Parameter("delayed_compliance", "deg/(N m)", "compliance that comes late", 0.0),
+            )
+        return tuple(
+            Parameter(f"delayed_compliance_{k}", "deg/(N m)", f"compliance after {tau:.3g} s", 0.0)
+            for k, tau in enumerate(shape.values(), 1)
+        )

@@ -1,0 +1,60 @@
+"""Angle sensor mounted off centre: an error periodic in the indicated angle itself."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, spread
+from cyclosweep.simulation.effects.history import Floats, History
+
+PHASES_DEG = tuple(15.0 * k for k in range(12))
+"""Directions of the eccentricity in which it is looked for; half a turn, as its size may be
+negative."""
+
+
+class DialEccentricity(Effect):
+    """Error ``a cos(angle) + b sin(angle)`` of the indicated angle."""
+
+    name = "dial_eccentricity"
+    physics = (
+        "A dial or encoder disc mounted off centre reads too much on one side and too little on "
+        "the other. The error repeats with every turn of the dial."
+    )
+    source = "geometry: a circle read from a point off its centre"
+    tell_tale = "periodic in the indicated angle itself"
+    family = "dial"
+    vector = True
+
+    def untestable(self, history: History) -> str | None:
+        """Need a good part of a turn."""
+        if spread(history.angle_deg) < 30.0:
+            return "the dial turned by less than 30 deg"
+        return super().untestable(history)
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """One turn a turn, in every direction.
+
+        Both waves at once would claim a freedom that the recording may not have: over part of a
+        turn the calibration takes up nearly all of the sine.
+        """
+        return [{"order": 1.0, "phase_deg": phase} for phase in PHASES_DEG]
+
+    def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Both waves, whatever direction was found."""
+        return [{"order": shape["order"]}]
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Error for unit amplitudes [deg]."""
+        angle = np.radians(history.angle_deg) * shape["order"]
+        if "phase_deg" in shape:
+            return np.asarray(np.cos(angle - np.radians(shape["phase_deg"])))[:, None]
+        return np.column_stack([np.cos(angle), np.sin(angle)])
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Amplitudes of the error."""
+        if "phase_deg" in shape:
+            return (Parameter("eccentric_deg", "deg", "largest error, in this direction"),)
+        return (
+            Parameter("cos_deg", "deg", "error in phase with the cosine of the angle"),
+            Parameter("sin_deg", "deg", "error in phase with the sine of the angle"),
+        )

@@ -1,0 +1,68 @@
+"""Thermal change of clearance or datum."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+import cyclosweep._core as _core
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, spread
+from cyclosweep.simulation.effects.history import Floats, History
+
+REFERENCE_C = 20.0
+KINDS = ("datum", "clearance")
+
+
+class ThermalDrift(Effect):
+    """Offset, or clearance, in proportion to the temperature above 20 degC.
+
+    `datum` and `clearance` say which of the two (or both) moves. With `delay_s` it follows the
+    recorded temperature late, because the sensor sits elsewhere than the part that expands.
+    """
+
+    name = "thermal_drift"
+    physics = (
+        "Disc, pins and housing expand differently, which changes the clearances and turns the "
+        "zero. Both follow the temperature."
+    )
+    source = "thermal expansion of unlike materials"
+    tell_tale = "offset follows temperature"
+    family = "run offsets"
+    needs = ("temperature_c",)
+    shape_parameters = (
+        Parameter("delay_s", "s", "time constant behind the recorded temperature", 1e-6, 1e9, True),
+    )
+
+    def untestable(self, history: History) -> str | None:
+        """Need a temperature that changes."""
+        reason = super().untestable(history)
+        if reason is None and spread(np.asarray(history.temperature_c)) < 0.2:
+            reason = "the temperature did not change by even 0.2 degC"
+        return reason
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Datum, clearance, or both, at once or with a delay."""
+        kinds: list[Shape] = [{"datum": 1.0}, {"clearance": 1.0}, {"datum": 1.0, "clearance": 1.0}]
+        if history.time_s is None or not spread(history.time_s) > 0:
+            return kinds
+        delays = [share * spread(history.time_s) for share in (0.01, 0.04)]
+        return kinds + [{**kind, "delay_s": delay} for kind in kinds for delay in delays]
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Offset for 1 deg/K [deg]."""
+        assert history.temperature_c is not None
+        warm = history.temperature_c - REFERENCE_C
+        if "delay_s" in shape:
+            assert history.time_s is not None
+            once = np.arange(len(warm)) == 0
+            risen = np.ascontiguousarray(warm - warm[0])
+            warm = warm[0] + _core.creep_state(risen, history.time_s, once, shape["delay_s"])
+        parts = {"datum": warm, "clearance": history.side * warm}
+        return np.column_stack([parts[name] for name in KINDS if name in shape])
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Shift of datum or clearance a kelvin."""
+        return tuple(
+            Parameter(f"{name}_per_k", "deg/K", f"{name} a kelvin")
+            for name in KINDS
+            if name in shape
+        )

@@ -1,0 +1,41 @@
+"""Kinematic error of the profile: an offset that depends on the position, whatever the load."""
+
+from collections.abc import Sequence
+
+from cyclosweep.simulation.effects.base import Parameter, Shape
+from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.orders import (
+    MeshPeriodic,
+    harmonics,
+    order_amplitudes,
+    order_shapes,
+)
+
+
+class TransmissionError(MeshPeriodic):
+    """Offset periodic in the position of the mesh zone, orders 1 to 3."""
+
+    name = "transmission_error"
+    physics = (
+        "Errors of profile, pitch and eccentricity turn the output by an amount that depends on "
+        "where the mesh zone stands. It does not depend on the load."
+    )
+    source = "Blanche, Yang, Cycloid drives with machining tolerances, J. Mech. Des. 111(3), 1989"
+    tell_tale = "offset periodic in crank position, orders 1-3, whatever the load"
+    family = "run offsets"
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Single orders, and the first few together."""
+        return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3)])
+
+    def largest(self, history: History) -> float:
+        """A hundredth of the largest twist with its play."""
+        return 0.01 * (history.largest_twist_deg + history.free_play_deg)
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Offset for unit amplitudes [deg]."""
+        return harmonics(history, shape)
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Amplitudes of the offset."""
+        return order_amplitudes(shape, "kinematic error", "deg")

@@ -1,0 +1,56 @@
+"""Lubricant drag: a torque in proportion to the rate of twist."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+import cyclosweep._core as _core
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
+from cyclosweep.simulation.effects.history import Floats, History
+
+SHORTEST_LAG = 0.1
+"""Lag below which nothing changes any more, in steps between samples."""
+
+
+class ViscousDrag(Effect):
+    """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
+
+    The rate is that of the twist itself, which lags behind the torque:
+    ``T = theta/C + D dtheta/dt`` has the time constant ``lag_s = D C``, which shows at reversals.
+    """
+
+    name = "viscous_drag"
+    physics = (
+        "The lubricant shears as the drive twists and resists in proportion to the rate. "
+        "The drive is twisted by what the drag leaves of the torque."
+    )
+    source = "Volbeda, MSc thesis 2024 (viscous 1.3 N m s/rev); Newton's law of viscosity"
+    tell_tale = "torque in proportion to twist rate"
+    family = "hysteresis"
+    needs = ("time_s",)
+    shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Newtonian and thinning drag, too small yet to lag."""
+        lag = SHORTEST_LAG * history.telling_step_s
+        return [{"power": power, "lag_s": lag} for power in (1.0, 0.7)] if lag > 0 else []
+
+    def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
+        """Shape with the lag of this drag at the usual rate."""
+        rate = history.compliance_deg_per_nm * np.diff(history.applied_nm) / history.usual_step_s
+        usual = max(float(np.sqrt(np.mean(rate**2))), 1e-12)
+        drag = max(float(amplitudes[0]), 0.0) * usual ** (shape["power"] - 1.0)
+        shortest = SHORTEST_LAG * history.telling_step_s
+        return {**shape, "lag_s": max(drag * history.compliance_deg_per_nm, shortest)}
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Twist taken away by a drag of 1 N m at 1 deg/s [deg]."""
+        lag, compliance = float(shape["lag_s"]), history.compliance_deg_per_nm
+        carried = _core.dragged(history.elastic_nm, history.lapse_s, history.restart, lag)
+        rate = compliance * (history.elastic_nm - carried) / lag
+        drag = np.sign(rate) * np.abs(rate) ** shape["power"]
+        return (-compliance * drag)[:, None]
+
+    def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
+        """Drag torque at a rate of 1 deg/s."""
+        return (Parameter("drag_nm", "N m", "drag torque at 1 deg/s", 0.0),)

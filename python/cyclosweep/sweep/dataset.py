@@ -1,0 +1,329 @@
+"""A study on disk: whole Parquet parts, each carrying what it is, and a manifest made of them."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import socket
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import polars as pl
+from filelock import FileLock, Timeout
+
+import cyclosweep._core as _core
+from cyclosweep.errors import InputError
+from cyclosweep.sweep.scan import frame
+from cyclosweep.sweep.study import Study
+from cyclosweep.sweep.summary import Record, record_of
+
+__all__ = ["COMPRESSION", "ROWS_PER_PART", "Dataset", "Part", "scan_dataset"]
+
+ROWS_PER_PART = 2**18
+COMPRESSION: Literal["lz4"] = "lz4"
+_FOOTER = "cyclosweep"
+_FORMAT = "cyclosweep.sweep.dataset/1"
+_MANIFEST = "manifest.json"
+
+
+@dataclass(frozen=True)
+class Part:
+    """One file of a dataset.
+
+    Attributes
+    ----------
+    index : int
+        Its number.
+    start, stop : int
+        Variants it holds.
+    """
+
+    index: int
+    start: int
+    stop: int
+
+    @property
+    def stem(self) -> str:
+        """Name of the file without its ending."""
+        return f"part-{self.index:06d}"
+
+    @property
+    def name(self) -> str:
+        """Name of the file."""
+        return f"{self.stem}.parquet"
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """A folder that holds, or will hold, one study.
+
+    Attributes
+    ----------
+    study : Study
+        What is in it.
+    folder : Path
+        Where it is.
+    rows_per_part : int
+        Variants a part; with the study it decides every part's boundaries.
+    """
+
+    study: Study
+    folder: Path
+    rows_per_part: int = ROWS_PER_PART
+
+    @property
+    def part_count(self) -> int:
+        """Number of parts of the finished dataset."""
+        return -(-len(self.study) // self.rows_per_part)
+
+    def part(self, index: int) -> Part:
+        """Return part number ``index``."""
+        start = self.study.space.start + index * self.rows_per_part
+        return Part(index, start, min(start + self.rows_per_part, self.study.space.stop))
+
+    def parts(self) -> Iterator[Part]:
+        """All parts in order."""
+        return (self.part(index) for index in range(self.part_count))
+
+    def prepare(self, *, resume: bool, fresh: bool) -> None:
+        """Make the folder ready, or refuse it before anything in it is touched.
+
+        Parameters
+        ----------
+        resume : bool
+            Keep what is whole.
+        fresh : bool
+            Delete what an earlier sweep left, whatever its study.
+
+        Raises
+        ------
+        InputError
+            When the folder holds another study, or this one and neither flag is given.
+        """
+        if self.folder.exists() and not self.folder.is_dir():
+            raise InputError(f"{self.folder}: is a file, expected a folder")
+        self.folder.mkdir(parents=True, exist_ok=True)
+        found = sorted(self.folder.glob("part-*.parquet"))
+        manifest = self.folder / _MANIFEST
+        for path in found:
+            if _is_foreign(path):
+                raise InputError(f"{path}: not written by cyclosweep, expected an empty folder")
+        if fresh:
+            for path in [*found, *self.folder.glob("part-*.tmp"), manifest]:
+                path.unlink(missing_ok=True)
+        elif (found or manifest.exists()) and not resume:
+            raise InputError(f"{self.folder}: holds a study, expected an empty folder")
+        else:
+            self._refuse_another_study(found, manifest)
+        if read_manifest(manifest) is None:
+            self.write_manifest([])
+
+    def _refuse_another_study(self, found: list[Path], manifest: Path) -> None:
+        # Broken files say nothing; the first whole part speaks for the others.
+        identities = [read_manifest(manifest), next(filter(None, map(read_footer, found)), None)]
+        for identity in filter(None, identities):
+            if identity.get("study") != self.study.hash:
+                self._refuse_another_stretch(identity)
+                raise InputError(
+                    f"{self.folder}: holds another study, expected this one or an empty folder; "
+                    "--fresh deletes what is there"
+                )
+            if identity.get("rows_per_part") != self.rows_per_part:
+                raise InputError(
+                    f"{self.folder}: parts of {identity.get('rows_per_part')} variants, "
+                    f"expected {self.rows_per_part}; --fresh deletes what is there"
+                )
+
+    def _refuse_another_stretch(self, identity: dict[str, Any]) -> None:
+        """Say so where the folder holds other variants of the same study (`--rows`)."""
+        there, here = identity.get("definition"), self.study.definition()
+        if not isinstance(there, dict) or {**there, "start": 0, "stop": 0} != {
+            **here,
+            "start": 0,
+            "stop": 0,
+        }:
+            return
+        raise InputError(
+            f"{self.folder}: holds variants {there.get('start'):,} to {there.get('stop'):,} of "
+            f"this study, found {here['start']:,} to {here['stop']:,} asked for; expected the "
+            "same, another folder, or --fresh, which deletes what is there"
+        )
+
+    def is_whole(self, part: Part) -> bool:
+        """Whether a part is there and belongs to this study."""
+        return self.record(part) is not None
+
+    def record(self, part: Part) -> Record | None:
+        """What a part's footer says of its rows; None unless it is whole and of this study."""
+        footer = read_footer(self.folder / part.name)
+        if footer is None or footer.get("study") != self.study.hash:
+            return None
+        record = Record.from_json(footer["record"])
+        if (record.start, record.stop) != (part.start, part.stop):
+            return None
+        if footer.get("objective") != self._objective():
+            # The objective decides no numbers: only the best variants are others now.
+            rows = pl.read_parquet(self.folder / part.name)
+            return record_of(rows, part.start, part.stop, self.study)
+        return record
+
+    @contextlib.contextmanager
+    def lock(self, part_stem: str, timeout: float = -1) -> Iterator[None]:
+        """Hold a part against other writers; the lock dies with its process.
+
+        Raises
+        ------
+        filelock.Timeout
+            When another writer holds it for longer than ``timeout`` [s].
+        """
+        path = self.folder / f".{part_stem}.lock"
+        with FileLock(path, timeout=timeout):
+            try:
+                yield
+            finally:
+                path.unlink(missing_ok=True)
+
+    def write(self, part: Part) -> Record:
+        """Compute a part and put it in place, whole or not at all.
+
+        Parameters
+        ----------
+        part : Part
+            Which one.
+
+        Returns
+        -------
+        Record
+            A summary of its rows, small enough to send home.
+
+        Raises
+        ------
+        OSError
+            When it cannot be written; nothing is left behind.
+        """
+        rows = frame(self.study, part.start, part.stop, list(self.study.schema()))
+        record = record_of(rows, part.start, part.stop, self.study)
+        return self.put(part, rows, record)
+
+    def put(self, part: Part, rows: pl.DataFrame, record: Record) -> Record:
+        """Put computed rows in place as a part."""
+        footer = {
+            **self._identity(),
+            "objective": self._objective(),
+            "record": record.to_json(),
+        }
+        final = self.folder / part.name
+        unfinished = self.folder / f"{part.name}.{socket.gethostname()}-{os.getpid()}.tmp"
+        try:
+            rows.write_parquet(
+                unfinished,
+                compression=COMPRESSION,
+                row_group_size=ROWS_PER_PART,
+                metadata={_FOOTER: json.dumps(footer)},
+            )
+            os.replace(unfinished, final)
+        finally:
+            unfinished.unlink(missing_ok=True)
+        return record
+
+    def _identity(self) -> dict[str, Any]:
+        return {
+            "format": _FORMAT,
+            "study": self.study.hash,
+            "version": _core.__version__,
+            "rows_per_part": self.rows_per_part,
+            "columns": self.study.units(),
+        }
+
+    def _objective(self) -> list[str | bool] | None:
+        objective = self.study.objective
+        return None if objective is None else [objective.column, objective.maximise]
+
+    def records(self) -> list[Record]:
+        """Return the records of all whole parts, in order."""
+        return [record for part in self.parts() if (record := self.record(part)) is not None]
+
+    def finish(self, records: list[Record]) -> None:
+        """Write the manifest of what is there and sweep up after killed writers."""
+        for path in self.folder.glob("part-*.tmp"):
+            with contextlib.suppress(Timeout), self.lock(path.name.split(".")[0], timeout=0):
+                path.unlink(missing_ok=True)
+        self.write_manifest(records)
+
+    def write_manifest(self, records: list[Record]) -> None:
+        """Write the manifest of these parts."""
+        rows = sum(record.stop - record.start for record in records)
+        manifest = {
+            **self._identity(),
+            "definition": self.study.definition(),
+            "variants": len(self.study),
+            "rows": rows,
+            "complete": rows == len(self.study),
+            "parts": [
+                {"file": self.part(k).name, "start": r.start, "stop": r.stop}
+                for k, r in sorted(
+                    ((r.start - self.study.space.start) // self.rows_per_part, r) for r in records
+                )
+            ],
+        }
+        unfinished = self.folder / f"{_MANIFEST}.{os.getpid()}.tmp"
+        try:
+            unfinished.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
+            os.replace(unfinished, self.folder / _MANIFEST)
+        finally:
+            unfinished.unlink(missing_ok=True)
+
+
+def read_footer(path: Path) -> dict[str, Any] | None:
+    """What cyclosweep wrote into a Parquet file's footer; None where there is nothing whole."""
+    try:
+        text = pl.read_parquet_metadata(path).get(_FOOTER)
+        footer = json.loads(text) if text is not None else None
+    except (OSError, ValueError, pl.exceptions.PolarsError):
+        return None
+    return footer if isinstance(footer, dict) and footer.get("format") == _FORMAT else None
+
+
+def read_manifest(path: Path) -> dict[str, Any] | None:
+    """What a manifest says; None where there is none or it is broken."""
+    try:
+        manifest = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return manifest if isinstance(manifest, dict) else None
+
+
+def _is_foreign(path: Path) -> bool:
+    """Whether a file is whole and not of a sweep, so that it must not be touched."""
+    try:
+        return _FOOTER not in pl.read_parquet_metadata(path)
+    except (OSError, pl.exceptions.PolarsError):
+        return False
+
+
+def scan_dataset(folder: str | Path) -> pl.LazyFrame:
+    """Read a finished or unfinished study lazily.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where a sweep was written.
+
+    Returns
+    -------
+    polars.LazyFrame
+        Rows of all whole parts, in order of their variants.
+
+    Raises
+    ------
+    InputError
+        When the folder holds no part of a study.
+    """
+    found = sorted(Path(folder).glob("part-*.parquet"), key=lambda path: (len(path.name), path))
+    paths = [path for path in found if read_footer(path) is not None]
+    if not paths:
+        raise InputError(f"{folder}: no parts of a study there")
+    return pl.scan_parquet(paths)

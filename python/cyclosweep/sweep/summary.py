@@ -1,0 +1,181 @@
+"""What a sweep came to: counts by status, ranges of the results, the best variants."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import polars as pl
+
+from cyclosweep.design.units import quantity
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from cyclosweep.sweep.study import Study
+
+__all__ = ["BEST", "Record", "Summary", "record_of", "summarise"]
+
+BEST = 10
+
+
+@dataclass(frozen=True)
+class Record:
+    """What one part holds, small enough to travel.
+
+    Attributes
+    ----------
+    start, stop : int
+        Its variants.
+    status : dict
+        Rows by status.
+    ranges : dict
+        Least and greatest value of each result.
+    best : list of dict
+        Its best variants by the study's objective, best first.
+    """
+
+    start: int
+    stop: int
+    status: dict[str, int]
+    ranges: dict[str, tuple[float, float]]
+    best: list[dict[str, Any]] = field(default_factory=list)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        return {
+            "start": self.start,
+            "stop": self.stop,
+            "status": self.status,
+            "ranges": self.ranges,
+            "best": self.best,
+        }
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Record:
+        """Back from :meth:`to_json`."""
+        ranges = {name: (low, high) for name, (low, high) in value["ranges"].items()}
+        return cls(value["start"], value["stop"], value["status"], ranges, value["best"])
+
+
+def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record:
+    """Summarise the rows of one part."""
+    counts = rows["status"].value_counts().sort("status")
+    status = dict(zip(counts["status"].to_list(), counts["count"].to_list(), strict=True))
+    names = [name for name, kind in study.outputs.items() if kind != "flag"]
+    lows = rows.select(pl.col(names).min()).row(0)
+    highs = rows.select(pl.col(names).max()).row(0)
+    ranges = {
+        name: (float(low), float(high))
+        for name, low, high in zip(names, lows, highs, strict=True)
+        if low is not None
+    }
+    best: list[dict[str, Any]] = []
+    if (objective := study.objective) is not None:
+        is_number = pl.col(objective.column).cast(pl.Float64).is_not_nan()
+        kept = rows.select(*_best_columns(study), "status").filter(
+            pl.col("status") == "ok", is_number
+        )
+        by, reverse = [objective.column, "variant"], [objective.maximise, False]
+        best = kept.bottom_k(BEST, by=by, reverse=reverse).drop("status").to_dicts()
+    return Record(start, stop, status, ranges, best)
+
+
+def _best_columns(study: Study) -> list[str]:
+    assert study.objective is not None
+    axes = [axis.name for axis in study.space.axes]
+    return list(dict.fromkeys(["variant", study.objective.column, *axes]))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a whole sweep came to.
+
+    Attributes
+    ----------
+    rows : int
+        Variants there.
+    status : dict
+        Rows by status, most frequent first.
+    ranges : dict
+        Least and greatest value of each result among variants that can be built.
+    best : list of dict
+        The ten best variants by the study's objective, best first.
+    objective : str or None
+        "minimise column" or "maximise column".
+    """
+
+    rows: int
+    status: dict[str, int]
+    ranges: dict[str, tuple[float, float]]
+    best: list[dict[str, Any]]
+    objective: str | None
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        return {
+            "rows": self.rows,
+            "status": self.status,
+            "ranges": {name: list(pair) for name, pair in self.ranges.items()},
+            "objective": self.objective,
+            "best": self.best,
+        }
+
+    def renderables(self) -> Iterable[RenderableType]:
+        """Tables for a terminal."""
+        from rich import box
+        from rich.table import Table
+
+        status = Table("status", "variants", "share", box=box.SIMPLE_HEAD, title="Status")
+        for name, count in self.status.items():
+            status.add_row(name, f"{count:,}", f"{count / max(self.rows, 1):.1%}")
+        ranges = Table("result", "least", "greatest", "unit", box=box.SIMPLE_HEAD, title="Ranges")
+        for name, (low, high) in self.ranges.items():
+            ranges.add_row(name, f"{low:.5g}", f"{high:.5g}", quantity(name).unit)
+        for table in (status, ranges):
+            table.columns[0].overflow = "fold"
+            for column in table.columns[1:3]:
+                column.justify = "right"
+        yield status
+        yield ranges
+        if self.best:
+            target = (self.objective or "").split()[-1]
+            best = Table(box=box.SIMPLE_HEAD, title=f"Best, {self.objective}")
+            best.add_column("variant", justify="right")
+            best.add_column(quantity(target).unit, justify="right")
+            best.add_column("where")
+            for row in self.best:
+                axes = (f"{k} {_short(v)}" for k, v in row.items() if k not in ("variant", target))
+                best.add_row(f"{row['variant']}", _short(row[target]), ", ".join(axes))
+            yield best
+
+
+def _short(value: object) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else f"{value}"
+
+
+def summarise(records: Iterable[Record], study: Study) -> Summary:
+    """Put the records of a sweep's parts together."""
+    rows = 0
+    status: dict[str, int] = {}
+    ranges: dict[str, tuple[float, float]] = {}
+    best: list[dict[str, Any]] = []
+    for record in records:
+        rows += record.stop - record.start
+        for name, count in record.status.items():
+            status[name] = status.get(name, 0) + count
+        for name, (low, high) in record.ranges.items():
+            seen = ranges.get(name, (low, high))
+            ranges[name] = (min(low, seen[0]), max(high, seen[1]))
+        best.extend(record.best)
+    order = {name: k for k, name in enumerate(study.outputs)}
+    ranges = dict(sorted(ranges.items(), key=lambda item: order[item[0]]))
+    status = dict(sorted(status.items(), key=lambda item: -item[1]))
+    objective = None
+    if study.objective is not None:
+        column, sign = study.objective.column, -1 if study.objective.maximise else 1
+        best = heapq.nsmallest(BEST, best, key=lambda row: (sign * row[column], row["variant"]))
+        objective = f"{'maximise' if study.objective.maximise else 'minimise'} {column}"
+    return Summary(rows, status, ranges, best, objective)

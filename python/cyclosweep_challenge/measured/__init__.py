@@ -1,0 +1,1 @@
+"""Loops of a real drive as null, with terms removed and effects injected."""

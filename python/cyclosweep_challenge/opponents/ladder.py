@@ -1,0 +1,33 @@
+"""A ladder of models judged by error alone: the term whose held-out error is smallest wins."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cyclosweep_challenge.opponents.seen import Said, Seen, effects_of
+
+
+def error_ladder(seen: Seen) -> Said:
+    """Relative gain in error on a random fifth held out, adding terms while it falls."""
+    table, names = seen.library
+    rng = np.random.default_rng(0)
+    order = rng.permutation(seen.residual.size)
+    test, train = order[: order.size // 5], order[order.size // 5 :]
+
+    def error(columns: list[int]) -> float:
+        if not columns:
+            return float(np.sqrt(np.mean(seen.residual[test] ** 2)))
+        part = table[:, columns]
+        weights = np.linalg.lstsq(part[train], seen.residual[train])[0]
+        return float(np.sqrt(np.mean((seen.residual[test] - part[test] @ weights) ** 2)))
+
+    chosen: list[int] = []
+    plain = best = error(chosen)
+    while len(chosen) < 5:
+        trials = [(error([*chosen, k]), k) for k in range(len(names)) if k not in chosen]
+        value, k = min(trials)
+        if value >= best:
+            break
+        best = value
+        chosen.append(k)
+    return Said(1.0 - best / plain, bool(chosen), effects_of(names, chosen))

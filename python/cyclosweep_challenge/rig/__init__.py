@@ -1,0 +1,1 @@
+"""The rig: a contact-level simulation of the torsion test, which knows nothing of the diagnosis."""

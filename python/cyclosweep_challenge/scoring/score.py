@@ -1,0 +1,137 @@
+"""Everything a challenge found, ready to be shown or stored."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import polars as pl
+
+from cyclosweep_challenge.scoring.calibration import Bin, calibration_bins
+from cyclosweep_challenge.scoring.confusion import confusion
+from cyclosweep_challenge.scoring.curves import Curve, detection_curves
+from cyclosweep_challenge.scoring.figures import Figure, all_figures, contest
+from cyclosweep_challenge.scoring.outcome import Outcome
+from cyclosweep_challenge.scoring.power import PROGRAMMES
+from cyclosweep_challenge.scoring.rivals import OpponentCurve, opponent_curves
+
+
+@dataclass(frozen=True)
+class Score:
+    """Result of a challenge.
+
+    Attributes
+    ----------
+    about : dict
+        Seed, mix, root hash and number of cases.
+    figures : list of Figure
+        The table of figures, none left out.
+    curves : list of Curve
+        Detection, naming and the oracle's detection against visibility.
+    opponents : list of OpponentCurve
+        The opponents' detection at their own false-alarm settings.
+    confusion : dict of polars.DataFrame
+        Confusion matrix by programme.
+    calibration : list of Bin
+        Stated probabilities against frequencies.
+    verdicts : polars.DataFrame
+        Verdicts counted by stratum.
+    """
+
+    about: dict[str, Any]
+    figures: list[Figure]
+    curves: list[Curve]
+    opponents: list[OpponentCurve]
+    confusion: dict[str, pl.DataFrame]
+    calibration: list[Bin]
+    verdicts: pl.DataFrame
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data that JSON can hold; not-a-number becomes null."""
+        plain = {
+            "schema": "cyclosweep_challenge/2",
+            "about": self.about,
+            "figures": [figure.as_dict() for figure in self.figures],
+            "curves": [
+                {
+                    "who": curve.who,
+                    "programme": curve.programme,
+                    "noise": curve.noise,
+                    "needed": vars(curve.needed),
+                    "points": [{"d": d, **vars(e)} for d, e in curve.points],
+                }
+                for curve in self.curves
+            ],
+            "opponents": [opponent.as_dict() for opponent in self.opponents],
+            "confusion": {name: table.to_dicts() for name, table in self.confusion.items()},
+            "calibration": [{"stated": b.stated, **vars(b.frequency)} for b in self.calibration],
+            "verdicts": self.verdicts.to_dicts(),
+        }
+        cleaned: dict[str, Any] = _nulled(plain)
+        return cleaned
+
+
+def _nulled(value: Any) -> Any:
+    """Return the same data with not-a-number and infinities as null."""
+    if isinstance(value, dict):
+        return {key: _nulled(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_nulled(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def make_score(
+    outcomes: Sequence[Outcome],
+    said: Mapping[str, Any],
+    about: dict[str, Any],
+    further: Sequence[Figure] = (),
+    aside: Sequence[Outcome] = (),
+) -> Score:
+    """Score the outcomes of a challenge.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        One for every case.
+    said : mapping
+        What the opponents said, by key of the case and name of the opponent.
+    about : dict
+        What the challenge was made of.
+    further : sequence of Figure
+        Figures that do not follow from the outcomes.
+    aside : sequence of Outcome
+        Further cases for the contest with the opponents, in no other figure.
+    """
+    curves = detection_curves([*outcomes, *aside])
+    opponents = opponent_curves([*outcomes, *aside], said)
+    verdicts = (
+        pl.DataFrame(
+            {
+                "stratum": [o.stratum for o in outcomes],
+                "verdict": [o.verdict for o in outcomes],
+            },
+            schema={"stratum": pl.String, "verdict": pl.String},
+        )
+        .group_by("stratum", "verdict")
+        .len("cases")
+        .sort("stratum", "verdict")
+    )
+    named = [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C5-alien"} and o.d > 9.0]
+    return Score(
+        about=about | {"cases": len(outcomes)},
+        figures=[*all_figures(outcomes, curves), *contest(curves, opponents), *further],
+        curves=curves,
+        opponents=opponents,
+        confusion={
+            programme: confusion([o for o in named if o.programme == programme])
+            for programme in PROGRAMMES
+        },
+        calibration=calibration_bins(
+            [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C3", "C4"}]
+        ),
+        verdicts=verdicts,
+    )

@@ -1,0 +1,30 @@
+"""Module names of version 0.1 still import, warn, and hide none of the package's functions."""
+
+import importlib
+
+import pytest
+
+import cyclosweep as cs
+from cyclosweep._moved import MOVED
+
+
+@pytest.mark.parametrize("old", sorted(MOVED))
+def test_an_old_name_leads_to_the_new_module(old: str) -> None:
+    new = importlib.import_module(MOVED[old])
+    public = next(name for name in vars(new) if not name.startswith("_"))
+    with pytest.warns(DeprecationWarning, match=MOVED[old]):
+        found = getattr(importlib.import_module(old), public)
+    assert found is getattr(new, public)
+
+
+def test_functions_of_the_package_stay_functions_after_old_imports() -> None:
+    with pytest.warns(DeprecationWarning, match="simulation"):
+        from cyclosweep.simulate import Model
+    assert Model is cs.Model
+    assert callable(cs.simulate)
+    assert callable(cs.scan)
+
+
+def test_a_name_that_never_was_is_refused() -> None:
+    with pytest.raises(ImportError):
+        from cyclosweep.drive import Nonexistent  # noqa: F401
