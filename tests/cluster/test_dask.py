@@ -8,7 +8,9 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
+import polars as pl
 import pytest
 
 import cyclosweep as cs
@@ -28,13 +30,13 @@ def space() -> cs.Space:
 
 
 @pytest.fixture(scope="module")
-def alone(tmp_path_factory):
+def alone(tmp_path_factory: pytest.TempPathFactory) -> pl.DataFrame:
     folder = tmp_path_factory.mktemp("alone")
     cs.sink(space(), folder, rows_per_part=ROWS, progress=False)
     return cs.scan_dataset(folder).collect()
 
 
-def first_part_in(folder, seconds=60.0):
+def first_part_in(folder: Path, seconds: float = 60.0) -> None:
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if any(folder.glob("part-*.parquet")):
@@ -43,13 +45,13 @@ def first_part_in(folder, seconds=60.0):
     raise AssertionError("no part was written")
 
 
-def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path, alone):
+def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path: Path, alone: pl.DataFrame) -> None:
     folder = tmp_path / "study"
     with dask_executor(2, None) as executor:
         pids = list(executor._client.run(os.getpid).values())
         assert len(pids) == 2
 
-        def kill():
+        def kill() -> None:
             first_part_in(folder)
             os.kill(pids[0], signal.SIGKILL)
 
@@ -61,12 +63,14 @@ def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path, alone):
     assert cs.scan_dataset(folder).collect().equals(alone)
 
 
-def test_the_dask_engine_writes_the_same_dataset(tmp_path, alone):
+def test_the_dask_engine_writes_the_same_dataset(tmp_path: Path, alone: pl.DataFrame) -> None:
     cs.sink(space(), tmp_path, rows_per_part=ROWS, engine="dask", workers=2, progress=False)
     assert cs.scan_dataset(tmp_path).collect().equals(alone)
 
 
-def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(tmp_path, alone):
+def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(
+    tmp_path: Path, alone: pl.DataFrame
+) -> None:
     folder = tmp_path / "study"
     address = tmp_path / "scheduler.json"
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -92,7 +96,7 @@ def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(tmp_path, alone
         time.sleep(0.2)
         where = json.loads(address.read_text())["address"]
 
-        def kill():
+        def kill() -> None:
             first_part_in(folder)
             scheduler.kill()
 
@@ -116,7 +120,7 @@ def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(tmp_path, alone
     assert cs.scan_dataset(folder).collect().equals(alone)
 
 
-def test_a_scheduler_that_is_not_there_is_one_line(tmp_path):
+def test_a_scheduler_that_is_not_there_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(cs.SweepError, match=r"scheduler tcp://127\.0\.0\.1:9: "):
         cs.sink(
             space(),
@@ -127,7 +131,7 @@ def test_a_scheduler_that_is_not_there_is_one_line(tmp_path):
         )
 
 
-def test_a_task_is_small(tmp_path):
+def test_a_task_is_small(tmp_path: Path) -> None:
     dataset = Dataset(cs.Study.of(space()), tmp_path, ROWS)
     dataset.study.core.evaluate_range(0, 10, [])
     assert len(pickle.dumps((write_parts, dataset, [dataset.part(0)]))) < 20_000

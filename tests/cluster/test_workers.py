@@ -3,11 +3,14 @@
 import os
 import signal
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 
 import cyclosweep as cs
 from cyclosweep.sweep import shards
+from cyclosweep.sweep.dataset import Part
+from cyclosweep.sweep.dataset import Record as PartRecord
 
 COUNT, ROWS = 2**14, 2**11
 
@@ -19,7 +22,7 @@ def space() -> cs.Space:
 class KillsItsWorker(shards.Dataset):
     """Kills the process that computes one part, once or always."""
 
-    def write(self, part):
+    def write(self, part: Part) -> PartRecord:
         mark = self.folder / "killed"
         if part.index == 3 and (self.folder / "always").exists():
             os.kill(os.getpid(), signal.SIGKILL)
@@ -29,7 +32,7 @@ class KillsItsWorker(shards.Dataset):
         return super().write(part)
 
 
-def test_a_killed_process_is_retried(tmp_path, monkeypatch):
+def test_a_killed_process_is_retried(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shards, "Dataset", KillsItsWorker)
     folder = tmp_path / "study"
     cs.sink(space(), folder, rows_per_part=ROWS, engine="processes", workers=2, progress=False)
@@ -37,7 +40,9 @@ def test_a_killed_process_is_retried(tmp_path, monkeypatch):
     assert cs.scan_dataset(folder).collect().equals(cs.sweep(space()))
 
 
-def test_a_part_that_always_kills_its_worker_is_named_and_the_rest_kept(tmp_path, monkeypatch):
+def test_a_part_that_always_kills_its_worker_is_named_and_the_rest_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(shards, "Dataset", KillsItsWorker)
     folder = tmp_path / "study"
     folder.mkdir()
@@ -50,14 +55,16 @@ def test_a_part_that_always_kills_its_worker_is_named_and_the_rest_kept(tmp_path
 class FailsAlways(shards.Dataset):
     tried = 0
 
-    def write(self, part):
+    def write(self, part: Part) -> PartRecord:
         if part.index == 5:
             type(self).tried += 1
             raise RuntimeError("no luck with this one")
         return super().write(part)
 
 
-def test_a_part_that_always_fails_is_tried_thrice_and_told_at_the_end(tmp_path, monkeypatch):
+def test_a_part_that_always_fails_is_tried_thrice_and_told_at_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(shards, "Dataset", FailsAlways)
     with (
         ThreadPoolExecutor(2) as pool,

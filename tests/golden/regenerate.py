@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import polars as pl
-from tests.drives import random_drives
 
 import cyclosweep as cs
+from tests.drives import random_drives
 
 GOLDEN = Path(__file__).parent / "variants.csv"
 LOADS = (1.0, 2.0, 3.0, 4.0, 4.5)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import polars as pl
 from polars.testing import assert_frame_equal
+
 from tests.golden.regenerate import GOLDEN, variants
 
 

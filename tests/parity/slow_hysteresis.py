@@ -2,16 +2,29 @@
 
 import numpy as np
 
+from tests.support.arrays import Floats, Mask
 
-def solve_slip(torque, offset, restart, start, slip, share, play, compliance, limit, load=0.0):
+
+def solve_slip(
+    torque: Floats,
+    offset: Floats,
+    restart: Mask,
+    start: Floats,
+    slip: Floats,
+    share: Floats,
+    play: float,
+    compliance: float,
+    limit: float,
+    load: float = 0.0,
+) -> tuple[Floats, Floats]:
     """Balance of torques by bisection, one sample after the other."""
     angle, friction = np.zeros(len(torque)), np.zeros(len(torque))
     anchor = np.full(len(slip), start[0])
 
-    def elastic(twist):
+    def elastic(twist: float) -> float:
         return np.sign(twist) * max(abs(twist) - play, 0.0) / compliance
 
-    def force(at, base):
+    def force(at: float, base: float) -> float:
         state = float(np.sum(share * np.clip((at - anchor) / slip, -1, 1)))
         return (limit + load * abs(elastic(at - base))) * state
 
@@ -32,7 +45,7 @@ def solve_slip(torque, offset, restart, start, slip, share, play, compliance, li
     return angle, friction
 
 
-def creep_state(load, time, restart, tau, steps=400):
+def creep_state(load: Floats, time: Floats, restart: Mask, tau: float, steps: int = 400) -> Floats:
     """Kelvin-Voigt state by many small explicit steps."""
     out = np.zeros(len(load))
     state = 0.0
@@ -48,7 +61,7 @@ def creep_state(load, time, restart, tau, steps=400):
     return out
 
 
-def dragged(load, lapse, restart, lag):
+def dragged(load: Floats, lapse: Floats, restart: Mask, lag: float) -> list[float]:
     """Root of ``u - x - lag (x - before)/lapse``, found by bisection instead of division."""
     out, before = [], 0.0
     for u, h, fresh in zip(load, lapse, restart, strict=True):

@@ -4,13 +4,13 @@ import itertools
 
 import numpy as np
 import pytest
-from tests.parity import slow_hysteresis as slow
 
 import cyclosweep._core as core
+from tests.parity import slow_hysteresis as slow
 
 
 @pytest.mark.parametrize(("play", "load"), [(0.0, 0.0), (3.0, 0.0), (3.0, 0.25)])
-def test_slip_in_the_angle(play, load):
+def test_slip_in_the_angle(play: float, load: float) -> None:
     rng = np.random.default_rng(4)
     turn = rng.uniform(-20, 20, 6)
     torque = np.concatenate([np.linspace(a, b, 25) for a, b in itertools.pairwise(turn)])
@@ -31,7 +31,7 @@ def test_slip_in_the_angle(play, load):
     np.testing.assert_allclose(friction, force, atol=1e-6)
 
 
-def test_creep():
+def test_creep() -> None:
     rng = np.random.default_rng(5)
     time = np.cumsum(rng.uniform(0.2, 3.0, 60))
     load = np.cumsum(rng.normal(size=60))
@@ -41,7 +41,7 @@ def test_creep():
     np.testing.assert_allclose(fast, slow.creep_state(load, time, restart, 7.0), atol=2e-3)
 
 
-def test_drag():
+def test_drag() -> None:
     rng = np.random.default_rng(6)
     lapse = rng.uniform(0.2, 3.0, 60)
     load = np.cumsum(rng.normal(size=60))
@@ -52,13 +52,13 @@ def test_drag():
     np.testing.assert_allclose(fast, expected, rtol=1e-12, atol=1e-12)
 
 
-def test_lengths_must_agree():
+def test_lengths_must_agree() -> None:
     one, two = np.zeros(1), np.zeros(2)
     with pytest.raises(ValueError, match="length"):
         core.creep_state(one, two, np.zeros(1, dtype=bool), 1.0)
 
 
-def test_play_keeps_within_its_gap():
+def test_play_keeps_within_its_gap() -> None:
     x = 5 * np.sin(np.arange(100) / 7)
     y = core.play(x, 1.0, np.zeros(100, dtype=bool), np.zeros(100))
     assert np.all(np.abs(x - y) <= 1.0 + 1e-12)

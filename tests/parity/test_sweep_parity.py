@@ -7,10 +7,10 @@ import math
 import numpy as np
 import polars as pl
 import pytest
-from tests.drives import random_drive, random_drives
-from tests.parity import twin
 
 import cyclosweep as cs
+from tests.drives import random_drive, random_drives
+from tests.parity import twin
 
 LOADS = (0.5, 1.0, 3.0, 4.5)
 COUNTS = ("active_pins_min", "active_pins_max")

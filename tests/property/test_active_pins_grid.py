@@ -12,11 +12,11 @@ import os
 import numpy as np
 import numpy.typing as npt
 import pytest
-from tests.drives import random_drive, random_drives
-from tests.parity import twin
 
 import cyclosweep as cs
 from cyclosweep.design.drive import CRITERIA, Criterion
+from tests.drives import random_drive, random_drives
+from tests.parity import twin
 
 DRIVES = int(os.environ.get("CYCLOSWEEP_GRID_DRIVES", "300"))
 STEP_DEG = 0.01

@@ -7,8 +7,8 @@ from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import cyclosweep as cs
 from cyclosweep.errors import InputError
-from cyclosweep.recording import Recording
 
 FUZZ = settings(
     max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
@@ -95,7 +95,7 @@ def read_or_refuse(content: bytes, meta: bytes | None = None, name: str = "loop.
             path.with_name("loop.toml").write_bytes(meta)
         complaint = None
         try:
-            recording = Recording.read(path)
+            recording = cs.Recording.read(path)
         except InputError as error:
             complaint = str(error)
         if complaint is not None:

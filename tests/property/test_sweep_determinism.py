@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
-from determinism_sweep import digest, spaces
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cyclosweep as cs
+from tests.property.determinism_sweep import digest, spaces
 
 SCRIPT = Path(__file__).parent / "determinism_sweep.py"
 ROWS = 12_423  # of the grid; no multiple of any block

@@ -4,16 +4,19 @@ Its laws are chosen to differ in form from those the diagnosis fits.
 """
 
 import itertools
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
+from tests.support.arrays import Floats, Integers
 
 COMPLIANCE = 19.8 / 7.2575
 PLAY = 28.0
 
 
-def _ramp(points, rate, step):
+def _ramp(points: Sequence[float], rate: float, step: float) -> list[float]:
     out = [points[0]]
     for a, b in itertools.pairwise(points):
         count = max(int(abs(b - a) / (rate * step)), 2)
@@ -21,7 +24,9 @@ def _ramp(points, rate, step):
     return out
 
 
-def programme(rng, kind="rich", scale=1.0):
+def programme(
+    rng: np.random.Generator, kind: str = "rich", scale: float = 1.0
+) -> tuple[Floats, Floats, Integers, Floats, Floats]:
     """Columns torque, time, run, crank, temperature."""
     top = 31.0
     torque, time, run, crank = [], [], [], []
@@ -49,7 +54,7 @@ def programme(rng, kind="rich", scale=1.0):
     return torque, time, np.array(run), np.array(crank), warm
 
 
-def _solve(law, target):
+def _solve(law: Callable[[Floats], Floats], target: Floats) -> Floats:
     low, high = np.full_like(target, -400.0), np.full_like(target, 400.0)
     for _ in range(60):
         mid = 0.5 * (low + high)
@@ -58,7 +63,15 @@ def _solve(law, target):
     return 0.5 * (low + high)
 
 
-def effect(name, rng, torque, time, run, crank, warm):
+def effect(
+    name: str,
+    rng: np.random.Generator,
+    torque: Floats,
+    time: Floats,
+    run: Integers,
+    crank: Floats,
+    warm: Floats,
+) -> Floats:
     """Extra twist [deg] that an effect makes, of arbitrary size."""
     side = np.where(torque >= 0, 1.0, -1.0)
     load, top = np.abs(torque), np.abs(torque).max()
@@ -142,7 +155,7 @@ def effect(name, rng, torque, time, run, crank, warm):
     raise ValueError(name)
 
 
-def noise_of(rng, n, family, sigma):
+def noise_of(rng: np.random.Generator, n: int, family: str, sigma: float) -> Floats:
     """Noise of unit family times sigma."""
     if family.startswith("ar"):
         rho = float(family[2:])
@@ -161,7 +174,16 @@ def noise_of(rng, n, family, sigma):
     return sigma * rng.standard_normal(n)
 
 
-def record(seed, effects=(), d=10.0, kind="rich", family="white", sigma=0.2, step=0.0, scale=1.0):
+def record(
+    seed: int,
+    effects: Sequence[str] = (),
+    d: npt.ArrayLike = 10.0,
+    kind: str = "rich",
+    family: str = "white",
+    sigma: float = 0.2,
+    step: float = 0.0,
+    scale: float = 1.0,
+) -> cs.Recording:
     """A recording with effects at these projected signal-to-noise ratios."""
     rng = np.random.default_rng(seed)
     torque, time, run, crank, warm = programme(rng, kind, scale)
@@ -180,7 +202,7 @@ def record(seed, effects=(), d=10.0, kind="rich", family="white", sigma=0.2, ste
     if step:
         angle = np.round(angle / step) * step
     keep = np.abs(torque) > 0.4
-    return Recording.from_arrays(
+    return cs.Recording.from_arrays(
         torque[keep],
         angle[keep],
         time_s=time[keep],

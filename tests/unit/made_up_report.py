@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
 from cyclosweep.report import HeldOut, Hypothesis, ReportData
 
 C = 2.73  # compliance at the input [deg/(N m)]
@@ -35,7 +35,7 @@ def make(runs: int = 6, samples: int = 400) -> ReportData:
     softening = 0.0075 * np.sign(torque) * np.maximum(np.abs(torque) - 2.5 * RATED, 0) ** 2
     after = line + friction + softening
     angle = after + rng.normal(scale=SIGMA, size=len(torque))
-    recording = Recording.from_arrays(
+    recording = cs.Recording.from_arrays(
         torque,
         angle,
         time_s=time,

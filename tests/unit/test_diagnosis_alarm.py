@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from tests.unit.test_effects import history
 
 from cyclosweep import Drive, Recording, diagnose
 from cyclosweep.diagnosis.hypotheses.freeform import CLASSES
@@ -10,9 +9,11 @@ from cyclosweep.diagnosis.identify.alarm import LEVEL, probability, tail_quantil
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.prepare.problem import gaps
 from cyclosweep.simulation import effects
+from cyclosweep.simulation.effects import Effect
+from tests.unit.test_effects import history
 
 
-def test_tail_quantile_of_evidences_is_right_on_average():
+def test_tail_quantile_of_evidences_is_right_on_average() -> None:
     rng = np.random.default_rng(1)
     level = 0.005
     found = []
@@ -24,11 +25,11 @@ def test_tail_quantile_of_evidences_is_right_on_average():
     assert np.std(found) < 0.5
 
 
-def test_probability_is_never_zero():
+def test_probability_is_never_zero() -> None:
     assert probability(np.zeros(999), 5.0) == 1 / 1000
 
 
-def test_alarm_keeps_its_level_on_white_noise():
+def test_alarm_keeps_its_level_on_white_noise() -> None:
     # The search starts from this: how often the test alone would ask for anything at all.
     rng = np.random.default_rng(7)
     torque = np.tile(np.r_[np.linspace(1, 25, 40), np.linspace(25, 1, 40)], 6)
@@ -46,7 +47,7 @@ def test_alarm_keeps_its_level_on_white_noise():
     assert alarms <= 2
 
 
-def test_small_effect_is_found_below_the_old_threshold():
+def test_small_effect_is_found_below_the_old_threshold() -> None:
     rng = np.random.default_rng(3)
     torque = np.tile(np.r_[np.linspace(1, 25, 60), np.linspace(25, 1, 60)], 6)
     torque[360:] *= -1
@@ -65,7 +66,7 @@ def test_small_effect_is_found_below_the_old_threshold():
     assert hits >= 6
 
 
-def test_gaps_are_counted_in_the_steps_of_each_run():
+def test_gaps_are_counted_in_the_steps_of_each_run() -> None:
     run = np.repeat([0, 1], 5)
     time = np.r_[np.arange(5) * 0.3, 100 + np.arange(5) * 2.0]
     gap = gaps(np.ones(10, dtype=bool), run, time)
@@ -74,16 +75,16 @@ def test_gaps_are_counted_in_the_steps_of_each_run():
     assert gaps(np.ones(10, dtype=bool), run, time)[7] == pytest.approx(2.0)
 
 
-def test_every_class_names_families_that_exist():
+def test_every_class_names_families_that_exist() -> None:
     families = {effect.family for effect in effects.VOCABULARY}
     assert set().union(*CLASSES.values()) <= families
 
 
-def named(name):
+def named(name: str) -> Effect:
     return effects.find(name)
 
 
-def test_shapes_grow_and_shrink():
+def test_shapes_grow_and_shrink() -> None:
     creep = named("creep")
     both = creep.richer({"time_constant_s": 9.0}, {"tau_1_s": 3.0, "tau_2_s": 30.0})
     assert both == {"tau_1_s": 3.0, "tau_2_s": 9.0, "tau_3_s": 30.0}
@@ -96,7 +97,7 @@ def test_shapes_grow_and_shrink():
     assert waves == {"order_1": 1.0, "order_2": 2.0}
 
 
-def test_drag_lags_as_its_size_says():
+def test_drag_lags_as_its_size_says() -> None:
     drag, past = named("viscous_drag"), history()
     (shape, *_) = drag.shapes(past)
     settled = drag.settled(past, shape, np.array([2.0]))
@@ -104,7 +105,7 @@ def test_drag_lags_as_its_size_says():
     assert drag.settled(past, shape, np.array([0.0]))["lag_s"] == shape["lag_s"]
 
 
-def test_free_offsets_are_memory_only_if_the_runs_explain_them():
+def test_free_offsets_are_memory_only_if_the_runs_explain_them() -> None:
     torque_of = [6.0, 20.0, 9.0, 15.0, 4.0, 18.0, 12.0, 7.0, 16.0, 10.0, 5.0, 14.0]
     path = np.concatenate([np.linspace(0.1, 1, 10), np.linspace(1, -0.4, 20)])
     torque = np.concatenate([(-1) ** k * top * path for k, top in enumerate(torque_of)])

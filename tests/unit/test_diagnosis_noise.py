@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from cyclosweep.diagnosis.prepare.noise import estimate_noise, interval_score, orthonormal
+from tests.support.arrays import Floats
 
 
-def material(n=2000, seed=1):
+def material(n: int = 2000, seed: int = 1) -> tuple[np.random.Generator, Floats, Floats, Floats]:
     rng = np.random.default_rng(seed)
     x = np.linspace(-1, 1, n)
     basis = orthonormal(np.column_stack([x**k for k in range(8)]))
@@ -15,7 +16,7 @@ def material(n=2000, seed=1):
     return rng, x, basis, gap
 
 
-def coloured(rng, n, rho):
+def coloured(rng: np.random.Generator, n: int, rho: float) -> Floats:
     out = np.zeros(n)
     out[0] = rng.normal()
     for i in range(1, n):
@@ -24,7 +25,7 @@ def coloured(rng, n, rho):
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.3, 0.8])
-def test_autocorrelation_is_found_and_estimated_from_above(rho):
+def test_autocorrelation_is_found_and_estimated_from_above(rho: float) -> None:
     rng, x, basis, gap = material()
     upper, size = [], []
     for _ in range(10):
@@ -38,7 +39,7 @@ def test_autocorrelation_is_found_and_estimated_from_above(rho):
     assert np.mean(size) == pytest.approx(0.2, rel=0.1)
 
 
-def test_whitening_makes_white():
+def test_whitening_makes_white() -> None:
     rng, x, basis, gap = material()
     angle = 0.2 * coloured(rng, len(x), 0.7)
     noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(x)))
@@ -47,7 +48,7 @@ def test_whitening_makes_white():
     assert np.std(white) == pytest.approx(1.0, abs=0.06)
 
 
-def test_heavy_tails_are_recognised():
+def test_heavy_tails_are_recognised() -> None:
     rng, x, basis, gap = material()
     angle = 0.1 * rng.standard_t(3, len(x))
     noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(x)))
@@ -56,7 +57,7 @@ def test_heavy_tails_are_recognised():
     assert np.max(np.abs(score)) < 6
 
 
-def test_the_residual_has_unit_variance_where_outliers_follow_no_tail():
+def test_the_residual_has_unit_variance_where_outliers_follow_no_tail() -> None:
     # Normal readings with some far off: no Student's distribution has that score.
     rng, x, basis, gap = material(4000)
     squares = []
@@ -71,7 +72,7 @@ def test_the_residual_has_unit_variance_where_outliers_follow_no_tail():
 
 
 @pytest.mark.parametrize("sigma", [0.02, 0.05])
-def test_noise_behind_a_coarse_dial(sigma):
+def test_noise_behind_a_coarse_dial(sigma: float) -> None:
     rng, x, basis, gap = material()
     angle = np.round((30 * x + sigma * rng.normal(size=len(x))) / 0.5) * 0.5
     noise = estimate_noise(angle, basis, gap, 0.5, np.ones(len(x)))
@@ -79,7 +80,7 @@ def test_noise_behind_a_coarse_dial(sigma):
     assert noise.sigma_deg == pytest.approx(sigma, rel=0.35)
 
 
-def test_fine_dial_counts_as_noise():
+def test_fine_dial_counts_as_noise() -> None:
     rng, x, basis, gap = material()
     angle = np.round((30 * x + 0.2 * rng.normal(size=len(x))) / 0.5) * 0.5
     noise = estimate_noise(angle, basis, gap, 0.5, np.ones(len(x)))
@@ -87,7 +88,7 @@ def test_fine_dial_counts_as_noise():
     assert noise.sigma_deg == pytest.approx(np.hypot(0.2, 0.5 / np.sqrt(12)), rel=0.08)
 
 
-def test_interval_score_is_unbiased_with_its_information():
+def test_interval_score_is_unbiased_with_its_information() -> None:
     rng = np.random.default_rng(2)
     mean = rng.uniform(0, 10, 40000)
     read = np.round((mean + 0.1 * rng.normal(size=len(mean))) / 0.5) * 0.5

@@ -12,27 +12,27 @@ from cyclosweep.diagnosis.identify.scan import (
 from cyclosweep.diagnosis.identify.verdict import unit_slip
 
 
-def test_evidence_is_nothing_without_gain_and_grows_with_it():
+def test_evidence_is_nothing_without_gain_and_grows_with_it() -> None:
     assert evidence(1.0, 1) == 0
     assert evidence(20.0, 1) == pytest.approx(0.5 * (20 - 1 - np.log(20)))
     assert evidence(20.0, 10) < evidence(20.0, 1)
 
 
-def test_gains_add_up_over_nested_models():
+def test_gains_add_up_over_nested_models() -> None:
     whole = likelihood_gain(np.array(50.0), 60.0, 100.0)
     first = likelihood_gain(np.array(30.0), 60.0, 100.0)
     second = likelihood_gain(np.array(20.0), 30.0, 100.0)
     assert whole == pytest.approx(first + second)
 
 
-def test_vector_of_equal_parts_costs_what_two_amplitudes_cost():
+def test_vector_of_equal_parts_costs_what_two_amplitudes_cost() -> None:
     size = np.array([3.0, 4.0])
     gain = float(size @ size) / 0.2**2
     found = 0.5 * gain - price_of_vector(size, np.eye(2) / 0.2**2)
     assert found == pytest.approx(evidence(gain, 2), abs=0.05)
 
 
-def test_vector_in_a_direction_that_is_seldom_met_costs_more():
+def test_vector_in_a_direction_that_is_seldom_met_costs_more() -> None:
     # The second component is seen a hundred times worse, as the sine of a small angle is.
     information = np.diag([1e4, 1.0])
     usual, seldom = np.array([0.2, 0.0]), np.array([0.0, 20.0])
@@ -42,7 +42,7 @@ def test_vector_in_a_direction_that_is_seldom_met_costs_more():
 
 
 @pytest.mark.parametrize("noise", [0.0, 15.0, 700.0])
-def test_component_that_does_not_show_costs_nothing(noise):
+def test_component_that_does_not_show_costs_nothing(noise: float) -> None:
     # Whatever noise put into it: the price is that of the other component alone.
     information = np.diag([1e4, 1e-12])
     price = price_of_vector(np.array([0.2, noise]), information)
@@ -50,7 +50,7 @@ def test_component_that_does_not_show_costs_nothing(noise):
     assert price_of_vector(np.array([0.2, noise]), np.zeros((2, 2))) == 0.0
 
 
-def test_choice_costs_the_range_over_the_error_and_nothing_where_it_is_not_told():
+def test_choice_costs_the_range_over_the_error_and_nothing_where_it_is_not_told() -> None:
     assert price_of_choice(np.array([[100.0**2]]), np.array([1.0])) == pytest.approx(
         np.log(100.0 / np.sqrt(2 * np.pi)), abs=1e-3
     )
@@ -66,9 +66,9 @@ def test_choice_costs_the_range_over_the_error_and_nothing_where_it_is_not_told(
     ("factor", "word"),
     [(57.3, "57.3"), (1 / 57.3, "57.3"), (1000, "1000"), (87.0**2, "squared"), (87.0, "the ratio")],
 )
-def test_unit_slips_are_named(factor, word):
+def test_unit_slips_are_named(factor: float, word: str) -> None:
     assert word in unit_slip(factor * 1.05, 87.0)
 
 
-def test_other_factors_are_not():
+def test_other_factors_are_not() -> None:
     assert unit_slip(20.0, 87.0) is None

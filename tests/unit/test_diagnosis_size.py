@@ -1,10 +1,12 @@
 """Sizes of effects, their intervals, and what the statement says about the alternatives."""
 
+from collections.abc import Callable
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
-from tests.support.bench_rig import record
 
 import cyclosweep as cs
 from cyclosweep.diagnosis.hypotheses.flexible_basis import rich_basis
@@ -14,15 +16,18 @@ from cyclosweep.diagnosis.identify.testability import size_of, spread_of_size
 from cyclosweep.diagnosis.prepare.noise import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.statement import statement
-from cyclosweep.recording import Recording
 from cyclosweep.report.wording import verdict_words
-from cyclosweep.simulation.effects import effects
+from cyclosweep.simulation.effects import Shape, effects
+from tests.support.arrays import Floats
+from tests.support.bench_rig import record
 
 KNOWN = {effect.name: effect for effect in effects()}
 
 
-def fitted(name, shape, angle, torque, run):
-    recording = Recording.from_arrays(torque, angle, run=run)
+def fitted(
+    name: str, shape: Shape, angle: Floats, torque: Floats, run: npt.NDArray[np.int64]
+) -> SimpleNamespace:
+    recording = cs.Recording.from_arrays(torque, angle, run=run)
     drive = cs.Drive.reference_87()
     problem = prepare(recording, drive.nominal_line("input"), int(drive.output_pin_count))
     library = build_library(problem.history, problem.fitted, tuple(KNOWN.values()))
@@ -43,7 +48,9 @@ def fitted(name, shape, angle, torque, run):
         ),
     ],
 )
-def test_standard_error_of_a_size_is_its_spread(name, shape, made):
+def test_standard_error_of_a_size_is_its_spread(
+    name: str, shape: Shape, made: Callable[[Floats, Floats], Floats]
+) -> None:
     torque = np.tile(np.r_[np.linspace(1, 25, 80), np.linspace(25, 1, 80)], 4)
     torque[320:] *= -1
     run = np.repeat(np.arange(4), 160)
@@ -59,7 +66,7 @@ def test_standard_error_of_a_size_is_its_spread(name, shape, made):
     assert np.median(errors) == pytest.approx(np.std(sizes), rel=0.35)
 
 
-def test_two_causes_are_not_put_down_to_free_offsets_of_the_runs():
+def test_two_causes_are_not_put_down_to_free_offsets_of_the_runs() -> None:
     found = cs.diagnose(
         record(11, ("transmission_error", "thermal_drift"), d=20.0),
         cs.Drive.reference_87(),
@@ -68,7 +75,7 @@ def test_two_causes_are_not_put_down_to_free_offsets_of_the_runs():
     assert {effect["name"] for effect in found.effects} == {"transmission_error", "thermal_drift"}
 
 
-def said(explanations, held=(0.0, 0.0)):
+def said(explanations: list[dict[str, Any]], held: tuple[float, float] = (0.0, 0.0)) -> str:
     size = {"estimate": 0.5, "ci95": [0.4, 0.6]}
     effects = [{"name": "creep", "size_deg": size}]
     numbers = {"before": 0.3, "after": 0.2, "held_before": held[0], "held_after": held[1]}
@@ -80,7 +87,7 @@ def said(explanations, held=(0.0, 0.0)):
     return statement("IDENTIFIED", effects, explanations, [], parameters, numbers)
 
 
-def test_what_is_not_ruled_out_stands_beside_the_name():
+def test_what_is_not_ruled_out_stands_beside_the_name() -> None:
     one = {"effects": ["creep"], "without_name": [], "probability": 1.0}
     assert "Missing physics: creep. Size" in said([one])
     two = [
@@ -91,14 +98,14 @@ def test_what_is_not_ruled_out_stands_beside_the_name():
     assert "creep, with a probability of 60 %; not ruled out: viscous drag (38 %)" in text
 
 
-def test_a_verdict_with_rivals_is_headed_by_its_probability():
+def test_a_verdict_with_rivals_is_headed_by_its_probability() -> None:
     fits = [{"probability": 0.6}, {"probability": 0.38}]
     alone = {"verdict": "IDENTIFIED", "explanation_set": fits[:1]}
     assert verdict_words(alone)[1] == "Cause identified"
     assert verdict_words(alone | {"explanation_set": fits})[1] == "Most probable cause (60 %)"
 
 
-def test_error_on_data_not_used_is_said_only_where_it_was_computed():
+def test_error_on_data_not_used_is_said_only_where_it_was_computed() -> None:
     one = [{"effects": ["creep"], "without_name": [], "probability": 1.0}]
     assert "data not used" not in said(one)
     assert "data not used from 0.3 deg" in said(one, (0.3, 0.2))

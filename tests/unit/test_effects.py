@@ -1,10 +1,13 @@
 """Every effect of the vocabulary: words, shapes, columns, and what makes it untestable."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from cyclosweep.simulation import effects
-from cyclosweep.simulation.effects import VOCABULARY, Effect, History, Parameter
+from cyclosweep.simulation.effects import VOCABULARY, Effect, History, Parameter, Shape
+from tests.support.arrays import Floats
 
 NAMES = [
     "friction_hysteresis",
@@ -23,7 +26,7 @@ NAMES = [
 ]
 
 
-def history(**changes):
+def history(**changes: Any) -> History:
     runs = 5
     path = np.concatenate([np.linspace(0.5, 20, 40), np.linspace(20, -20, 80), [-10.0, -0.5]])
     torque = np.tile(path, runs)
@@ -46,12 +49,12 @@ def history(**changes):
     return History(**(known | changes))
 
 
-def test_vocabulary_is_complete_and_in_order():
+def test_vocabulary_is_complete_and_in_order() -> None:
     assert [effect.name for effect in VOCABULARY] == NAMES
 
 
 @pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
-def test_effect_says_what_it_is(effect):
+def test_effect_says_what_it_is(effect: Effect) -> None:
     assert effect.physics.count(".") >= 2
     assert effect.source
     assert effect.tell_tale
@@ -59,7 +62,7 @@ def test_effect_says_what_it_is(effect):
 
 
 @pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
-def test_columns_match_amplitudes(effect):
+def test_columns_match_amplitudes(effect: Effect) -> None:
     h = history()
     assert effect.untestable(h) is None
     shapes = effect.shapes(h)
@@ -73,14 +76,14 @@ def test_columns_match_amplitudes(effect):
 
 
 @pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
-def test_missing_column_makes_untestable(effect):
+def test_missing_column_makes_untestable(effect: Effect) -> None:
     for column in effect.needs:
         reason = effect.untestable(history(**{column: None}))
         assert reason is not None
         assert column in reason
 
 
-def test_friction_takes_from_the_twist_while_loading():
+def test_friction_takes_from_the_twist_while_loading() -> None:
     h = history()
     column = effects.find("friction_hysteresis").columns(
         h, {"slip_deg": 0.5, "scatter": 0.5, "slack": 0.0}
@@ -89,14 +92,14 @@ def test_friction_takes_from_the_twist_while_loading():
     assert column[80] == pytest.approx(2.7)
 
 
-def test_takeup_only_stiffens_beyond_its_first_engagement():
+def test_takeup_only_stiffens_beyond_its_first_engagement() -> None:
     h = history()
     column = effects.find("clearance_takeup").columns(h, {"first_nm": 10.0, "range_nm": 2.0})[:, 0]
     assert np.all(column[np.abs(h.applied_nm) < 10] == 0)
     assert column[39] == pytest.approx(-(10 - 1.0))
 
 
-def test_pins_engage_one_after_another_from_a_low_load_on():
+def test_pins_engage_one_after_another_from_a_low_load_on() -> None:
     h = history()
     top = h.largest_torque_nm
     shapes = effects.find("clearance_takeup").shapes(h)
@@ -104,7 +107,7 @@ def test_pins_engage_one_after_another_from_a_low_load_on():
     assert max(s["first_nm"] + s["range_nm"] for s in shapes) > top
 
 
-def test_free_offsets_are_memory_only_if_one_memory_explains_them():
+def test_free_offsets_are_memory_only_if_one_memory_explains_them() -> None:
     largest = np.array([20.0, 8.0, 14.0, 4.0, 18.0, 10.0, 6.0, 16.0, 12.0, 5.0, 19.0, 9.0])
     torque = np.concatenate([[t, -0.5 * t, 0.7 * t, 0.2] for t in largest])
     run = np.repeat(np.arange(12), 4)
@@ -120,7 +123,7 @@ def test_free_offsets_are_memory_only_if_one_memory_explains_them():
     )
     datum = effects.find("datum_drift")
 
-    def offsets(memory, other):
+    def offsets(memory: float, other: float) -> Floats:
         shape = {"push": 1.0, "memory": memory, "push_2": 2.0, "memory_2": other}
         shift = datum.columns(h, shape)[h.run_starts] @ [1.0, 0.5]
         return shift[1:] - shift[0]
@@ -131,14 +134,14 @@ def test_free_offsets_are_memory_only_if_one_memory_explains_them():
     assert not datum.telling(h, {"free": 1.0}, wandering)
 
 
-def test_datum_remembers_the_run_before():
+def test_datum_remembers_the_run_before() -> None:
     h = history()
     column = effects.find("datum_drift").columns(h, {"push": 0.0, "memory": 0.5})[:, 0]
     per_run = column[h.run_starts]
     np.testing.assert_allclose(per_run, [0, 1, 1.5, 1.75, 1.875])
 
 
-def test_balanced_loops_push_the_datum_by_no_rounding():
+def test_balanced_loops_push_the_datum_by_no_rounding() -> None:
     loop = 20.0 * np.r_[np.linspace(0, 1, 31), np.linspace(1, -1, 60), np.linspace(-1, 0, 31)]
     h = history(applied_nm=np.tile(loop, 5), elastic_nm=np.tile(loop, 5))
     mean, balance = 5.0, 3.0
@@ -149,12 +152,12 @@ def test_balanced_loops_push_the_datum_by_no_rounding():
     assert {mean, balance} <= {s.get("push") for s in effects.find("datum_drift").shapes(biased)}
 
 
-def test_one_direction_hides_asymmetry():
+def test_one_direction_hides_asymmetry() -> None:
     h = history(side=np.ones(610))
     assert "one direction" in effects.find("load_asymmetry").untestable(h)
 
 
-def test_users_register_their_own():
+def test_users_register_their_own() -> None:
     class Wobble(Effect):
         name = "wobble_of_a_test"
         physics = "A table wobbles. It does so with the torque."
@@ -162,13 +165,13 @@ def test_users_register_their_own():
         tell_tale = "none"
         family = "smooth odd curve"
 
-        def shapes(self, history):
+        def shapes(self, history: History) -> list[Shape]:
             return [{}]
 
-        def columns(self, history, shape):
+        def columns(self, history: History, shape: Shape) -> Floats:
             return np.sin(history.elastic_nm)[:, None]
 
-        def amplitudes(self, shape):
+        def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
             return (Parameter("wobble_deg", "deg", "size of the wobble"),)
 
     try:
@@ -180,6 +183,6 @@ def test_users_register_their_own():
         effects._REGISTERED.pop("wobble_of_a_test", None)
 
 
-def test_unknown_effect_is_named():
+def test_unknown_effect_is_named() -> None:
     with pytest.raises(ValueError, match="nonsense"):
         effects.find("nonsense")

@@ -1,6 +1,8 @@
 """Forecasts of loops whose residual is error of the model: crossings, elastic law, findings."""
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,13 +10,13 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.verify.holdout import distance_to_curve, replicate_floor
-from cyclosweep.recording import Recording
 from cyclosweep.simulation.simulate import EffectValue, Model, elastic_law
+from tests.support.arrays import Floats
 
 SLIDE = {"slip_deg": 0.05, "scatter": 0.8, "slack": 0.0, "growth": 0.6, "reference_nm": 8.0}
 
 
-def truth(zero_nm=0.6, coulomb_nm=2.0):
+def truth(zero_nm: float = 0.6, coulomb_nm: float = 2.0) -> Model:
     return Model(
         compliance_deg_per_nm=0.09,
         free_play_deg=0.8,
@@ -29,32 +31,32 @@ def truth(zero_nm=0.6, coulomb_nm=2.0):
     )
 
 
-def ramps(top=24.0, runs=3, per_run=500, kept=True):
+def ramps(top: float = 24.0, runs: int = 3, per_run: int = 500, kept: bool = True) -> cs.Recording:
     one = top * np.concatenate(
         [np.linspace(0, 1, per_run // 4), np.linspace(1, -1, per_run // 2),
          np.linspace(-1, 0, per_run // 4)]
     )  # fmt: skip
     torque = np.tile(one, runs)
     run = np.repeat(np.arange(100, 100 + runs), len(one))
-    return Recording.from_arrays(
+    return cs.Recording.from_arrays(
         torque, time_s=np.arange(len(torque)) * 0.04, run=run, side="output", history="continuous",
         conditioning_runs=(100,), holdout_runs=(99 + runs,) if kept else (),
     )  # fmt: skip
 
 
-def measured(model, steps_deg=0.1, **programme):
+def measured(model: Model, steps_deg: float = 0.1, **programme: Any) -> cs.Recording:
     """Loops of a model with steps tied to the position, as a mesh makes them."""
     load = ramps(**programme)
     return load.with_angle(with_steps(cs.simulate(model, load).angle_deg, steps_deg))
 
 
-def with_steps(angle, steps_deg):
+def with_steps(angle: Floats, steps_deg: float) -> Floats:
     rng = np.random.default_rng(1)
     steps = steps_deg * np.sin(2 * np.pi * angle / 0.7)
     return angle + steps + 0.002 * rng.normal(size=len(angle))
 
 
-def drive():
+def drive() -> cs.Drive:
     known = cs.Drive.reference_87()
     return known.model_copy(
         update={"output_stiffness_nm_per_arcmin": 0.2, "free_play_deg": 0.8 * known.ratio}
@@ -62,14 +64,14 @@ def drive():
 
 
 @pytest.fixture(scope="module")
-def found():
+def found() -> cs.Diagnosis:
     return cs.diagnose(measured(truth()), drive())
 
 
-def test_elastic_law_is_solved_exactly():
+def test_elastic_law_is_solved_exactly() -> None:
     model = truth(zero_nm=0.0)
     torque = np.linspace(0.0, 24.0, 400)
-    angle = cs.simulate(model, Recording.from_arrays(torque, side="output")).angle_deg
+    angle = cs.simulate(model, cs.Recording.from_arrays(torque, side="output")).angle_deg
     friction = 2.0 + 0.2 * 18.0
     law = elastic_law(model, 24.0)
     # Slid all the way, the elastic torque is what friction leaves: T = T_e + Y + mu T_e.
@@ -80,7 +82,7 @@ def test_elastic_law_is_solved_exactly():
     assert np.all(np.diff(law.twist_deg) > 0)
 
 
-def test_forecast_and_its_inverse_agree():
+def test_forecast_and_its_inverse_agree() -> None:
     model = truth()
     load = ramps()
     there = cs.simulate(model, load)
@@ -89,8 +91,8 @@ def test_forecast_and_its_inverse_agree():
     np.testing.assert_allclose(back.torque_nm[in_contact], there.torque_nm[in_contact], atol=0.05)
 
 
-def test_torque_zero_moves_both_crossings_alike():
-    def crossings(zero_nm):
+def test_torque_zero_moves_both_crossings_alike() -> None:
+    def crossings(zero_nm: float) -> Floats:
         load = ramps(runs=2)
         angle = cs.simulate(truth(zero_nm), load).angle_deg
         through = np.flatnonzero((np.diff(np.sign(angle - 1.5)) != 0) & (load.run[1:] == 101))
@@ -99,13 +101,13 @@ def test_torque_zero_moves_both_crossings_alike():
     np.testing.assert_allclose(crossings(1.0) - crossings(0.0), 1.0, atol=0.25)
 
 
-def test_model_file_keeps_torque_zero(tmp_path):
+def test_model_file_keeps_torque_zero(tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text(truth().to_json())
     assert cs.Model.from_json(path).torque_zero_nm == 0.6
 
 
-def test_free_forecast_comes_close_to_what_is_left(found):
+def test_free_forecast_comes_close_to_what_is_left(found: cs.Diagnosis) -> None:
     blocks = found.content["repaired"]["blocks"]
     (block,) = blocks
     assert block["after_deg"] < 0.25 * block["before_deg"]
@@ -118,7 +120,7 @@ def test_free_forecast_comes_close_to_what_is_left(found):
     assert "forecast" in found.statement
 
 
-def test_written_model_is_the_fitted_one(found, tmp_path):
+def test_written_model_is_the_fitted_one(found: cs.Diagnosis, tmp_path: Path) -> None:
     recording = found.recording
     path = tmp_path / "model.json"
     path.write_text(found.model.to_json())
@@ -128,14 +130,14 @@ def test_written_model_is_the_fitted_one(found, tmp_path):
     assert error == pytest.approx(found.content["repaired"]["holdout_rmse_deg"], rel=0.02)
 
 
-def test_calibration_of_a_loop_is_found(found):
+def test_calibration_of_a_loop_is_found(found: cs.Diagnosis) -> None:
     model = found.model
     friction = next(e for e in model.effects if e.name == "friction_hysteresis").amplitudes[0]
     assert friction == pytest.approx(2.0, abs=0.5)
     assert model.torque_zero_nm == pytest.approx(0.6, abs=0.4)
 
 
-def test_loop_is_described(found):
+def test_loop_is_described(found: cs.Diagnosis) -> None:
     topics = {row["topic"] for row in found.content["findings"]}
     assert {
         "play", "friction hysteresis", "friction that grows with load", "stiffness", "staircase",
@@ -146,14 +148,14 @@ def test_loop_is_described(found):
     assert "independent_torque" not in hidden
 
 
-def test_friction_that_never_breaks_away_gives_no_play():
+def test_friction_that_never_breaks_away_gives_no_play() -> None:
     found = cs.diagnose(measured(truth(0.0), steps_deg=0.05, top=4.0), drive())
     rows = {row["topic"]: row["text"] for row in found.content["findings"]}
     assert "friction-censored" in rows["play"]
     assert rows["stiffness"].startswith("Not reported")
 
 
-def test_distance_forgives_a_late_crossing():
+def test_distance_forgives_a_late_crossing() -> None:
     recording = measured(truth(), steps_deg=0.0)
     problem = prepare(recording, drive().nominal_line("output"), 8)
     late = np.roll(recording.angle_deg, 4)
@@ -163,7 +165,7 @@ def test_distance_forgives_a_late_crossing():
 
 
 @pytest.mark.parametrize("changes", [False, True])
-def test_drift_between_fitted_runs_is_seen(changes):
+def test_drift_between_fitted_runs_is_seen(changes: bool) -> None:
     first = measured(truth(), runs=4, kept=False)
     later = replace(truth(), compliance_deg_per_nm=0.16, free_play_deg=2.0, datum_deg=2.5)
     second = measured(later if changes else truth(), runs=4, kept=False)
@@ -174,11 +176,11 @@ def test_drift_between_fitted_runs_is_seen(changes):
     assert ("unfit for a stiffness" in found.statement) is changes
 
 
-def test_loops_of_another_size_are_no_drift():
+def test_loops_of_another_size_are_no_drift() -> None:
     # Small loops hide in presliding: their model does not hold for large ones, on any drive.
     large = ramps(kept=False)
     torque = np.where(large.run == 101, 4.0 / 24.0, 1.0) * large.torque_nm
-    loops = Recording.from_arrays(
+    loops = cs.Recording.from_arrays(
         torque, time_s=large.time_s, run=large.run, side="output", history="continuous",
         conditioning_runs=(100,),
     )  # fmt: skip
@@ -186,13 +188,13 @@ def test_loops_of_another_size_are_no_drift():
     assert cs.diagnose(loops.with_angle(angle), drive(), full=False).content["stationary"]
 
 
-def test_floor_needs_a_replicate():
+def test_floor_needs_a_replicate() -> None:
     recording = measured(truth())
     problem = prepare(recording, drive().nominal_line("output"), 8)
     assert replicate_floor(problem, problem.whole_held_out) < 0.01
     turned = recording.torque_nm.copy()
     turned[recording.run == 102] *= -1
-    other = Recording.from_arrays(
+    other = cs.Recording.from_arrays(
         turned, recording.angle_deg, run=recording.run, side="output", history="continuous",
         conditioning_runs=(100,), holdout_runs=(102,),
     )  # fmt: skip
@@ -200,12 +202,12 @@ def test_floor_needs_a_replicate():
     assert replicate_floor(apart, apart.whole_held_out) is None
 
 
-def test_rows_beyond_the_limits_are_simulated_but_do_not_count(tmp_path):
+def test_rows_beyond_the_limits_are_simulated_but_do_not_count(tmp_path: Path) -> None:
     path = tmp_path / "loop.csv"
     rows = "".join(f"{t},{28 + 2.7 * t:.3f},{2 * t}\n" for t in range(1, 31))
     path.write_text("torque_nm,angle_deg,SET\n" + rows)
     path.with_suffix(".toml").write_text("[score]\nabs_max = { SET = 40 }\n")
-    recording = Recording.read(path)
+    recording = cs.Recording.read(path)
     assert len(recording) == 30
     assert recording.counts.sum() == 20
     assert any("neither fitted nor scored" in note for note in recording.notes)
@@ -213,4 +215,4 @@ def test_rows_beyond_the_limits_are_simulated_but_do_not_count(tmp_path):
     assert problem.count == 20
     path.with_suffix(".toml").write_text("[score]\nabs_max = { NOBODY = 40 }\n")
     with pytest.raises(cs.InputError, match=r"score\.abs_max\.NOBODY"):
-        Recording.read(path)
+        cs.Recording.read(path)

@@ -5,29 +5,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
 
 TORQUE = np.r_[np.linspace(0.5, 20, 40), np.linspace(20, 0.5, 40), np.linspace(-0.5, -20, 40)]
 ANGLE = 28 * np.sign(TORQUE) + 2.73 * TORQUE
 TIME = np.arange(len(TORQUE), dtype=float)
 
 
-def kinds(recording: Recording) -> dict[str, str | None]:
+def kinds(recording: cs.Recording) -> dict[str, str | None]:
     return {fault.kind: fault.verdict for fault in recording.faults}
 
 
 def test_a_sound_recording_has_no_faults() -> None:
-    assert Recording.from_arrays(TORQUE, ANGLE, time_s=TIME).faults == ()
+    assert cs.Recording.from_arrays(TORQUE, ANGLE, time_s=TIME).faults == ()
 
 
 def test_a_dozen_hand_read_points_without_a_clock_are_enough() -> None:
     torque = np.array([1, 2, 3, 4, 5, 6, 5, 4, 3, 2, 1, 0.5])
     angle = np.round(2 * (28 + 2.73 * torque)) / 2
-    assert Recording.from_arrays(torque, angle).blocking_fault is None
+    assert cs.Recording.from_arrays(torque, angle).blocking_fault is None
 
 
 def test_two_samples_are_insufficient() -> None:
-    fault = Recording.from_arrays([1.0, 2.0], [30.0, 33.0]).blocking_fault
+    fault = cs.Recording.from_arrays([1.0, 2.0], [30.0, 33.0]).blocking_fault
     assert fault is not None
     assert fault.verdict == "INSUFFICIENT_DATA"
     assert "2 samples" in fault.reason
@@ -36,23 +36,23 @@ def test_two_samples_are_insufficient() -> None:
 def test_no_samples_are_insufficient(tmp_path: Path) -> None:
     path = tmp_path / "loop.csv"
     path.write_text("torque_nm,angle_deg\n")
-    assert kinds(Recording.read(path))["too_few_samples"] == "INSUFFICIENT_DATA"
+    assert kinds(cs.Recording.read(path))["too_few_samples"] == "INSUFFICIENT_DATA"
 
 
 def test_constant_torque_is_insufficient() -> None:
-    recording = Recording.from_arrays(np.full(50, 3.0), ANGLE[:50])
+    recording = cs.Recording.from_arrays(np.full(50, 3.0), ANGLE[:50])
     assert kinds(recording) == {"constant_torque": "INSUFFICIENT_DATA"}
 
 
 def test_constant_angle_is_a_data_fault() -> None:
-    recording = Recording.from_arrays(TORQUE, np.full(len(TORQUE), 3.0))
+    recording = cs.Recording.from_arrays(TORQUE, np.full(len(TORQUE), 3.0))
     assert kinds(recording) == {"constant_angle": "DATA_FAULT"}
 
 
 def test_time_that_runs_backwards_is_a_data_fault() -> None:
     time = TIME.copy()
     time[50] = 3.0
-    fault = Recording.from_arrays(TORQUE, ANGLE, time_s=time).blocking_fault
+    fault = cs.Recording.from_arrays(TORQUE, ANGLE, time_s=time).blocking_fault
     assert fault is not None
     assert fault.verdict == "DATA_FAULT"
     assert "sample 51" in fault.reason
@@ -61,42 +61,42 @@ def test_time_that_runs_backwards_is_a_data_fault() -> None:
 def test_time_may_restart_with_a_run() -> None:
     run = np.repeat([1, 2], 60)
     time = np.r_[TIME[:60], TIME[:60]]
-    assert Recording.from_arrays(TORQUE, ANGLE, time_s=time, run=run).faults == ()
+    assert cs.Recording.from_arrays(TORQUE, ANGLE, time_s=time, run=run).faults == ()
 
 
 def test_runs_in_two_places_are_a_data_fault() -> None:
     run = np.repeat([1, 2, 1], 40)
-    assert kinds(Recording.from_arrays(TORQUE, ANGLE, run=run)) == {"run_split": "DATA_FAULT"}
+    assert kinds(cs.Recording.from_arrays(TORQUE, ANGLE, run=run)) == {"run_split": "DATA_FAULT"}
 
 
 def test_gaps_ticks_and_absent_runs_are_said_without_a_verdict() -> None:
     time = TIME.copy()
     time[80:] += 500
     time[10] = time[9]
-    recording = Recording.from_arrays(TORQUE, ANGLE, time_s=time, holdout_runs=(5,))
+    recording = cs.Recording.from_arrays(TORQUE, ANGLE, time_s=time, holdout_runs=(5,))
     assert kinds(recording) == {"gaps": None, "clock_ticks": None, "run_absent": None}
     assert recording.blocking_fault is None
 
 
 def test_a_clipped_angle_is_said() -> None:
-    recording = Recording.from_arrays(TORQUE, np.minimum(ANGLE, 70))
+    recording = cs.Recording.from_arrays(TORQUE, np.minimum(ANGLE, 70))
     assert kinds(recording) == {"saturation": None}
-    clipped = Recording.from_arrays(TORQUE, np.minimum(ANGLE, 30.5))
+    clipped = cs.Recording.from_arrays(TORQUE, np.minimum(ANGLE, 30.5))
     assert kinds(clipped)["saturation"] == "DATA_FAULT"
 
 
 def test_unrelated_columns_are_a_data_fault() -> None:
     angle = np.random.default_rng(3).normal(size=5000)
     torque = np.random.default_rng(4).normal(size=5000)
-    assert kinds(Recording.from_arrays(torque, angle)) == {"unrelated": "DATA_FAULT"}
+    assert kinds(cs.Recording.from_arrays(torque, angle)) == {"unrelated": "DATA_FAULT"}
 
 
 def test_absurd_numbers_are_a_data_fault() -> None:
-    assert kinds(Recording.from_arrays(TORQUE * 1e300, ANGLE)) == {"absurd_value": "DATA_FAULT"}
+    assert kinds(cs.Recording.from_arrays(TORQUE * 1e300, ANGLE)) == {"absurd_value": "DATA_FAULT"}
 
 
 def test_contradictions_come_before_shortage() -> None:
-    recording = Recording.from_arrays([1.0, 2.0], [30.0, 33.0], time_s=[1.0, 0.0])
+    recording = cs.Recording.from_arrays([1.0, 2.0], [30.0, 33.0], time_s=[1.0, 0.0])
     assert [fault.verdict for fault in recording.faults] == ["DATA_FAULT", "INSUFFICIENT_DATA"]
 
 
@@ -104,7 +104,7 @@ def test_contradictions_come_before_shortage() -> None:
 def test_one_value_over_and_over_is_quick(tmp_path: Path, rows: int) -> None:
     path = tmp_path / "stuck.csv"
     path.write_text("torque_nm,angle_deg,time_s\n" + "1.5,2.5,3.0\n" * rows)
-    fault = Recording.read(path).blocking_fault
+    fault = cs.Recording.read(path).blocking_fault
     assert fault is not None
     assert fault.verdict == "INSUFFICIENT_DATA"
 
@@ -113,6 +113,6 @@ def test_arrays_with_gaps_lose_the_samples_without_a_number() -> None:
     torque = np.linspace(-20.0, 20.0, 300)
     angle = 28.0 * np.sign(torque) + 2.7 * torque
     angle[::3] = np.nan
-    recording = Recording.from_arrays(torque, angle)
+    recording = cs.Recording.from_arrays(torque, angle)
     assert len(recording) == 200
     assert "100 of 300 samples" in recording.notes[0]

@@ -7,8 +7,8 @@ import numpy as np
 import polars as pl
 import pytest
 
+import cyclosweep as cs
 from cyclosweep.errors import InputError
-from cyclosweep.recording import Recording
 from cyclosweep.recording.signals import angle_lattice
 
 ROWS = [
@@ -34,7 +34,7 @@ def write(folder: Path, content: str | bytes, name: str = "loop.csv", meta: str 
     return path
 
 
-def assert_is_the_loop(recording: Recording) -> None:
+def assert_is_the_loop(recording: cs.Recording) -> None:
     table = np.array(ROWS)
     np.testing.assert_allclose(recording.time_s, table[:, 0])
     np.testing.assert_allclose(recording.torque_nm, table[:, 1])
@@ -45,7 +45,7 @@ def assert_is_the_loop(recording: Recording) -> None:
 
 def complaint(path: Path, meta: Path | None = None) -> str:
     with pytest.raises(InputError) as caught:
-        Recording.read(path, meta)
+        cs.Recording.read(path, meta)
     text = str(caught.value)
     assert "\n" not in text
     return text
@@ -78,13 +78,13 @@ GERMAN = TEXT.replace(",", ";").replace(".", ",")
     ],
 )  # fmt: skip
 def test_every_dialect_reads_the_same(tmp_path: Path, name: str, content: bytes) -> None:
-    assert_is_the_loop(Recording.read(write(tmp_path, content, name)))
+    assert_is_the_loop(cs.Recording.read(write(tmp_path, content, name)))
 
 
 def test_parquet(tmp_path: Path) -> None:
     path = tmp_path / "loop.parquet"
     pl.DataFrame(ROWS, schema=HEADER.split(","), orient="row").write_parquet(path)
-    recording = Recording.read(path)
+    recording = cs.Recording.read(path)
     assert_is_the_loop(recording)
     assert recording.name == "loop"
 
@@ -115,7 +115,7 @@ abs_max = { COMMAND = 30 }
 [merge]
 same_time = true
 """
-    recording = Recording.read(write(tmp_path, text, meta=meta))
+    recording = cs.Recording.read(write(tmp_path, text, meta=meta))
     k = np.arange(4, 31)
     expected = np.array([pair.mean() for pair in np.split(k, range(2, len(k), 2))])
     np.testing.assert_allclose(recording.torque_nm, expected)
@@ -133,7 +133,7 @@ same_time = true
 
 def test_merge_does_not_reach_across_runs(tmp_path: Path) -> None:
     text = "time_s,torque_nm,run\n0,1,1\n0,3,1\n0,10,2\n1,20,2\n"
-    recording = Recording.read(write(tmp_path, text, meta="[merge]\nsame_time = true\n"))
+    recording = cs.Recording.read(write(tmp_path, text, meta="[merge]\nsame_time = true\n"))
     np.testing.assert_allclose(recording.torque_nm, [2, 10, 20])
     np.testing.assert_array_equal(recording.run, [1, 2, 2])
 
@@ -142,20 +142,20 @@ def test_given_metadata_win_over_those_beside(tmp_path: Path) -> None:
     path = write(tmp_path, TEXT, meta='side = "output"\n')
     other = tmp_path / "other.toml"
     other.write_text('side = "input"\ndrive = "reference-87"\n')
-    assert Recording.read(path).side == "output"
-    assert Recording.read(path, other).side == "input"
-    assert Recording.read(path, other).drive == "reference-87"
+    assert cs.Recording.read(path).side == "output"
+    assert cs.Recording.read(path, other).side == "input"
+    assert cs.Recording.read(path, other).drive == "reference-87"
 
 
 def test_drive_file_beside_the_metadata(tmp_path: Path) -> None:
     path = write(tmp_path, TEXT, meta='drive = "mine.toml"\n')
     assert "mine.toml" in complaint(path)
     (tmp_path / "mine.toml").write_text("")
-    assert Recording.read(path).drive == str(tmp_path / "mine.toml")
+    assert cs.Recording.read(path).drive == str(tmp_path / "mine.toml")
 
 
 def test_program_without_metadata_is_canonical(tmp_path: Path) -> None:
-    recording = Recording.read(write(tmp_path, "torque_nm\n"[:-1] + ",run\n1,1\n2,1\n3,1\n"))
+    recording = cs.Recording.read(write(tmp_path, "torque_nm\n"[:-1] + ",run\n1,1\n2,1\n3,1\n"))
     assert recording.is_program
     assert recording.angle_deg is None
     assert recording.time_s is None
@@ -169,7 +169,7 @@ def test_dial_that_wraps_and_reversed_sign_are_recognised(tmp_path: Path) -> Non
     text = "torque_nm,angle_deg\n" + "".join(
         f"{t},{(-a) % 360:.4f}\n" for t, a in zip(torque, twist, strict=True)
     )
-    recording = Recording.read(write(tmp_path, text))
+    recording = cs.Recording.read(write(tmp_path, text))
     np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
     assert any("wraps at 360" in note for note in recording.notes)
     assert any("sign is reversed" in note for note in recording.notes)
@@ -181,7 +181,7 @@ def test_a_wide_twist_is_not_a_wrap(tmp_path: Path) -> None:
     text = "torque_nm,angle_deg\n" + "".join(
         f"{t},{a:.4f}\n" for t, a in zip(torque, twist, strict=True)
     )
-    recording = Recording.read(write(tmp_path, text))
+    recording = cs.Recording.read(write(tmp_path, text))
     np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
     assert not any("wraps" in note for note in recording.notes)
 
@@ -191,25 +191,25 @@ def test_steps_of_the_dial_are_recognised_unless_told(tmp_path: Path) -> None:
     text = "torque_nm,angle_deg\n" + "".join(
         f"{t:.4f},{round(2 * (28 + 2.73 * t)) / 2}\n" for t in torque
     )
-    assert Recording.read(write(tmp_path, text)).angle_resolution_deg == 0.5
+    assert cs.Recording.read(write(tmp_path, text)).angle_resolution_deg == 0.5
     fine = "torque_nm,angle_deg\n" + "".join(f"{t:.4f},{28 + 2.73 * t:.5f}\n" for t in torque)
-    assert Recording.read(write(tmp_path, fine)).angle_resolution_deg == 0
+    assert cs.Recording.read(write(tmp_path, fine)).angle_resolution_deg == 0
 
 
 def test_missing_samples_are_dropped_and_said(tmp_path: Path) -> None:
     text = TEXT + "9.0,NaN,-28.0,2\n10.0,-0.2,,2\n11.0,inf,-28,2\n12.0,-0.3"
-    recording = Recording.read(write(tmp_path, text.replace("0.3", "0.3,,2")))
+    recording = cs.Recording.read(write(tmp_path, text.replace("0.3", "0.3,,2")))
     assert_is_the_loop(recording)
     assert any("4 of 13 samples without a finite value" in note for note in recording.notes)
 
 
 def test_repeated_rows_are_dropped_only_with_a_clock(tmp_path: Path) -> None:
     repeated = TEXT.replace("2.0,8.0,50.0,1\n", "2.0,8.0,50.0,1\n" * 3)
-    recording = Recording.read(write(tmp_path, repeated))
+    recording = cs.Recording.read(write(tmp_path, repeated))
     assert_is_the_loop(recording)
     assert any("2 rows that repeat" in note for note in recording.notes)
     held = "torque_nm,angle_deg\n8,50\n8,50\n8,50\n"
-    assert len(Recording.read(write(tmp_path, held))) == 3
+    assert len(cs.Recording.read(write(tmp_path, held))) == 3
 
 
 @pytest.mark.parametrize(
@@ -276,14 +276,16 @@ def test_files_that_are_not_there(tmp_path: Path) -> None:
 
 
 def test_arrays_cannot_be_changed(tmp_path: Path) -> None:
-    recording = Recording.read(write(tmp_path, TEXT))
+    recording = cs.Recording.read(write(tmp_path, TEXT))
     with pytest.raises(ValueError, match="read-only"):
         recording.torque_nm[0] = 1.0
 
 
 def test_from_arrays_take_and_frame() -> None:
     torque = np.linspace(1, 10, 20)
-    recording = Recording.from_arrays(torque, 2 * torque, run=np.repeat([3, 1], 10), side="output")
+    recording = cs.Recording.from_arrays(
+        torque, 2 * torque, run=np.repeat([3, 1], 10), side="output"
+    )
     assert recording.runs == (3, 1)
     part = recording.take(recording.in_runs([1]))
     np.testing.assert_allclose(part.torque_nm, torque[10:])
@@ -292,7 +294,7 @@ def test_from_arrays_take_and_frame() -> None:
     torque[0] = 99.0
     assert recording.torque_nm[0] == 1.0
     with pytest.raises(ValueError, match="angle_deg"):
-        Recording.from_arrays(torque, torque[:3])
+        cs.Recording.from_arrays(torque, torque[:3])
 
 
 @pytest.mark.parametrize(
@@ -309,7 +311,7 @@ def test_a_true_half_turn_is_not_a_wrap(tmp_path: Path) -> None:
     text = "torque_nm,angle_deg\n" + "".join(
         f"{t},{a:.4f}\n" for t, a in zip(torque, twist, strict=True)
     )
-    recording = Recording.read(write(tmp_path, text))
+    recording = cs.Recording.read(write(tmp_path, text))
     np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
 
 
@@ -317,7 +319,7 @@ def test_mostly_missing_is_a_data_fault(tmp_path: Path) -> None:
     text = "torque_nm,angle_deg\n" + "".join(
         f"{k},{28 + 2.7 * k if k % 2 else ''}\n" for k in range(1, 41)
     )
-    fault = Recording.read(write(tmp_path, text)).blocking_fault
+    fault = cs.Recording.read(write(tmp_path, text)).blocking_fault
     assert fault is not None
     assert (fault.kind, fault.verdict) == ("missing_values", "DATA_FAULT")
     assert "20 of 40" in fault.reason
@@ -325,11 +327,11 @@ def test_mostly_missing_is_a_data_fault(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("head", ["sep=;\n", "\ufeffsep=;\r\n"])
 def test_a_spreadsheets_separator_line_is_passed_over(tmp_path: Path, head: str) -> None:
-    assert_is_the_loop(Recording.read(write(tmp_path, (head + GERMAN).encode())))
+    assert_is_the_loop(cs.Recording.read(write(tmp_path, (head + GERMAN).encode())))
 
 
 def test_semicolons_with_decimal_points(tmp_path: Path) -> None:
     text = TEXT.replace(",", ";").replace("run\n", 'run;"note, free"\n')
-    assert_is_the_loop(Recording.read(write(tmp_path, text)))
+    assert_is_the_loop(cs.Recording.read(write(tmp_path, text)))
     mixed = text.replace("29.5;1\n", "29.5;1;warm, dry\n")
-    assert_is_the_loop(Recording.read(write(tmp_path, mixed)))
+    assert_is_the_loop(cs.Recording.read(write(tmp_path, mixed)))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
 from cyclosweep.report.charts import nice_ticks, tick_text
 from cyclosweep.report.loops import loop_figures
 from cyclosweep.report.profiles import by_group, profile, residual_map
@@ -12,13 +12,13 @@ from cyclosweep.report.thin import thin
 C, GAP, HALF_WIDTH = 2.0, 28.0, 0.5
 
 
-def parallelogram(smallest: float = 0.01) -> Recording:
+def parallelogram(smallest: float = 0.01) -> cs.Recording:
     """A loop with play, a straight spring and Coulomb friction of known width."""
     up = np.linspace(smallest, 10, 400)
     torque = np.r_[up, up[::-1], -up, -up[::-1]]
     loading = np.r_[np.ones(400), -np.ones(400), np.ones(400), -np.ones(400)]
     angle = np.sign(torque) * (GAP + C * np.abs(torque) - HALF_WIDTH * loading)
-    return Recording.from_arrays(torque, angle)
+    return cs.Recording.from_arrays(torque, angle)
 
 
 def test_loop_figures_of_a_known_loop() -> None:
@@ -36,7 +36,7 @@ def test_loop_figures_of_a_known_loop() -> None:
 def test_a_dead_zone_that_was_not_recorded_costs_no_energy() -> None:
     up = np.linspace(0.8, 10, 60)
     torque = np.r_[up, up[::-1], -up[3:], -up[::-1]]
-    recording = Recording.from_arrays(torque)
+    recording = cs.Recording.from_arrays(torque)
     elastic = GAP * np.sign(torque) + C * torque
     assert loop_figures(recording, elastic, 10.0).energy_j[1] == pytest.approx(0, abs=1e-9)
     with_friction = parallelogram(smallest=0.8)
@@ -55,7 +55,7 @@ def test_lost_motion_is_extended_where_no_sample_is_near() -> None:
 
 def test_a_one_sided_recording_shows_no_lost_motion() -> None:
     torque = np.linspace(0.1, 10, 50)
-    figures = loop_figures(Recording.from_arrays(torque), C * torque, None)
+    figures = loop_figures(cs.Recording.from_arrays(torque), C * torque, None)
     assert figures.lost_motion_deg is None
     assert figures.hysteresis_loss_deg is None
     assert figures.energy_j == {}

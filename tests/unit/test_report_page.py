@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_up_report import make
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
 from cyclosweep.report import ReportData, write_html
 from cyclosweep.report.html import page
+from tests.unit.made_up_report import make
 
 FAULTY = {
     "verdict": "DATA_FAULT",
@@ -96,17 +96,17 @@ def test_foreign_text_is_escaped(whole: ReportData) -> None:
 @pytest.mark.parametrize(
     "recording",
     [
-        Recording.from_arrays([], []),
-        Recording.from_arrays([1.0], [2.0]),
-        Recording.from_arrays([1.0, 2.0], [2.0, 3.0]),
-        Recording.from_arrays(np.ones(50), np.arange(50.0)),
-        Recording.from_arrays(np.arange(50.0), np.ones(50), time_s=np.arange(50.0)[::-1]),
-        Recording.from_arrays(np.arange(12.0) + 1, 28 + 2.7 * np.arange(12.0)),
+        cs.Recording.from_arrays([], []),
+        cs.Recording.from_arrays([1.0], [2.0]),
+        cs.Recording.from_arrays([1.0, 2.0], [2.0, 3.0]),
+        cs.Recording.from_arrays(np.ones(50), np.arange(50.0)),
+        cs.Recording.from_arrays(np.arange(50.0), np.ones(50), time_s=np.arange(50.0)[::-1]),
+        cs.Recording.from_arrays(np.arange(12.0) + 1, 28 + 2.7 * np.arange(12.0)),
     ],
     ids=["empty", "one", "two", "constant torque", "constant angle", "a dozen"],
 )
 @pytest.mark.parametrize("predicted", [False, True])
-def test_poor_recordings_have_a_page_too(recording: Recording, predicted: bool) -> None:
+def test_poor_recordings_have_a_page_too(recording: cs.Recording, predicted: bool) -> None:
     assert recording.angle_deg is not None
     simulated = np.zeros(len(recording)) if predicted else None
     data = ReportData(recording=recording, result=FAULTY, before_deg=simulated, after_deg=simulated)
@@ -118,7 +118,7 @@ def test_poor_recordings_have_a_page_too(recording: Recording, predicted: bool) 
 
 
 def test_a_programme_alone_has_a_page() -> None:
-    program = Recording.from_arrays(np.arange(30.0))
+    program = cs.Recording.from_arrays(np.arange(30.0))
     assert "<svg" not in page(ReportData(recording=program, result=FAULTY))
 
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from made_up_report import make
 from rich.console import Console
 
+import cyclosweep as cs
 from cyclosweep.errors import InputError
-from cyclosweep.recording import Recording
 from cyclosweep.recording.faults import Fault
 from cyclosweep.report import ReportData, print_summary, write_png, write_report
+from tests.unit.made_up_report import make
 
 
 def printed(data: ReportData, width: int) -> str:
@@ -56,6 +56,6 @@ def test_the_name_chooses_the_form(tmp_path: Path) -> None:
     assert (write_report(data, tmp_path / "pictures") / "loop.png").is_file()
     with pytest.raises(InputError, match=r"\.pdf"):
         write_report(data, tmp_path / "c.pdf")
-    program = ReportData(recording=Recording.from_arrays([1.0, 2.0]), result={})
+    program = ReportData(recording=cs.Recording.from_arrays([1.0, 2.0]), result={})
     with pytest.raises(InputError, match="no angles"):
         write_report(program, tmp_path / "d.png")

@@ -1,25 +1,26 @@
 """Forward model: both directions, files, and what it refuses."""
 
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.recording import Recording
 from cyclosweep.simulation.simulate import EffectValue
 
 C = 19.8 / 7.2575
 
 
-def loops(**known):
+def loops(**known: Any) -> cs.Recording:
     path = np.concatenate(
         [np.linspace(0, 20, 60), np.linspace(20, -20, 120), np.linspace(-20, 8, 90)]
     )
-    return Recording.from_arrays(path, time_s=np.arange(len(path)) * 1.0, **known)
+    return cs.Recording.from_arrays(path, time_s=np.arange(len(path)) * 1.0, **known)
 
 
-def full_model():
+def full_model() -> cs.Model:
     return cs.Model(
         compliance_deg_per_nm=C,
         free_play_deg=28.0,
@@ -35,16 +36,16 @@ def full_model():
     )  # fmt: skip
 
 
-def test_published_line_with_the_angle_at_the_last_contact():
+def test_published_line_with_the_angle_at_the_last_contact() -> None:
     drive = cs.Drive.reference_87()
     line = drive.nominal_line("input")
-    angle = cs.simulate(drive, Recording.from_arrays([7.0, 0.0, -7.0, 0.0])).angle_deg
+    angle = cs.simulate(drive, cs.Recording.from_arrays([7.0, 0.0, -7.0, 0.0])).angle_deg
     swing = 7.0 * line.compliance_deg_per_nm
     play = line.free_play_deg
     np.testing.assert_allclose(angle, [play + swing, play, -play - swing, -play])
 
 
-def test_torque_and_angle_are_inverse():
+def test_torque_and_angle_are_inverse() -> None:
     programme = loops()
     model = full_model()
     there = cs.simulate(model, programme)
@@ -54,7 +55,7 @@ def test_torque_and_angle_are_inverse():
     assert np.quantile(difference, 0.95) < 0.02
 
 
-def test_loop_is_as_wide_as_friction_times_compliance():
+def test_loop_is_as_wide_as_friction_times_compliance() -> None:
     model = cs.Model(
         compliance_deg_per_nm=C,
         free_play_deg=28.0,
@@ -67,7 +68,7 @@ def test_loop_is_as_wide_as_friction_times_compliance():
     assert down - up == pytest.approx(2 * 0.5 * C, rel=1e-3)
 
 
-def test_model_file_keeps_everything(tmp_path):
+def test_model_file_keeps_everything(tmp_path: Path) -> None:
     model = full_model()
     path = tmp_path / "model.json"
     path.write_text(model.to_json())
@@ -95,7 +96,7 @@ def test_model_file_keeps_everything(tmp_path):
         ),
     ],
 )
-def test_bad_model_file_is_one_line(tmp_path, text, what):
+def test_bad_model_file_is_one_line(tmp_path: Path, text: str, what: str) -> None:
     path = tmp_path / "model.json"
     path.write_text(text)
     with pytest.raises(cs.InputError, match=what) as error:
@@ -103,12 +104,12 @@ def test_bad_model_file_is_one_line(tmp_path, text, what):
     assert "\n" not in str(error.value)
 
 
-def test_missing_column_is_named():
+def test_missing_column_is_named() -> None:
     model = full_model()
     with pytest.raises(cs.InputError, match="time_s"):
-        cs.simulate(model, Recording.from_arrays([1.0, 2.0, 3.0]))
+        cs.simulate(model, cs.Recording.from_arrays([1.0, 2.0, 3.0]))
 
 
-def test_wrong_side_is_refused():
+def test_wrong_side_is_refused() -> None:
     with pytest.raises(cs.InputError, match="side"):
         cs.simulate(full_model(), loops(side="output"))

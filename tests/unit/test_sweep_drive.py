@@ -7,9 +7,9 @@ import math
 from pathlib import Path
 
 import pytest
-from tests.drives import random_drives
 
 import cyclosweep as cs
+from tests.drives import random_drives
 
 GOOD = """
 name = "mine"

@@ -1,14 +1,16 @@
 """The diagnosis on rigs whose answer is known."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from tests.support.bench_rig import record
 
 import cyclosweep as cs
-from cyclosweep.recording import Recording
+from tests.support.arrays import Floats
+from tests.support.bench_rig import record
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "measured-13-to-1"
 PRACTICE = {
@@ -24,15 +26,15 @@ PRACTICE = {
 }
 
 
-def diagnose(recording, **known):
+def diagnose(recording: cs.Recording, **known: Any) -> cs.Diagnosis:
     return cs.diagnose(recording, cs.Drive.reference_87(), **known)
 
 
 @pytest.mark.shared
 @pytest.mark.parametrize("case", sorted(PRACTICE))
-def test_practice_recordings(case, shared_recordings):
+def test_practice_recordings(case: int, shared_recordings: Path) -> None:
     folder = shared_recordings / "practice" / f"case-{case:03d}"
-    found = cs.diagnose(Recording.read(folder / "recording.csv"))
+    found = cs.diagnose(cs.Recording.read(folder / "recording.csv"))
     truth = PRACTICE[case]
     if truth is None:
         assert found.verdict == "UNKNOWN_PHYSICS"
@@ -46,13 +48,13 @@ def test_practice_recordings(case, shared_recordings):
 
 @pytest.mark.parametrize("family", ["white", "ar0.8", "t3", "outliers"])
 @pytest.mark.parametrize("kind", ["rich", "poor"])
-def test_nothing_missing_raises_no_alarm(family, kind):
+def test_nothing_missing_raises_no_alarm(family: str, kind: str) -> None:
     found = diagnose(record(11, kind=kind, family=family), full=False)
     assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
 
 
 @pytest.mark.parametrize("sigma", [0.03, 0.2])
-def test_half_degree_dial_raises_no_alarm(sigma):
+def test_half_degree_dial_raises_no_alarm(sigma: float) -> None:
     found = diagnose(record(12, kind="poor", sigma=sigma, step=0.5), full=False)
     assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
 
@@ -61,7 +63,7 @@ def test_half_degree_dial_raises_no_alarm(sigma):
     "name",
     ["friction_hysteresis", "overload_softening", "creep", "viscous_drag", "thermal_drift"],
 )
-def test_single_effects_are_named_and_repaired(name):
+def test_single_effects_are_named_and_repaired(name: str) -> None:
     found = diagnose(record(21, (name,), d=25))
     assert found.verdict == "IDENTIFIED"
     assert [e["name"] for e in found.effects] == [name]
@@ -71,7 +73,7 @@ def test_single_effects_are_named_and_repaired(name):
     assert content["effects"][0]["e_value"] > 100
 
 
-def test_a_sensor_at_its_limit_is_no_take_up_though_it_bends_at_two_thirds_of_the_range():
+def test_a_sensor_at_its_limit_is_no_take_up_though_it_bends_at_two_thirds_of_the_range() -> None:
     found = [
         diagnose(record(seed, ("early_saturation",), d=12), full=False) for seed in range(41, 53)
     ]
@@ -80,14 +82,14 @@ def test_a_sensor_at_its_limit_is_no_take_up_though_it_bends_at_two_thirds_of_th
 
 
 @pytest.mark.parametrize("name", ["slip_event", "bump"])
-def test_unknown_causes_get_no_name(name):
+def test_unknown_causes_get_no_name(name: str) -> None:
     found = diagnose(record(31, (name,), d=25))
     assert found.verdict == "UNKNOWN_PHYSICS"
     assert found.effects == []
     assert found.content["unknown"]["place"]
 
 
-def test_result_is_plain_json_and_repeats_itself():
+def test_result_is_plain_json_and_repeats_itself() -> None:
     recording = record(41, ("contact_stiffening",), d=20, kind="medium")
     first, second = diagnose(recording, seed=3), diagnose(recording, seed=3)
     assert first.to_json() == second.to_json()
@@ -114,12 +116,12 @@ def test_result_is_plain_json_and_repeats_itself():
     assert content["self_check"]["false_alarm"] <= 0.02
 
 
-def test_calibration_is_not_missing_physics():
+def test_calibration_is_not_missing_physics() -> None:
     rng = np.random.default_rng(5)
     torque = np.tile(np.r_[np.linspace(1, 25, 50), np.linspace(25, 1, 50)], 8)
     torque[400:] *= -1
     angle = 1.5 + 31 * np.sign(torque) + 3.4 * torque + 0.2 * rng.normal(size=len(torque))
-    found = diagnose(Recording.from_arrays(torque, angle, run=np.repeat(np.arange(8), 100)))
+    found = diagnose(cs.Recording.from_arrays(torque, angle, run=np.repeat(np.arange(8), 100)))
     assert found.effects == []
     baseline = found.content["baseline"]["parameters"]
     assert baseline["free_play_deg"]["estimate"] == pytest.approx(31, abs=0.1)
@@ -129,24 +131,30 @@ def test_calibration_is_not_missing_physics():
 @pytest.mark.parametrize(
     ("factor", "word"), [(57.2958, "57.3"), (1000.0, "1000"), (7569.0, "squared"), (-1.0, "sign")]
 )
-def test_wrong_units_are_a_data_fault(factor, word):
+def test_wrong_units_are_a_data_fault(factor: float, word: str) -> None:
     torque = np.tile([0.5, 2, 4, 6, 8, 10, 14, 18, 14, 10, 6, 2.0], 9)
     angle = factor * (28 + 2.73 * torque)
-    found = diagnose(Recording.from_arrays(torque, angle))
+    found = diagnose(cs.Recording.from_arrays(torque, angle))
     assert found.verdict == "DATA_FAULT"
     assert word in found.statement
 
 
-def test_a_dozen_hand_read_points():
+def test_a_dozen_hand_read_points() -> None:
     torque = np.array([0.5, 2, 4, 6, 8, 10, 14, 18, 14, 10, 6, 2])
     angle = np.round((28 + 2.73 * torque) * 2) / 2
-    found = diagnose(Recording.from_arrays(torque, angle, angle_resolution_deg=0.5))
+    found = diagnose(cs.Recording.from_arrays(torque, angle, angle_resolution_deg=0.5))
     assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
     hidden = {entry["name"] for entry in found.content["not_testable"]}
     assert {"creep", "viscous_drag", "rig_compliance", "torque_offset"} <= hidden
 
 
-def few_loads(loads, cycles, sigma, missing, seed=0):
+def few_loads(
+    loads: Floats,
+    cycles: int,
+    sigma: float,
+    missing: Callable[[Floats, Floats], Floats],
+    seed: int = 0,
+) -> cs.Diagnosis:
     """Weights and a dial: the same few loads, up and down, on either flank."""
     rng = np.random.default_rng(seed)
     one = np.r_[loads, loads[::-1]]
@@ -154,12 +162,12 @@ def few_loads(loads, cycles, sigma, missing, seed=0):
     run = np.repeat(np.arange(cycles), 2 * len(one))
     plain = 28 * np.sign(torque) + 2.73 * torque
     angle = plain + missing(torque, plain) + sigma * rng.normal(size=len(torque))
-    return diagnose(Recording.from_arrays(torque, angle, run=run), full=False)
+    return diagnose(cs.Recording.from_arrays(torque, angle, run=run), full=False)
 
 
-def test_shape_that_few_loads_cannot_tell_costs_nothing():
+def test_shape_that_few_loads_cannot_tell_costs_nothing() -> None:
     # Between two loads no kink can be placed: onset and range are one parameter.
-    def takeup(torque, _):
+    def takeup(torque: Floats, _: Floats) -> Floats:
         return -0.15 * np.sign(torque) * np.maximum(np.abs(torque) - 7.0, 0.0)
 
     found = few_loads(np.arange(2.0, 24.0, 3.0), 6, 0.1, takeup)
@@ -167,8 +175,8 @@ def test_shape_that_few_loads_cannot_tell_costs_nothing():
     assert [e["name"] for e in found.effects] == ["clearance_takeup"]
 
 
-def test_direction_of_a_dial_that_two_loads_cannot_tell_costs_nothing():
-    def dial(_, angle):
+def test_direction_of_a_dial_that_two_loads_cannot_tell_costs_nothing() -> None:
+    def dial(_: Floats, angle: Floats) -> Floats:
         return 1.5 * np.cos(np.radians(angle))
 
     found = few_loads(np.array([5.0, 20.0]), 10, 0.1, dial)
@@ -184,7 +192,9 @@ def test_direction_of_a_dial_that_two_loads_cannot_tell_costs_nothing():
     ("stem", "limit"),
     [("base_runin1", 0.20), ("base_runin5", 0.12), ("conic_runin1", 0.18), ("cold5", 0.30)],
 )
-def test_measured_ramp_is_predicted_after_fitting_another(stem, limit, shared_recordings):
+def test_measured_ramp_is_predicted_after_fitting_another(
+    stem: str, limit: float, shared_recordings: Path
+) -> None:
     found = measured(stem, shared_recordings)
     (block,) = found.content["repaired"]["blocks"]
     assert block["told_after_deg"] <= limit
@@ -196,7 +206,7 @@ def test_measured_ramp_is_predicted_after_fitting_another(stem, limit, shared_re
 
 
 @pytest.mark.shared
-def test_warm_drive_gives_no_stiffness(shared_recordings):
+def test_warm_drive_gives_no_stiffness(shared_recordings: Path) -> None:
     found = measured("base910_unr_runin1", shared_recordings)
     assert not found.content["stationary"]
     assert "unfit for a stiffness" in found.statement
@@ -206,17 +216,19 @@ def test_warm_drive_gives_no_stiffness(shared_recordings):
 
 @pytest.mark.shared
 @pytest.mark.parametrize(("stem", "steady"), [("base_runin1", True), ("910_unr_runin1", False)])
-def test_drift_shows_without_a_run_to_hold_out(stem, steady, shared_recordings, tmp_path):
+def test_drift_shows_without_a_run_to_hold_out(
+    stem: str, steady: bool, shared_recordings: Path, tmp_path: Path
+) -> None:
     meta = (EXAMPLES / "recording.toml").read_text().replace("holdout_runs = [102]", "")
     (tmp_path / "recording.toml").write_text(meta)
     (tmp_path / "drive.toml").write_text((EXAMPLES / "drive.toml").read_text())
     (path,) = (shared_recordings / "cycloidal-13-to-1").glob(f"*{stem}.csv.gz")
-    found = cs.diagnose(Recording.read(path, tmp_path / "recording.toml"), full=False)
+    found = cs.diagnose(cs.Recording.read(path, tmp_path / "recording.toml"), full=False)
     assert found.content["stationary"] is steady
 
 
 @pytest.mark.shared
-def test_measured_loop_is_described_as_an_expert_would(shared_recordings):
+def test_measured_loop_is_described_as_an_expert_would(shared_recordings: Path) -> None:
     found = measured("base_runin5", shared_recordings)
     rows = {row["topic"]: row["text"] for row in found.content["findings"]}
     assert list(rows) == [
@@ -238,8 +250,8 @@ def test_measured_loop_is_described_as_an_expert_would(shared_recordings):
     assert "torque_offset" not in hidden
 
 
-def measured(stem, shared_recordings):
+def measured(stem: str, shared_recordings: Path) -> cs.Diagnosis:
     folder = shared_recordings / "cycloidal-13-to-1"
     (path,) = folder.glob(f"*{stem}.csv.gz")
-    recording = Recording.read(path, EXAMPLES / "recording.toml")
+    recording = cs.Recording.read(path, EXAMPLES / "recording.toml")
     return cs.diagnose(recording, cs.Drive.from_toml(EXAMPLES / "drive.toml"))

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
 
 pytestmark = pytest.mark.shared
 EXAMPLE = Path(__file__).parents[2] / "examples" / "measured-13-to-1"
@@ -15,7 +15,7 @@ RAMPS = ("base_runin1", "base_runin5", "conic_runin1", "base910_unr_runin1", "ba
 @pytest.mark.parametrize("ramp", RAMPS)
 def test_measured_ramps(shared_recordings: Path, ramp: str) -> None:
     (path,) = shared_recordings.glob(f"cycloidal-13-to-1/*__{ramp}.csv.gz")
-    recording = Recording.read(path, EXAMPLE / "recording.toml")
+    recording = cs.Recording.read(path, EXAMPLE / "recording.toml")
     assert recording.runs == (100, 101, 102)
     assert recording.conditioning_runs == (100,)
     assert recording.holdout_runs == (102,)
@@ -41,8 +41,8 @@ def test_practice_recordings(shared_recordings: Path) -> None:
     folders = sorted((shared_recordings / "practice").glob("case-*"))
     assert len(folders) >= 9
     for folder in folders:
-        recording = Recording.read(folder / "recording.csv")
-        program = Recording.read(folder / "program.csv")
+        recording = cs.Recording.read(folder / "recording.csv")
+        program = cs.Recording.read(folder / "program.csv")
         assert recording.drive == "reference-87"
         assert recording.faults == ()
         assert recording.notes == ()

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from challenge_answers import outcome, said, truth
 
 from cyclosweep_challenge import make_case
 from cyclosweep_challenge.opponents import contest
@@ -13,6 +12,7 @@ from cyclosweep_challenge.opponents.seen import Seen
 from cyclosweep_challenge.opponents.subset import best_subset, bic_subset
 from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves, tuned
 from cyclosweep_challenge.trial.plan import make_plan
+from tests.unit.challenge.challenge_answers import outcome, said, truth
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 

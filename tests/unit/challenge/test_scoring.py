@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from challenge_answers import outcome, said, truth
 from scipy import stats
 
 from cyclosweep_challenge.board.terminal import within_reach
@@ -19,6 +18,7 @@ from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep_challenge.scoring.power import d_for_power, relative_to_oracle
 from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves
 from cyclosweep_challenge.trial.oracle import oracle_d
+from tests.unit.challenge.challenge_answers import outcome, said, truth
 
 
 def _table(outcomes: list[Outcome]) -> list[Figure]:
