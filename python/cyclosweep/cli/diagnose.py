@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.cli.output import AsJson, fail, interruptible, print_json
 from cyclosweep.errors import DesignError, InputError
 
@@ -45,14 +46,12 @@ def simulate(
     programme = Recording.read(program)
     if hasattr(chosen, "side") and not program.with_name(f"{stem(program)}.toml").exists():
         programme = dataclasses.replace(programme, side=chosen.side)
-    unfinished = out.with_name(f"{out.name}.tmp")
+    table = run(chosen, programme, predict).to_frame()
     try:
-        run(chosen, programme, predict).to_frame().write_csv(unfinished)
-        unfinished.replace(out)
+        with unfinished(out) as file:
+            table.write_csv(file)
     except OSError as error:
         fail(f"{out}: {error.strerror or error}", 1)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def _model(name: str) -> Model | Drive:
@@ -154,9 +153,9 @@ def _diagnose_one(
         found = run(recording, progress=say, full=not quick, **options)
         if quick:
             folder.mkdir(parents=True, exist_ok=True)
-            (folder / "diagnosis.json").write_text(found.to_json(), encoding="utf-8")
+            write_text(folder / "diagnosis.json", found.to_json())
             if found.model is not None:
-                (folder / "model.json").write_text(found.model.to_json(), encoding="utf-8")
+                write_text(folder / "model.json", found.model.to_json())
         else:
             say("writing the report")
             found.write(folder)

@@ -16,6 +16,7 @@ import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 import cyclosweep._core as _core
+from cyclosweep.atomic import write_text
 from cyclosweep.errors import InputError
 
 __all__ = [
@@ -306,7 +307,7 @@ class Drive(_Part):
         table["shaft"] = list(table["shaft"])
         if not table["shaft"]:
             del table["shaft"]
-        Path(path).write_text(tomli_w.dumps(table), encoding="utf-8")
+        write_text(path, tomli_w.dumps(table))
 
     def inputs(self) -> tuple[str, ...]:
         """Names of every input that can be an axis of a study of this drive, in order."""

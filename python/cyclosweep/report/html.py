@@ -5,6 +5,7 @@ from html import escape
 from importlib.resources import files
 from pathlib import Path
 
+from cyclosweep.atomic import write_text
 from cyclosweep.report import tables
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
@@ -29,9 +30,7 @@ def write_html(data: ReportData, path: str | Path) -> Path:
         The file.
     """
     path = Path(path)
-    part = path.with_name(path.name + ".tmp")
-    part.write_text(page(data), encoding="utf-8")
-    part.replace(path)
+    write_text(path, page(data))
     return path
 
 

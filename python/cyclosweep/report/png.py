@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cyclosweep.atomic import unfinished
 from cyclosweep.errors import InputError
 from cyclosweep.report.charts import (
     REGION,
@@ -88,9 +89,8 @@ def _write(figure: Figure, path: Path) -> Path:
             handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles),
             fontsize=8, frameon=False, markerscale=3,
         )  # fmt: skip
-    part = path.with_name(path.name + ".tmp")
-    canvas.savefig(part, dpi=DOTS_PER_INCH, format="png")
-    part.replace(path)
+    with unfinished(path) as file:
+        canvas.savefig(file, dpi=DOTS_PER_INCH, format="png")
     return path
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
-import socket
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +13,7 @@ import polars as pl
 from filelock import FileLock, Timeout
 
 import cyclosweep._core as _core
+from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.scan import frame
 from cyclosweep.sweep.study import Study
@@ -215,18 +214,13 @@ class Dataset:
             "objective": self._objective(),
             "record": record.to_json(),
         }
-        final = self.folder / part.name
-        unfinished = self.folder / f"{part.name}.{socket.gethostname()}-{os.getpid()}.tmp"
-        try:
+        with unfinished(self.folder / part.name) as file:
             rows.write_parquet(
-                unfinished,
+                file,
                 compression=COMPRESSION,
                 row_group_size=ROWS_PER_PART,
                 metadata={_FOOTER: json.dumps(footer)},
             )
-            os.replace(unfinished, final)
-        finally:
-            unfinished.unlink(missing_ok=True)
         return record
 
     def _identity(self) -> dict[str, Any]:
@@ -269,12 +263,7 @@ class Dataset:
                 )
             ],
         }
-        unfinished = self.folder / f"{_MANIFEST}.{os.getpid()}.tmp"
-        try:
-            unfinished.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
-            os.replace(unfinished, self.folder / _MANIFEST)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        write_text(self.folder / _MANIFEST, json.dumps(manifest, indent=1))
 
 
 def read_footer(path: Path) -> dict[str, Any] | None:

@@ -1,0 +1,93 @@
+"""Writing of files so that each appears whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+__all__ = ["unfinished", "write_bytes", "write_text"]
+
+
+@contextlib.contextmanager
+def unfinished(path: str | Path) -> Iterator[Path]:
+    """Give a temporary file beside a file, and put it in that file's place when it is written.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to write. A link is followed; what is no regular file, as a pipe or
+        ``/dev/stdout``, is written directly.
+
+    Yields
+    ------
+    Path
+        The temporary file, in the same folder, named ``<name>.<host>-<process>-<thread>.tmp``.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written or moved. What was at `path` before is still there then, and
+        the temporary file is not.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with unfinished(Path(folder) / "table.csv") as file:
+    ...         _ = file.write_text("a,b")
+    ...     [entry.name for entry in Path(folder).iterdir()]
+    ['table.csv']
+    """
+    target = Path(os.path.realpath(path))
+    if target.exists() and not target.is_file():
+        yield target
+        return
+    writer = f"{socket.gethostname()}-{os.getpid()}-{threading.get_native_id()}"
+    temporary = target.with_name(f"{target.name}.{writer}.tmp")
+    try:
+        yield temporary
+        os.replace(temporary, target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write a text file in UTF-8, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    text : str
+        Its content.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; what was there before is left as it was.
+    """
+    with unfinished(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def write_bytes(path: str | Path, content: bytes) -> None:
+    """Write a binary file, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    content : bytes
+        Its content.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; what was there before is left as it was.
+    """
+    with unfinished(path) as temporary:
+        temporary.write_bytes(content)
