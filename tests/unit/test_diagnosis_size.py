@@ -11,7 +11,8 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.hypotheses.flexible_basis import rich_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.fit import Term, fit
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of, spread_of_size
 from cyclosweep.diagnosis.prepare.noise import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import prepare

@@ -386,8 +386,8 @@ def _strength(search: Search, node: Node, index: int) -> float:
     for k, term in enumerate(fitted.terms):
         if k != index and not term.slips:
             keep += fitted.amplitude_places(k)
-    for k, slot in enumerate(fitted.slots):
-        if slot.term != index:
+    for k, nonlinear in enumerate(fitted.fit_parameters):
+        if nonlinear.term != index:
             keep.append(len(fitted.beta) + k)
     rest = orthonormal(fitted.sensitivity[:, keep], 1e-8)
     left = signal - rest @ (rest.T @ signal)
@@ -413,22 +413,22 @@ def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
                 "unit": parameter.unit,
                 "meaning": parameter.meaning,
             }
-    for k, slot in enumerate(fitted.slots):
-        if slot.term != index:
+    for k, nonlinear in enumerate(fitted.fit_parameters):
+        if nonlinear.term != index:
             continue
         error = float(spread[len(fitted.beta) + k])
-        name, value = slot.name, term.amplitude
-        if slot.name == "amplitude":
+        name, value = nonlinear.name, term.amplitude
+        if nonlinear.name == "amplitude":
             name = amplitudes[0].name
         else:
-            value = float(term.shape[slot.name])
-        if slot.parameter.logarithmic:
+            value = float(term.shape[nonlinear.name])
+        if nonlinear.quantity.logarithmic:
             error *= value
         out[name] = {
             "estimate": value,
             "std_error": error,
-            "unit": slot.parameter.unit,
-            "meaning": slot.parameter.meaning,
+            "unit": nonlinear.quantity.unit,
+            "meaning": nonlinear.quantity.meaning,
         }
     return out
 
@@ -467,7 +467,7 @@ def parameters_of(fitted: Fit, problem: Problem) -> dict[str, dict[str, Any]]:
         },
     }
     if isinstance(fitted, ForecastFit) and fitted.forecast.has_zero:
-        zero = next(k for k, knob in enumerate(fitted.forecast.knobs) if knob.kind == "zero")
+        zero = next(k for k, each in enumerate(fitted.forecast.parameters) if each.kind == "zero")
         out["torque_zero_nm"] = {
             "nominal": 0.0,
             "estimate": fitted.forecast.model.torque_zero_nm,

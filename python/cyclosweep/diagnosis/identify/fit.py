@@ -8,47 +8,15 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
-from cyclosweep.diagnosis.hypotheses.freeform import FreeForm
+from cyclosweep.diagnosis.identify.fit_parameters import FitParameter, fit_parameters_of
+from cyclosweep.diagnosis.identify.friction_path import friction_path
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.simulation.effects import Effect, Shape
-from cyclosweep.simulation.effects.base import Parameter
-from cyclosweep.simulation.effects.creep import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.effects.slip import solve_slip
 
 INNER = 3
 """Rounds in which the path of the shaft and the linear parameters settle on each other."""
-
-
-@dataclass(frozen=True, eq=False)
-class Term:
-    """One effect with its shape, or one shape without a name, in a structure."""
-
-    effect: Effect | None
-    shape: Shape
-    free: FreeForm | None = None
-    amplitude: float = 0.0
-
-    @property
-    def name(self) -> str:
-        """Name of the effect, or family of the free form."""
-        if self.effect is not None:
-            return self.effect.name
-        assert self.free is not None
-        return self.free.family
-
-    @property
-    def slips(self) -> bool:
-        """Whether it is friction on slip elements."""
-        return self.effect is not None and self.effect.slips
-
-    def columns(self, history: History) -> Floats:
-        """Columns for unit amplitudes [deg]."""
-        if self.effect is not None:
-            return self.effect.columns(history, self.shape)
-        assert self.free is not None
-        return self.free.make(history)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +57,7 @@ class Fit:
     tangent: Floats
     sensitivity: Floats
     shape_values: Floats
-    slots: tuple["Slot", ...]
+    fit_parameters: tuple[FitParameter, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -163,8 +131,12 @@ class Fit:
 
     def places_of(self, index: int) -> list[int]:
         """Places of a linear term's amplitudes and shape parameters among all parameters."""
-        slots = [len(self.beta) + k for k, slot in enumerate(self.slots) if slot.term == index]
-        return self.amplitude_places(index) + slots
+        parameters = [
+            len(self.beta) + k
+            for k, parameter in enumerate(self.fit_parameters)
+            if parameter.term == index
+        ]
+        return self.amplitude_places(index) + parameters
 
     def moved(self, place: int, step: float) -> "Fit":
         """Same fit with one parameter of a linear term moved, and nothing else settled on it."""
@@ -172,11 +144,13 @@ class Fit:
             beta = self.beta.copy()
             beta[place] += step
             return replace(self, beta=beta)
-        slot = self.slots[place - len(self.beta)]
+        parameter = self.fit_parameters[place - len(self.beta)]
         terms = list(self.terms)
-        shape = terms[slot.term].shape
-        value = slot.outward(slot.inward(float(shape[slot.name])) + step)
-        terms[slot.term] = replace(terms[slot.term], shape={**shape, slot.name: value})
+        shape = terms[parameter.term].shape
+        value = parameter.to_physical(parameter.to_scale(float(shape[parameter.name])) + step)
+        terms[parameter.term] = replace(
+            terms[parameter.term], shape={**shape, parameter.name: value}
+        )
         return replace(self, terms=tuple(terms))
 
     @property
@@ -186,73 +160,6 @@ class Fit:
         difference = (self.problem.angle_deg - self.mean_deg)[use]
         weight = self.problem.weight[use]
         return float(np.sqrt(np.average(difference**2, weights=weight)))
-
-
-@dataclass(frozen=True, slots=True)
-class Slot:
-    """One nonlinear parameter of a structure: which term, which name, its bounds."""
-
-    term: int
-    name: str
-    parameter: Parameter
-
-    def inward(self, value: float) -> float:
-        """From the physical value to the fit's own scale."""
-        return float(np.log(max(value, 1e-300))) if self.parameter.logarithmic else value
-
-    def outward(self, value: float) -> float:
-        """From the fit's own scale to the physical value."""
-        return float(np.exp(value)) if self.parameter.logarithmic else value
-
-
-def slots_of(terms: Sequence[Term], problem: Problem) -> tuple[Slot, ...]:
-    """Nonlinear parameters of a structure; both kinds of friction share one set of elements."""
-    slots: list[Slot] = []
-    sliding = False
-    top = problem.history.largest_torque_nm
-    for index, term in enumerate(terms):
-        if term.effect is None:
-            continue
-        if term.slips:
-            amplitude = term.effect.amplitudes(term.shape)[0]
-            upper = min(amplitude.upper, 0.95 if "share" in amplitude.name else top)
-            limits = replace(amplitude, upper=upper)
-            slots.append(Slot(index, "amplitude", limits))
-            if sliding:
-                continue
-            sliding = True
-        for parameter in term.effect.shape_parameters:
-            if parameter.name not in term.shape:
-                continue
-            slots.append(Slot(index, parameter.name, _within(parameter, problem)))
-    return tuple(slots)
-
-
-def _within(parameter: Parameter, problem: Problem) -> Parameter:
-    """Bounds of a shape parameter as narrow as the recording allows."""
-    top = problem.history.largest_torque_nm
-    twist = problem.history.largest_twist_deg
-    if parameter.unit == "N m":
-        lower, upper = 1e-3 * top, 3.0 * top
-        if parameter.name == "onset_nm":
-            lower, upper = 0.0, 0.92 * top
-        if parameter.name == "first_nm":
-            # A single kink further out is what a sensor at its limit shows.
-            lower, upper = 0.0, 0.45 * top
-        if parameter.name == "turn_nm":
-            upper = 0.25 * top
-        if parameter.name == "range_nm":
-            upper = 0.9 * top
-        return replace(parameter, lower=lower, upper=upper)
-    step = problem.history.usual_step_s
-    if parameter.unit == "s" and step > 0:
-        upper = parameter.upper
-        if parameter.name == "delay_s" and problem.history.time_s is not None:
-            upper = max(0.1 * float(np.ptp(problem.history.time_s)), 4.0 * step)
-        return replace(parameter, lower=FEWEST_STEPS * step, upper=upper)
-    if parameter.name == "slip_deg":
-        return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)
-    return parameter
 
 
 def fit(
@@ -278,16 +185,23 @@ def fit(
         Most iterations of the refinement.
     """
     terms = tuple(terms)
-    slots = slots_of(terms, problem) if refine else _frozen_slots(terms, problem)
-    model = _Model(problem, noise, terms, slots, start)
-    values = np.array([slot.inward(_value(terms[slot.term], slot.name)) for slot in slots])
-    if len(slots):
-        lower = np.array([slot.inward(slot.parameter.lower) for slot in slots])
-        upper = np.array([slot.inward(slot.parameter.upper) for slot in slots])
+    parameters = fit_parameters_of(terms, problem) if refine else _friction_limits(terms, problem)
+    model = _Model(problem, noise, terms, parameters, start)
+    values = np.array(
+        [
+            parameter.to_scale(_value(terms[parameter.term], parameter.name))
+            for parameter in parameters
+        ]
+    )
+    if len(parameters):
+        lower = np.array([parameter.to_scale(parameter.quantity.lower) for parameter in parameters])
+        upper = np.array([parameter.to_scale(parameter.quantity.upper) for parameter in parameters])
         lower = np.where(np.isneginf(lower), -1e6, lower)
         width = np.minimum(upper - lower, 1e6)
         values = np.clip(values, lower + 1e-6 * width, upper - 1e-6 * width)
-        scale = np.array([_scale(slot, v) for slot, v in zip(slots, values, strict=True)])
+        scale = np.array(
+            [_scale(parameter, v) for parameter, v in zip(parameters, values, strict=True)]
+        )
         model.settle(values)
         for _ in range(2):
             result = least_squares(
@@ -311,21 +225,23 @@ def fit(
     return model.finish(values)
 
 
-def _frozen_slots(terms: Sequence[Term], problem: Problem) -> tuple[Slot, ...]:
+def _friction_limits(terms: Sequence[Term], problem: Problem) -> tuple[FitParameter, ...]:
     """Only friction amplitudes, which enter through the path of the shaft."""
-    return tuple(s for s in slots_of(terms, problem) if s.name == "amplitude")
+    return tuple(s for s in fit_parameters_of(terms, problem) if s.name == "amplitude")
 
 
 def _value(term: Term, name: str) -> float:
     return term.amplitude if name == "amplitude" else float(term.shape[name])
 
 
-def _scale(slot: Slot, value: float) -> float:
-    if slot.parameter.logarithmic:
+def _scale(parameter: FitParameter, value: float) -> float:
+    if parameter.quantity.logarithmic:
         return 0.5
-    if slot.name == "amplitude":
-        return max(abs(value), 1e-3 * (slot.parameter.upper - slot.parameter.lower), 1e-6)
-    return max(0.2 * abs(value), 0.02 * min(slot.parameter.upper - slot.parameter.lower, 1e3))
+    if parameter.name == "amplitude":
+        return max(abs(value), 1e-3 * (parameter.quantity.upper - parameter.quantity.lower), 1e-6)
+    return max(
+        0.2 * abs(value), 0.02 * min(parameter.quantity.upper - parameter.quantity.lower, 1e3)
+    )
 
 
 class _Model:
@@ -336,10 +252,15 @@ class _Model:
         problem: Problem,
         noise: Noise,
         terms: tuple[Term, ...],
-        slots: tuple[Slot, ...],
+        parameters: tuple[FitParameter, ...],
         start: Fit | None,
     ) -> None:
-        self.problem, self.noise, self.terms, self.slots = problem, noise, terms, slots
+        self.problem, self.noise, self.terms, self.fit_parameters = (
+            problem,
+            noise,
+            terms,
+            parameters,
+        )
         self.slides = any(term.slips for term in terms)
         self.use = problem.fitted
         self.angle = problem.angle_deg[self.use]
@@ -359,11 +280,11 @@ class _Model:
     def _terms_at(self, values: Floats) -> tuple[Term, ...]:
         shapes = [dict(term.shape) for term in self.terms]
         amplitudes = [term.amplitude for term in self.terms]
-        for slot, value in zip(self.slots, values, strict=True):
-            if slot.name == "amplitude":
-                amplitudes[slot.term] = slot.outward(value)
+        for parameter, value in zip(self.fit_parameters, values, strict=True):
+            if parameter.name == "amplitude":
+                amplitudes[parameter.term] = parameter.to_physical(value)
             else:
-                shapes[slot.term][slot.name] = slot.outward(value)
+                shapes[parameter.term][parameter.name] = parameter.to_physical(value)
         slide = next((k for k, term in enumerate(self.terms) if term.slips), None)
         for k, term in enumerate(self.terms):
             if term.slips and slide is not None and k != slide:
@@ -372,16 +293,6 @@ class _Model:
             replace(term, shape=shape, amplitude=amplitude)
             for term, shape, amplitude in zip(self.terms, shapes, amplitudes, strict=True)
         )
-
-    def _slide(self, terms: tuple[Term, ...], history: History, mean: Floats) -> History:
-        """Path of the shaft with these friction terms, everything else held."""
-        sliding = [term for term in terms if term.slips]
-        shape = sliding[0].shape
-        limit = sum(t.amplitude for t in sliding if t.name == "friction_hysteresis")
-        load = sum(t.amplitude for t in sliding if t.name == "load_dependent_friction")
-        offset = mean - history.compliance_deg_per_nm * history.elastic_nm
-        angle, friction = solve_slip(history, shape, offset, (float(limit), float(load)), 0.0)
-        return history.with_state(elastic_nm=history.applied_nm - friction, angle_deg=angle)
 
     def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats]:
         """Columns of the linear parameters, and the precision with which each is known before."""
@@ -405,7 +316,7 @@ class _Model:
         here = mean[self.use]
         for _ in range(inner if self.slides else 1):
             if self.slides:
-                history = self._slide(terms, history, mean)
+                history = friction_path(terms, history, mean)
             design, hold = self._design(terms, history)
             inside = design[self.use]
             # The working data are fixed during one refinement: target = residual at self.mean.
@@ -471,7 +382,7 @@ class _Model:
         terms, _, white, beta = self._last
         slopes = []
         for k in range(len(values)):
-            step = 1e-3 * max(abs(values[k]), _scale(self.slots[k], values[k]))
+            step = 1e-3 * max(abs(values[k]), _scale(self.fit_parameters[k], values[k]))
             ahead = values.copy()
             ahead[k] += step
             change = residual - self.residual(ahead)
@@ -492,7 +403,7 @@ class _Model:
             tangent=tangent,
             sensitivity=sensitivity,
             shape_values=values,
-            slots=self.slots,
+            fit_parameters=self.fit_parameters,
         )
 
 

@@ -10,7 +10,7 @@ from cyclosweep.diagnosis.hypotheses import sinusoid
 from cyclosweep.diagnosis.hypotheses.freeform import CLASSES, FreeForm
 from cyclosweep.diagnosis.hypotheses.library import Block, Library
 from cyclosweep.diagnosis.identify.alarm import Alarm
-from cyclosweep.diagnosis.identify.fit import Fit, Term, fit
+from cyclosweep.diagnosis.identify.fit import Fit, fit
 from cyclosweep.diagnosis.identify.scan import (
     Scan,
     evidence,
@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.identify.scan import (
     price_of_vector,
     scan,
 )
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects import Effect, Shape
@@ -253,13 +254,13 @@ class Search:
         """Log of how many of its library's shapes of the last term a recording tells apart."""
         last = len(joint.terms) - 1
         places, ranges = [], []
-        for k, slot in enumerate(joint.slots):
-            if slot.term != last or slot.name == "amplitude":
+        for k, nonlinear in enumerate(joint.fit_parameters):
+            if nonlinear.term != last or nonlinear.name == "amplitude":
                 continue
             each = [
-                slot.inward(rest.library.blocks[m].shape[slot.name])
+                nonlinear.to_scale(rest.library.blocks[m].shape[nonlinear.name])
                 for m in rest.groups.get(joint.terms[last].name, ())
-                if slot.name in rest.library.blocks[m].shape
+                if nonlinear.name in rest.library.blocks[m].shape
             ]
             if len(each) and max(each) > min(each):
                 places.append(len(joint.beta) + k)

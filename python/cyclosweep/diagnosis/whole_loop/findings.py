@@ -118,16 +118,18 @@ def _angle(value_deg: float) -> str:
 def _spread(fitted: ForecastFit, kind: str, name: str = "") -> float:
     """Half width of the 95 % interval of a parameter, in its own unit."""
     forecast = fitted.forecast
-    for k, knob in enumerate(forecast.knobs):
-        if knob.kind == kind and (not name or (knob.term >= 0 and _name(fitted, k) == name)):
+    for k, parameter in enumerate(forecast.parameters):
+        if parameter.kind == kind and (
+            not name or (parameter.term >= 0 and _name(fitted, k) == name)
+        ):
             error = float(np.sqrt(max(forecast.covariance[k, k], 0.0)))
-            value = float(np.exp(forecast.values[k])) if knob.logarithmic else 1.0
+            value = float(np.exp(forecast.values[k])) if parameter.logarithmic else 1.0
             return 1.96 * error * value
     return float("nan")
 
 
-def _name(fitted: ForecastFit, knob: int) -> str:
-    known = fitted.forecast.knobs[knob]
+def _name(fitted: ForecastFit, parameter: int) -> str:
+    known = fitted.forecast.parameters[parameter]
     return fitted.terms[known.term].name if known.name == "amplitude" else ""
 
 
@@ -154,17 +156,17 @@ def _play(problem: Problem, fitted: ForecastFit) -> tuple[str, str]:
 
 def _friction(fitted: ForecastFit) -> tuple[str, str]:
     limit = next(t.amplitude for t in fitted.terms if t.name == "friction_hysteresis")
+    half = _spread(fitted, "nonlinear", "friction_hysteresis")
     return (
         "friction hysteresis",
-        f"Coulomb friction of {limit:.3g} ± {_spread(fitted, 'slot', 'friction_hysteresis'):.2g} "
-        f"N m at the measured shaft: the loop is {2 * limit:.3g} N m wide where the shaft leaves "
-        "a flank.",
+        f"Coulomb friction of {limit:.3g} ± {half:.2g} N m at the measured shaft: the "
+        f"loop is {2 * limit:.3g} N m wide where the shaft leaves a flank.",
     )
 
 
 def _load_friction(fitted: ForecastFit) -> tuple[str, str]:
     share = next(t.amplitude for t in fitted.terms if t.name == "load_dependent_friction")
-    half = _spread(fitted, "slot", "load_dependent_friction")
+    half = _spread(fitted, "nonlinear", "load_dependent_friction")
     return (
         "friction that grows with load",
         f"{100 * share:.0f} ± {100 * half:.0f} % of the transmitted torque on top of it: the loop "

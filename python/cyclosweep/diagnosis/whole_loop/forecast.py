@@ -13,9 +13,14 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import least_squares
 
-from cyclosweep.diagnosis.identify.fit import Slot, Term, slots_of
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.simulation.effects.base import Parameter
+from cyclosweep.diagnosis.whole_loop.model_parameters import (
+    ModelParameter,
+    model_parameters_of,
+    values_of,
+    with_values,
+)
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.simulate import EffectValue, Model, settle
 
@@ -26,24 +31,9 @@ BLUR = 0.01
 STEP = 0.02
 """Step of a difference quotient in units of a parameter's scale: over several rows of a crossing,
 which a smaller step would see either jump or stand."""
-GROWTH = Parameter("growth", "", "power by which presliding distances grow with the limit")
 LEAST = 1e-6
 PIECES = 40.0
 """Rough number of independent pieces of a structured residual, by which parameters are charged."""
-
-
-@dataclass(frozen=True, slots=True)
-class Knob:
-    """One parameter of the simulation: where it sits, its bounds and its scale."""
-
-    kind: str
-    term: int
-    name: str
-    lower: float
-    upper: float
-    scale: float
-    parameter: Parameter
-    logarithmic: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +48,7 @@ class Forecast:
     history : History
         All rows with the predicted path.
     values : ndarray
-        Parameters in the fit's own scale, in the order of ``knobs``.
+        Parameters in the fit's own scale, in the order of ``parameters``.
     jacobian : ndarray, shape (rows, p)
         Derivative of the prediction on the fitted rows [deg].
     error_deg : float
@@ -68,7 +58,7 @@ class Forecast:
     problem: Problem
     model: Model
     terms: tuple[Term, ...]
-    knobs: tuple[Knob, ...]
+    parameters: tuple[ModelParameter, ...]
     values: Floats
     history: History
     jacobian: Floats
@@ -97,21 +87,21 @@ class Forecast:
         repeated = max(len(self.jacobian) / PIECES, 1.0)
         return np.asarray(inner * self.error_deg**2 * repeated)
 
-    def slope(self, knob: int, path: Callable[[Problem, Model], History]) -> Floats:
+    def slope(self, parameter: int, path: Callable[[Problem, Model], History]) -> Floats:
         """Derivative by a parameter of the twist along a path of all rows."""
-        step = STEP * self.knobs[knob].scale
-        if self.values[knob] + step > self.knobs[knob].upper:
+        step = STEP * self.parameters[parameter].scale
+        if self.values[parameter] + step > self.parameters[parameter].upper:
             step = -step
         ahead = self.values.copy()
-        ahead[knob] += step
-        turned, _ = _turned(self.knobs, ahead, self.model, self.terms)
+        ahead[parameter] += step
+        turned, _ = with_values(self.parameters, ahead, self.model, self.terms)
         there, here = path(self.problem, turned), path(self.problem, self.model)
         return np.asarray((there.angle_deg - here.angle_deg) / step)
 
     @property
     def has_zero(self) -> bool:
         """Whether the reading of torque without load was fitted."""
-        return any(knob.kind == "zero" for knob in self.knobs)
+        return any(each.kind == "zero" for each in self.parameters)
 
     @property
     def names(self) -> frozenset[str]:
@@ -190,114 +180,6 @@ def at_start(history: History, model: Model, side: Floats | None = None) -> Hist
     )
 
 
-def knobs_of(problem: Problem, model: Model, terms: Sequence[Term], zero: bool) -> list[Knob]:
-    """Parameters of a structure that a fit turns."""
-    top, twist = problem.history.largest_torque_nm, problem.history.largest_twist_deg
-    span = float(np.ptp(problem.angle_deg))
-    nothing = Parameter("", "", "")
-    knobs = [
-        Knob("datum", -1, "datum", -np.inf, np.inf, 0.2 * span, nothing),
-        Knob("compliance", -1, "compliance", -12.0, 12.0, 1.0, nothing, True),
-    ]
-    if not problem.one_sided:
-        knobs.append(
-            Knob("play", -1, "play", np.log(1e-4 * span), np.log(span), 1.0, nothing, True)
-        )
-    if zero:
-        knobs.append(Knob("zero", -1, "zero", -0.3 * top, 0.3 * top, 0.1 * top, nothing))
-    first = next((k for k, term in enumerate(terms) if term.slips), None)
-    if first is not None and "growth" in terms[first].shape:
-        knobs.append(Knob("growth", first, "growth", 0.0, 1.0, 1.0, GROWTH))
-    slots: tuple[Slot, ...] = slots_of(terms, problem)
-    for slot in slots:
-        lower, upper = slot.inward(slot.parameter.lower), slot.inward(slot.parameter.upper)
-        if slot.name == "amplitude":
-            lower = max(lower, 0.0)
-            size = 1.0 if upper <= 1.0 else 0.1 * top
-        else:
-            size = 1.0 if slot.parameter.logarithmic else 0.5 * min(upper - lower, 2.0 * top)
-        knobs.append(
-            Knob(
-                "slot", slot.term, slot.name, lower, upper, size, slot.parameter,
-                slot.parameter.logarithmic,
-            )
-        )  # fmt: skip
-    for index, term in enumerate(terms):
-        if term.slips or term.effect is None:
-            continue
-        columns = term.columns(problem.history)
-        for place, parameter in enumerate(term.effect.amplitudes(term.shape)):
-            largest = float(np.abs(columns[:, place]).max(initial=0.0)) or 1.0
-            knobs.append(
-                Knob(
-                    "amplitude", index, str(place), parameter.lower, parameter.upper,
-                    0.5 * twist / largest, parameter,
-                )
-            )  # fmt: skip
-    return knobs
-
-
-def _values(knobs: Sequence[Knob], model: Model, terms: Sequence[Term]) -> Floats:
-    base = {
-        "datum": model.datum_deg,
-        "compliance": model.compliance_deg_per_nm,
-        "play": model.free_play_deg,
-        "zero": model.torque_zero_nm,
-    }
-    out = []
-    for knob in knobs:
-        if knob.kind in base:
-            value = base[knob.kind]
-        elif knob.kind == "amplitude":
-            value = model.effects[knob.term].amplitudes[int(knob.name)]
-        elif knob.name == "amplitude":
-            value = model.effects[knob.term].amplitudes[0]
-        else:
-            value = float(terms[knob.term].shape[knob.name])
-        out.append(np.log(max(value, 1e-300)) if knob.logarithmic else value)
-    return np.array(out, dtype=np.float64)
-
-
-def _turned(
-    knobs: Sequence[Knob], values: Floats, model: Model, terms: Sequence[Term]
-) -> tuple[Model, tuple[Term, ...]]:
-    """Model and terms with the parameters at these values."""
-    base = {"datum": model.datum_deg, "compliance": model.compliance_deg_per_nm}
-    base |= {"play": model.free_play_deg, "zero": model.torque_zero_nm}
-    shapes = [dict(term.shape) for term in terms]
-    amplitudes = [list(value.amplitudes) for value in model.effects]
-    for knob, inner in zip(knobs, values, strict=True):
-        value = float(np.exp(inner)) if knob.logarithmic else float(inner)
-        if knob.kind in base:
-            base[knob.kind] = value
-        elif knob.kind == "amplitude":
-            amplitudes[knob.term][int(knob.name)] = value
-        elif knob.name == "amplitude":
-            amplitudes[knob.term][0] = value
-        else:
-            shapes[knob.term][knob.name] = value
-    slide = next((k for k, term in enumerate(terms) if term.slips), None)
-    for k, term in enumerate(terms):
-        if term.slips and slide is not None:
-            shapes[k] = dict(shapes[slide])
-    turned = tuple(
-        replace(term, shape=shape, amplitude=amplitude[0] if term.slips else term.amplitude)
-        for term, shape, amplitude in zip(terms, shapes, amplitudes, strict=True)
-    )
-    changed = replace(
-        model,
-        compliance_deg_per_nm=base["compliance"],
-        free_play_deg=base["play"],
-        datum_deg=base["datum"],
-        torque_zero_nm=base["zero"],
-        effects=tuple(
-            EffectValue(t.name, shape, tuple(amplitude))
-            for t, shape, amplitude in zip(terms, shapes, amplitudes, strict=True)
-        ),
-    )
-    return changed, turned
-
-
 def fit_forecast(
     problem: Problem,
     model: Model,
@@ -326,20 +208,20 @@ def fit_forecast(
     """
     rows = problem.whole_fitted if rows is None else rows
     terms = tuple(terms)
-    knobs = knobs_of(problem, model, terms, zero)
+    parameters = model_parameters_of(problem, terms, zero=zero)
     weight = np.sqrt(problem.weight[rows] / problem.weight[rows].mean())
     measured = problem.angle_deg[rows]
-    lower = np.array([k.lower for k in knobs])
-    upper = np.array([k.upper for k in knobs])
-    scale = np.array([k.scale for k in knobs])
+    lower = np.array([k.lower for k in parameters])
+    upper = np.array([k.upper for k in parameters])
+    scale = np.array([k.scale for k in parameters])
     room = np.minimum(upper - lower, 1e6)
-    first = np.clip(_values(knobs, model, terms), lower + LEAST * room, upper - LEAST * room)
+    first = np.clip(values_of(parameters, model, terms), lower + LEAST * room, upper - LEAST * room)
 
     top = problem.history.largest_torque_nm
     shifts = (0.0,) if blur == 0.0 else (0.0, -blur * top, blur * top)
 
     def residual(values: Floats) -> Floats:
-        turned, _ = _turned(knobs, values, model, terms)
+        turned, _ = with_values(parameters, values, model, terms)
         parts = []
         for shift in shifts:
             shifted = replace(turned, torque_zero_nm=turned.torque_zero_nm + shift)
@@ -362,12 +244,12 @@ def fit_forecast(
         residual, first, jac=slopes, bounds=(lower, upper), x_scale=scale, max_nfev=most,
         ftol=1e-4, xtol=1e-4,
     )  # fmt: skip
-    turned, shaped = _turned(knobs, found.x, model, terms)
+    turned, shaped = with_values(parameters, found.x, model, terms)
     return Forecast(
         problem=problem,
         model=turned,
         terms=shaped,
-        knobs=tuple(knobs),
+        parameters=parameters,
         values=found.x,
         history=run(problem, turned, 12),
         jacobian=np.asarray(found.jac)[: len(weight)] * np.sqrt(len(shifts)) / weight[:, None],

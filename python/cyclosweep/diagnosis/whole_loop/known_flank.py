@@ -9,7 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fit import Fit, slots_of
+from cyclosweep.diagnosis.identify.fit import Fit
+from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start
@@ -33,17 +34,17 @@ class ForecastFit(Fit):
     @cached_property
     def covariance(self) -> Floats:
         """Covariance of all parameters, from the whole loop; few pieces of it are independent."""
-        knobs = self.forecast.knobs
+        parameters = self.forecast.parameters
         spread = self.forecast.covariance
         order: list[int] = []
         kinds = ["datum", "compliance", "play"]
         for kind in kinds[: 2 if self.problem.one_sided else 3]:
-            order.append(next(k for k, knob in enumerate(knobs) if knob.kind == kind))
-        order += [k for k, knob in enumerate(knobs) if knob.kind == "amplitude"]
-        order += [k for k, knob in enumerate(knobs) if knob.kind == "slot"]
+            order.append(next(k for k, each in enumerate(parameters) if each.kind == kind))
+        order += [k for k, each in enumerate(parameters) if each.kind == "amplitude"]
+        order += [k for k, each in enumerate(parameters) if each.kind == "nonlinear"]
         scale = np.ones(len(order))
         for place, k in enumerate(order):
-            if knobs[k].logarithmic and knobs[k].kind != "slot":
+            if parameters[k].logarithmic and parameters[k].kind != "nonlinear":
                 scale[place] = np.exp(self.forecast.values[k])
         return np.asarray(spread[np.ix_(order, order)] * np.outer(scale, scale))
 
@@ -81,8 +82,7 @@ def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:
         parts.append(history.side[:, None])
     parts += [term.columns(history) for term in forecast.terms if not term.slips]
     design = noise.design(np.column_stack(parts)[use], weight)
-    slots = slots_of(forecast.terms, problem)
-    kept = [k for k, knob in enumerate(forecast.knobs) if knob.kind == "slot"]
+    kept = [k for k, each in enumerate(forecast.parameters) if each.kind == "nonlinear"]
     slopes = [noise.design(forecast.slope(k, told_path)[use], weight)[:, None] for k in kept]
     sensitivity = np.hstack([design, *slopes]) if slopes else design
     tangent = orthonormal(sensitivity, 1e-6)
@@ -107,7 +107,7 @@ def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:
         tangent=tangent,
         sensitivity=sensitivity,
         shape_values=forecast.values[kept],
-        slots=slots,
+        fit_parameters=fit_parameters_of(forecast.terms, problem),
         forecast=forecast,
         before=before,
     )

@@ -6,13 +6,13 @@ crossings of the dead zone included, and effects are added one at a time, as lon
 its parameters; what remains is judged by whether it repeats from run to run.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fit import Fit, Term
+from cyclosweep.diagnosis.identify.fit import Fit
 from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import whole_stretches
 from cyclosweep.diagnosis.whole_loop.forecast import (
@@ -25,19 +25,11 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     start,
 )
 from cyclosweep.diagnosis.whole_loop.known_flank import told_fit
-from cyclosweep.simulation.effects import Effect, Shape
+from cyclosweep.diagnosis.whole_loop.usual_effects import STARTS, USUAL, first_amplitude
+from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import EffectValue
 
-USUAL: dict[str, Callable[[float], Shape]] = {
-    "friction_hysteresis": lambda top: {},
-    "load_dependent_friction": lambda top: {},
-    "contact_stiffening": lambda top: {"turn_nm": 0.1 * top},
-    "load_asymmetry": lambda top: {"power": 1.0},
-}
-"""What loops of this kind usually show, and the shapes to start from at a largest torque."""
-STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
-"""Friction limits and presliding distances to start from, as shares of torque and twist."""
 MOST_MORE = 1
 """Effects added beyond those."""
 FIRST = 0.15
@@ -108,7 +100,7 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
         terms, values = [], []
         for effect in effects:
             shape = sliding if effect.slips else USUAL[effect.name](top)
-            amplitude = _first_amplitude(effect, shape, limit * top, twist / top)
+            amplitude = first_amplitude(effect, shape, limit * top, twist / top)
             terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
             values.append(EffectValue(effect.name, shape, (amplitude,)))
         model = replace(base.model, effects=tuple(values))
@@ -122,13 +114,6 @@ def _crosses_late(problem: Problem) -> bool:
     history, rows = problem.history, problem.whole_fitted
     pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
     return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
-
-
-def _first_amplitude(effect: Effect, shape: Shape, limit_nm: float, compliance: float) -> float:
-    parameter = effect.amplitudes(shape)[0]
-    if effect.slips:
-        return 0.2 if parameter.unit == "" else limit_nm
-    return 0.3 * compliance if parameter.lower >= 0 else 1e-3
 
 
 def _prune(problem: Problem, best: Forecast) -> Forecast:
@@ -167,7 +152,7 @@ def _extend(search: Search, best: Forecast) -> Forecast:
 
 def _cost(model: Forecast) -> float:
     """Minus twice the log likelihood of a residual's pieces, and the price of the parameters."""
-    return 2.0 * PIECES * float(np.log(model.error_deg)) + PRICE * len(model.knobs)
+    return 2.0 * PIECES * float(np.log(model.error_deg)) + PRICE * len(model.parameters)
 
 
 def _better(first: Forecast, second: Forecast) -> Forecast:

@@ -1,0 +1,34 @@
+"""Path of the shaft under the friction terms of a structure."""
+
+from collections.abc import Sequence
+
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.slip import solve_slip
+
+
+def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> History:
+    """Path of the shaft with these friction terms, everything else held.
+
+    Parameters
+    ----------
+    terms : sequence of Term
+        All terms of a structure, at least one of them friction; all friction terms share the slip
+        elements of the first.
+    history : History
+        All rows with the calibrated line and the elastic torque of the round before.
+    mean_deg : ndarray, shape (n,)
+        Modelled twist of all rows in the round before [deg].
+
+    Returns
+    -------
+    History
+        With the new elastic torque [N m] and twist [deg].
+    """
+    sliding = [term for term in terms if term.slips]
+    shape = sliding[0].shape
+    limit = sum(t.amplitude for t in sliding if t.name == "friction_hysteresis")
+    load = sum(t.amplitude for t in sliding if t.name == "load_dependent_friction")
+    offset = mean_deg - history.compliance_deg_per_nm * history.elastic_nm
+    angle, friction = solve_slip(history, shape, offset, (float(limit), float(load)), 0.0)
+    return history.with_state(elastic_nm=history.applied_nm - friction, angle_deg=angle)

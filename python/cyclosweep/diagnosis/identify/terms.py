@@ -1,0 +1,50 @@
+"""One effect, or one unnamed shape, as part of a structure that is fitted."""
+
+from dataclasses import dataclass
+
+from cyclosweep.diagnosis.hypotheses.freeform import FreeForm
+from cyclosweep.simulation.effects import Effect, Shape
+from cyclosweep.simulation.effects.history import Floats, History
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """One effect with its shape, or one unnamed shape, in a structure.
+
+    Attributes
+    ----------
+    effect : Effect or None
+        The effect; None for an unnamed shape.
+    shape : mapping of str to float
+        Values of the parameters that enter the twist nonlinearly.
+    free : FreeForm or None
+        The unnamed shape.
+    amplitude : float
+        Friction limit of an effect on slip elements [N m, or a share of the torque]. Amplitudes of
+        all other effects enter linearly and belong to the fit.
+    """
+
+    effect: Effect | None
+    shape: Shape
+    free: FreeForm | None = None
+    amplitude: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Name of the effect, or family of the free form."""
+        if self.effect is not None:
+            return self.effect.name
+        assert self.free is not None
+        return self.free.family
+
+    @property
+    def slips(self) -> bool:
+        """Whether it is friction on slip elements."""
+        return self.effect is not None and self.effect.slips
+
+    def columns(self, history: History) -> Floats:
+        """Columns for unit amplitudes [deg]."""
+        if self.effect is not None:
+            return self.effect.columns(history, self.shape)
+        assert self.free is not None
+        return self.free.make(history)
