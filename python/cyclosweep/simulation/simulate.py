@@ -1,159 +1,51 @@
-"""Forward model of any load history: the published line, calibrated, with any set of effects."""
+"""Settle a model along a load history: twist for a torque, or torque for a twist."""
 
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, Literal, Self
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
-from cyclosweep.simulation.effects import Effect, find
-from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.slip import slip_state, solve_slip, stretch_of
+from cyclosweep.simulation.elastic_law import ElasticLaw, elastic_law
+from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist
 
-SCHEMA = "cyclosweep.model/1"
+__all__ = [
+    "SCHEMA",
+    "EffectValue",
+    "ElasticLaw",
+    "Model",
+    "elastic_law",
+    "history_of",
+    "linear_twist",
+    "predict_history",
+    "settle",
+    "simulate",
+]
+
 ROUNDS = 12
 """Most rounds in which twist, flank and effects settle on each other."""
-LAW_POINTS = 128
-"""Points of an elastic law on each side of zero."""
-
-
-@dataclass(frozen=True)
-class EffectValue:
-    """An effect with its shape and the values of its amplitudes, in the effect's order."""
-
-    name: str
-    shape: Mapping[str, float]
-    amplitudes: tuple[float, ...]
-
-    @property
-    def effect(self) -> Effect:
-        """The registered effect of this name."""
-        return find(self.name)
-
-
-@dataclass(frozen=True)
-class Model:
-    """Calibrated baseline and effects of one drive at one shaft.
-
-    Attributes
-    ----------
-    compliance_deg_per_nm : float
-        Slope of the line [deg/(N m)].
-    free_play_deg : float
-        Free play on each side of the datum [deg].
-    datum_deg : float
-        Middle of the dead zone on the dial [deg].
-    torque_zero_nm : float
-        What the torque column reads without load [N m]. It shows only where both crossings of the
-        dead zone were recorded.
-    side : {"input", "output"}
-        Shaft to which angles and torques belong.
-    effects : tuple of EffectValue
-        What the published model leaves out.
-    output_pin_count : int
-        Pins of the drive, for the orders of the mesh position.
-    drive : str
-        Name of the drive.
-    """
-
-    compliance_deg_per_nm: float
-    free_play_deg: float
-    datum_deg: float = 0.0
-    side: Literal["input", "output"] = "input"
-    effects: tuple[EffectValue, ...] = ()
-    output_pin_count: int = 8
-    drive: str = ""
-    torque_zero_nm: float = 0.0
-    notes: tuple[str, ...] = field(default=())
-
-    @classmethod
-    def of_drive(cls, drive: Drive, side: Literal["input", "output"] = "input") -> Self:
-        """Published model of a drive at one of its shafts."""
-        line = drive.nominal_line(side)
-        return cls(
-            compliance_deg_per_nm=line.compliance_deg_per_nm,
-            free_play_deg=line.free_play_deg,
-            side=side,
-            output_pin_count=int(drive.output_pin_count),
-            drive=drive.name,
-        )
-
-    def to_json(self) -> str:
-        """Return the content of ``model.json``."""
-        content = {
-            "schema": SCHEMA,
-            "drive": self.drive,
-            "side": self.side,
-            "output_pin_count": self.output_pin_count,
-            "baseline": {
-                "compliance_deg_per_nm": self.compliance_deg_per_nm,
-                "free_play_deg": self.free_play_deg,
-                "datum_deg": self.datum_deg,
-                "torque_zero_nm": self.torque_zero_nm,
-            },
-            "effects": [
-                {
-                    "name": value.name,
-                    "shape": dict(value.shape),
-                    "amplitudes": {
-                        p.name: float(a)
-                        for p, a in zip(
-                            value.effect.amplitudes(value.shape), value.amplitudes, strict=False
-                        )
-                    },
-                }
-                for value in self.effects
-            ],
-            "notes": list(self.notes),
-        }
-        return json.dumps(content, indent=1)
-
-    @classmethod
-    def from_json(cls, path: str | Path) -> Self:
-        """Read ``model.json``.
-
-        Raises
-        ------
-        InputError
-            The file is no model; one line says why.
-        """
-        try:
-            content = json.loads(Path(path).read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-            raise InputError(f"{path}: cannot be read as a model: {error}") from error
-        if not isinstance(content, dict) or content.get("schema") != SCHEMA:
-            raise InputError(f"{path}: schema: expected {SCHEMA!r}")
-        try:
-            base: Mapping[str, Any] = content["baseline"]
-            return cls(
-                compliance_deg_per_nm=float(base["compliance_deg_per_nm"]),
-                free_play_deg=float(base["free_play_deg"]),
-                datum_deg=float(base.get("datum_deg", 0.0)),
-                torque_zero_nm=float(base.get("torque_zero_nm", 0.0)),
-                side="output" if content.get("side") == "output" else "input",
-                effects=tuple(
-                    EffectValue(
-                        find(str(e["name"])).name,
-                        {str(k): float(v) for k, v in e.get("shape", {}).items()},
-                        tuple(float(v) for v in e["amplitudes"].values()),
-                    )
-                    for e in content.get("effects", [])
-                ),
-                output_pin_count=int(content.get("output_pin_count", 8)),
-                drive=str(content.get("drive", "")),
-                notes=tuple(map(str, content.get("notes", ()))),
-            )
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise InputError(f"{path}: not a model: {error}") from error
 
 
 def history_of(recording: Recording, model: Model) -> History:
-    """Load history of a recording or programme, with the state of a linear drive."""
+    """Load history of a recording or programme, with the state of a linear drive.
+
+    Parameters
+    ----------
+    recording : Recording
+        Torque and whatever else was recorded, n samples.
+    model : Model
+        Line by which the state starts, and the reading of torque without load.
+
+    Returns
+    -------
+    History
+        n samples.
+    """
     torque = np.ascontiguousarray(recording.torque_nm - model.torque_zero_nm, dtype=np.float64)
     run = np.cumsum(np.r_[False, np.diff(recording.run) != 0]).astype(np.int64)
     restart = np.r_[True, np.diff(run) != 0] if len(run) else np.zeros(0, dtype=bool)
@@ -179,7 +71,7 @@ def history_of(recording: Recording, model: Model) -> History:
     )
 
 
-def _flanks(elastic: Floats, restart: np.ndarray) -> Floats:
+def _flanks(elastic: Floats, restart: Flags) -> Floats:
     """Flank in contact: the sign of the torque, and at zero torque the last one."""
     known = (elastic != 0) | restart
     sign = np.where(elastic < 0, -1.0, 1.0)
@@ -206,6 +98,8 @@ def simulate(
         A repaired model, or a drive: then the published model without calibration.
     programme : Recording
         Load history; for ``predict="torque"`` with an angle.
+    predict : {"angle", "torque"}
+        Column to predict, in deg or N m.
 
     Returns
     -------
@@ -249,60 +143,21 @@ def _check(model: Model, programme: Recording) -> None:
                 )
 
 
-def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
-    """Twist that effects other than friction add [deg]."""
-    total = np.zeros(len(history))
-    for value in effects:
-        if not value.effect.slips:
-            columns = value.effect.columns(history, value.shape)
-            width = min(columns.shape[1], len(value.amplitudes))
-            total += columns[:, :width] @ np.array(value.amplitudes[:width])
-    return total
-
-
-@dataclass(frozen=True, slots=True)
-class ElasticLaw:
-    """Twist beyond the dead zone [deg] over the elastic torque [N m], point by point."""
-
-    torque_nm: Floats
-    twist_deg: Floats
-
-
-def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
-    """Elastic law of the compliance and all effects that belong to it; None for a line.
-
-    The points lie closer towards zero; beyond three times the largest torque the law goes on
-    straight. A stretch where the effects together would let the twist fall with growing torque is
-    taken as rigid.
-    """
-    effects = [value for value in model.effects if value.effect.elastic]
-    if not effects:
-        return None
-    reach = 3.0 * max(largest_torque_nm, 1e-9)
-    half = reach * np.geomspace(1e-5, 1.0, LAW_POINTS)
-    torque = np.r_[-half[::-1], half]
-    side = np.sign(torque)
-    history = History(
-        applied_nm=torque,
-        elastic_nm=torque,
-        angle_deg=side * model.free_play_deg + model.compliance_deg_per_nm * torque,
-        side=side,
-        run=np.zeros(len(torque), dtype=np.int64),
-        restart=np.arange(len(torque)) == 0,
-        compliance_deg_per_nm=model.compliance_deg_per_nm,
-        free_play_deg=model.free_play_deg,
-        output_pin_count=model.output_pin_count,
-    )
-    twist = model.compliance_deg_per_nm * torque + linear_twist(effects, history)
-    least = 1e-3 * model.compliance_deg_per_nm
-    upper = np.maximum.accumulate(np.r_[0.0, twist[LAW_POINTS:]] - least * np.r_[0.0, half])
-    lower = np.maximum.accumulate(np.r_[0.0, -twist[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])
-    upper, lower = upper + least * np.r_[0.0, half], lower + least * np.r_[0.0, half]
-    return ElasticLaw(np.r_[-half[::-1], 0.0, half], np.r_[-lower[:0:-1], upper])
-
-
 def predict_history(model: Model, programme: Recording) -> History:
-    """Settle path, flank and effects along a torque history."""
+    """Settle path, flank and effects along a torque history.
+
+    Parameters
+    ----------
+    model : Model
+        Line and effects.
+    programme : Recording
+        Torque and the other columns that the effects need, n samples.
+
+    Returns
+    -------
+    History
+        n samples with the predicted path.
+    """
     return settle(model, history_of(programme, model))
 
 
@@ -311,8 +166,22 @@ def settle(
 ) -> History:
     """Settle path, flank and effects along a load history that is already zeroed.
 
-    ``told_side`` gives the flank in contact sample by sample, where a recording shows it; without
-    it the model finds the flank, which is a forecast.
+    Parameters
+    ----------
+    model : Model
+        Line and effects.
+    history : History
+        Load history of n samples in some state, from which the rounds start.
+    rounds : int
+        Most rounds in which twist, flank and effects settle on each other.
+    told_side : ndarray, shape (n,), optional
+        Flank in contact of every sample, +1 or -1, where a recording shows it; without it the
+        model finds the flank, which is a forecast.
+
+    Returns
+    -------
+    History
+        The same load with the settled path.
     """
     sliding = [value for value in model.effects if value.effect.slips]
     law = elastic_law(model, history.largest_torque_nm) if sliding else None

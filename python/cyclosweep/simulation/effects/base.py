@@ -1,11 +1,12 @@
 """What every effect is: physics in words, its parameters, and its response to a load history."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 Shape = Mapping[str, float]
@@ -22,6 +23,39 @@ class Parameter:
     lower: float = -np.inf
     upper: float = np.inf
     logarithmic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeForm:
+    """Names that make up one kind of shape.
+
+    Attributes
+    ----------
+    needed : tuple of str
+        Names that have to be there.
+    optional : tuple of str
+        Names that may be there.
+    numbered : str
+        Pattern such as ``order_{}`` of names numbered 1, 2, ... without a gap, at least one.
+    """
+
+    needed: tuple[str, ...] = ()
+    optional: tuple[str, ...] = ()
+    numbered: str = ""
+
+    def ordered(self, names: Collection[str]) -> list[str] | None:
+        """Names in the order of this form; None where they do not make it up."""
+        found = [*self.needed, *(name for name in self.optional if name in names)]
+        if self.numbered:
+            count = max(len(names) - len(found), 1)
+            found += [self.numbered.format(k + 1) for k in range(count)]
+        return found if set(found) == set(names) else None
+
+    def __str__(self) -> str:
+        parts = [*self.needed, *(f"[{name}]" for name in self.optional)]
+        if self.numbered:
+            parts.append(f"{self.numbered.format(1)} ...")
+        return " ".join(parts)
 
 
 class Effect:
@@ -41,6 +75,9 @@ class Effect:
         Columns without which the effect cannot be tested.
     shape_parameters : tuple of Parameter
         Parameters that enter nonlinearly and are refined by the fit.
+    forms : tuple of ShapeForm
+        What a shape may consist of, by which a shape in a file is checked. An effect that states
+        none takes any, and all its shape parameters have to be there.
     slips : bool
         The effect is a friction torque on slip elements, solved in the angle.
     elastic : bool
@@ -59,6 +96,7 @@ class Effect:
     family: ClassVar[str]
     needs: ClassVar[tuple[str, ...]] = ()
     shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
+    forms: ClassVar[tuple[ShapeForm, ...]] = ()
     slips: ClassVar[bool] = False
     elastic: ClassVar[bool] = False
     dense: ClassVar[bool] = False
@@ -80,6 +118,37 @@ class Effect:
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Parameters that multiply the columns, with their signs as bounds."""
         raise NotImplementedError
+
+    def known_shape(self, shape: Shape) -> Shape:
+        """Return a shape with its parameters in the effect's own order.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape parameters by name, in any order.
+
+        Returns
+        -------
+        mapping
+
+        Raises
+        ------
+        InputError
+            A shape parameter is unknown or missing.
+        """
+        own = tuple(parameter.name for parameter in self.shape_parameters)
+        others = tuple(name for name in shape if name not in own)
+        known = self.forms or (ShapeForm(own, others),)
+        for form in known:
+            names = form.ordered(shape)
+            if names is not None:
+                return {name: shape[name] for name in names}
+        expected = ", or ".join(map(str, known))
+        raise InputError(f"shape: found {' '.join(shape) or 'nothing'}, expected {expected}")
+
+    def fewer_amplitudes(self, shape: Shape) -> bool:
+        """Whether a model may hold only the first of the amplitudes that the shape names."""
+        return False
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Shapes alike at first sight, between which only a joint fit decides."""

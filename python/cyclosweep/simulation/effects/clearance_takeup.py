@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, listed
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
@@ -35,6 +35,7 @@ class ClearanceTakeup(Effect):
         Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
         Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
     )
+    forms = (ShapeForm(("first_nm", "range_nm")), ShapeForm(numbered="kink_{}_nm"))
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Loads of first engagement and ranges, as shares of the largest load."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
 
@@ -29,6 +29,7 @@ class ContactStiffening(Effect):
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
     )
+    forms = (ShapeForm(("turn_nm",)), ShapeForm(("power",)))
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Power laws around that of Hertz, and turning loads up to a quarter of the largest."""

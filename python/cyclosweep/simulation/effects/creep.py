@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, listed, spread
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed, spread
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 FEWEST_STEPS = 3.0
@@ -30,6 +30,7 @@ class Creep(Effect):
     shape_parameters = (
         Parameter("time_constant_s", "s", "time constant of the delayed twist", 1e-6, 1e9, True),
     )
+    forms = (ShapeForm(("time_constant_s",)), ShapeForm(numbered="tau_{}_s"))
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Time constants from a few samples to the length of the longest run."""

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
 Push = Callable[[History, int, int], float]
@@ -84,6 +84,10 @@ class DatumDrift(Effect):
     shape_parameters = (
         Parameter("memory", "", "part of the shift kept to the next run", 0.0, 1.0),
     )
+    forms = (
+        ShapeForm(("push", "memory"), ("push_2", "memory_2")),
+        ShapeForm(("free",)),
+    )
 
     def untestable(self, history: History) -> str | None:
         """Need at least three runs without a reset in between."""
@@ -131,6 +135,10 @@ class DatumDrift(Effect):
             return True
         best = _explained(history, amplitudes)
         return best is not None and best[0] < UNTOLD
+
+    def fewer_amplitudes(self, shape: Shape) -> bool:
+        """Free offsets: one a run after the first, up to sixty."""
+        return "free" in shape
 
     def portable(
         self, history: History, shape: Shape, amplitudes: Floats

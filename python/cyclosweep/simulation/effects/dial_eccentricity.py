@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, spread
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, spread
 from cyclosweep.simulation.effects.history import Floats, History
 
 PHASES_DEG = tuple(15.0 * k for k in range(12))
@@ -24,6 +24,7 @@ class DialEccentricity(Effect):
     tell_tale = "periodic in the indicated angle itself"
     family = "dial"
     vector = True
+    forms = (ShapeForm(("order",), ("phase_deg",)),)
 
     def untestable(self, history: History) -> str | None:
         """Need a good part of a turn."""

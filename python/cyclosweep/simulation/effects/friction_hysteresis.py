@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip import SLIP_PARAMETERS, slip_shapes, slip_state
+from cyclosweep.simulation.effects.slip import SLIP_FORMS, SLIP_PARAMETERS, slip_shapes, slip_state
 
 
 class FrictionHysteresis(Effect):
@@ -23,6 +23,7 @@ class FrictionHysteresis(Effect):
     tell_tale = "loop of constant width, no rate effect"
     family = "hysteresis"
     shape_parameters = SLIP_PARAMETERS
+    forms = SLIP_FORMS
     slips = True
 
     def shapes(self, history: History) -> Sequence[Shape]:

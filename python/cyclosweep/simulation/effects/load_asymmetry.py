@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
 
@@ -22,6 +22,7 @@ class LoadAsymmetry(Effect):
     elastic = True
     dense = True
     shape_parameters = (Parameter("power", "", "power of the load", 0.4, 3.0),)
+    forms = (ShapeForm(("power",)),)
 
     def untestable(self, history: History) -> str | None:
         """Need both directions."""

@@ -4,7 +4,13 @@ from collections.abc import Sequence
 
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip import SLIP_PARAMETERS, slip_shapes, slip_state, stretch_of
+from cyclosweep.simulation.effects.slip import (
+    SLIP_FORMS,
+    SLIP_PARAMETERS,
+    slip_shapes,
+    slip_state,
+    stretch_of,
+)
 
 
 class LoadDependentFriction(Effect):
@@ -19,6 +25,7 @@ class LoadDependentFriction(Effect):
     tell_tale = "loop that opens with load"
     family = "hysteresis"
     shape_parameters = SLIP_PARAMETERS
+    forms = SLIP_FORMS
     slips = True
 
     def shapes(self, history: History) -> Sequence[Shape]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, listed
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Floats, History
 
 
@@ -40,6 +40,7 @@ class MeshPeriodic(Effect):
     """An effect that is periodic in the position of the mesh zone."""
 
     needs = ("crank_deg",)
+    forms = (ShapeForm(numbered="order_{}"),)
 
     def largest(self, history: History) -> float:
         """Size that the first order may well have, in the unit of the amplitudes."""

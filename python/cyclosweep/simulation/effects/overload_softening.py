@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
 
@@ -25,6 +25,7 @@ class OverloadSoftening(Effect):
         Parameter("onset_nm", "N m", "load above which the compliance grows", 0.0, 1e6),
         Parameter("power", "", "power of the extra twist", 1.0, 3.0),
     )
+    forms = (ShapeForm(("onset_nm", "power")),)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Onsets up to four fifths of the largest load, kinked to cubic."""

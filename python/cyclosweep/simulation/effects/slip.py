@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Parameter, Shape
+from cyclosweep.simulation.effects.base import Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
 ELEMENTS = 14
@@ -17,6 +17,12 @@ SLIP_PARAMETERS = (
     Parameter("slip_deg", "deg", "median presliding distance", 1e-6, 1e3, logarithmic=True),
     Parameter("scatter", "", "spread of the presliding distances (sd of log)", 0.05, 3.0, True),
     Parameter("skew", "", "1: a power law up to a longest distance, 0: lognormal", -1.0, 1.0),
+)
+
+
+SLIP_FORMS = (
+    ShapeForm(("slip_deg", "scatter"), ("skew", "slack")),
+    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), ("skew", "slack")),
 )
 
 

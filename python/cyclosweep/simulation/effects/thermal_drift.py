@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, spread
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, spread
 from cyclosweep.simulation.effects.history import Floats, History
 
 REFERENCE_C = 20.0
@@ -30,6 +30,10 @@ class ThermalDrift(Effect):
     needs = ("temperature_c",)
     shape_parameters = (
         Parameter("delay_s", "s", "time constant behind the recorded temperature", 1e-6, 1e9, True),
+    )
+    forms = (
+        ShapeForm(("datum",), ("clearance", "delay_s")),
+        ShapeForm(("clearance",), ("delay_s",)),
     )
 
     def untestable(self, history: History) -> str | None:

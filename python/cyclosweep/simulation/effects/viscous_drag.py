@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
 SHORTEST_LAG = 0.1
@@ -29,6 +29,7 @@ class ViscousDrag(Effect):
     family = "hysteresis"
     needs = ("time_s",)
     shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
+    forms = (ShapeForm(("power", "lag_s")),)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Newtonian and thinning drag, too small yet to lag."""

@@ -1,0 +1,205 @@
+"""Typed look-ups in a decoded JSON object; what is missing or of the wrong type is one line."""
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from cyclosweep.errors import InputError
+
+
+def read_object(path: Path) -> dict[str, Any]:
+    """Read a JSON file that holds one object.
+
+    Parameters
+    ----------
+    path : Path
+        File to read; UTF-8.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is no JSON, repeats a key, or holds NaN or Infinity.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        content = json.loads(text, object_pairs_hook=_distinct, parse_constant=_refuse)
+    except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
+        raise InputError(f"cannot be read as a model: {error}") from error
+    if not isinstance(content, dict):
+        raise InputError("schema: expected an object")
+    return content
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Object of these pairs, each key once."""
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise ValueError(f"{key}: given twice")
+        found[key] = value
+    return found
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(f"{constant}: expected a finite number")
+
+
+def number_of(content: Mapping[str, Any], key: str, default: float | None = None) -> float:
+    """Finite number under a key.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the number.
+    default : float, optional
+        What is taken where the key is missing; without it a missing key is an error.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        The key is missing, or its value is no finite number.
+    """
+    if key not in content:
+        if default is None:
+            raise InputError(f"{key}: missing, expected a number")
+        return default
+    value = content[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{key}: found {_short(value)}, expected a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise InputError(f"{key}: found {_short(value)}, expected a finite number")
+    return number
+
+
+def count_of(content: Mapping[str, Any], key: str, default: int) -> int:
+    """Positive whole number under a key.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the number.
+    default : int
+        What is taken where the key is missing.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InputError
+        The value is no positive whole number.
+    """
+    value = content.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"{key}: found {_short(value)}, expected a positive whole number")
+    return value
+
+
+def text_of(content: Mapping[str, Any], key: str, default: str | None = None) -> str:
+    """Text under a key.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the text.
+    default : str, optional
+        What is taken where the key is missing; without it a missing key is an error.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        The key is missing, or its value is no text.
+    """
+    if key not in content and default is None:
+        raise InputError(f"{key}: missing, expected a text")
+    value = content.get(key, default)
+    if not isinstance(value, str):
+        raise InputError(f"{key}: found {_short(value)}, expected a text")
+    return value
+
+
+def object_of(
+    content: Mapping[str, Any], key: str, default: Mapping[str, Any] | None = None
+) -> Mapping[str, Any]:
+    """Object under a key.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the inner object.
+    default : mapping, optional
+        What is taken where the key is missing; without it a missing key is an error.
+
+    Returns
+    -------
+    mapping
+
+    Raises
+    ------
+    InputError
+        The key is missing, or its value is no object.
+    """
+    if key not in content and default is None:
+        raise InputError(f"{key}: missing, expected an object")
+    value = content.get(key, default)
+    if not isinstance(value, dict):
+        raise InputError(f"{key}: found {_short(value)}, expected an object")
+    return value
+
+
+def list_of(content: Mapping[str, Any], key: str) -> list[Any]:
+    """List under a key; empty where the key is missing.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the list.
+
+    Returns
+    -------
+    list
+
+    Raises
+    ------
+    InputError
+        The value is no list.
+    """
+    value = content.get(key, [])
+    if not isinstance(value, list):
+        raise InputError(f"{key}: found {_short(value)}, expected a list")
+    return value
+
+
+def _short(value: object) -> str:
+    """Value as it would stand in the file, cut to a few characters."""
+    text = json.dumps(value)
+    return text if len(text) <= 40 else text[:37] + "..."

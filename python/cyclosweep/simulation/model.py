@@ -1,0 +1,263 @@
+"""A calibrated model of a drive: the published line, what it leaves out, and its file."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, Self
+
+import numpy as np
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.errors import InputError
+from cyclosweep.simulation.effects import Effect, find
+from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.json_fields import (
+    count_of,
+    list_of,
+    number_of,
+    object_of,
+    read_object,
+    text_of,
+)
+
+SCHEMA = "cyclosweep.model/1"
+
+
+@dataclass(frozen=True)
+class EffectValue:
+    """An effect with its shape and the values of its amplitudes.
+
+    Attributes
+    ----------
+    name : str
+        Name of a registered effect.
+    shape : mapping
+        Shape parameters by name, each in the unit that the effect states.
+    amplitudes : tuple of float
+        In the order of ``effect.amplitudes(shape)``, each in the unit stated there.
+    """
+
+    name: str
+    shape: Mapping[str, float]
+    amplitudes: tuple[float, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The registered effect of this name."""
+        return find(self.name)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Entry of ``model.json``."""
+        parameters = self.effect.amplitudes(self.shape)
+        return {
+            "name": self.name,
+            "shape": dict(self.shape),
+            "amplitudes": {
+                parameter.name: float(value)
+                for parameter, value in zip(parameters, self.amplitudes, strict=False)
+            },
+        }
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> Self:
+        """Read an entry of ``model.json``; amplitudes are told apart by name.
+
+        Parameters
+        ----------
+        content : mapping
+            Decoded entry with ``name``, ``shape`` and ``amplitudes``.
+
+        Returns
+        -------
+        EffectValue
+
+        Raises
+        ------
+        InputError
+            The effect, a shape parameter or an amplitude is unknown, missing or no finite number.
+        """
+        try:
+            effect = find(text_of(content, "name"))
+        except ValueError as error:
+            raise InputError(str(error)) from error
+        try:
+            given = object_of(content, "shape", {})
+            shape = effect.known_shape({key: number_of(given, key) for key in given})
+            return cls(effect.name, shape, _amplitudes(effect, shape, content))
+        except InputError as error:
+            raise InputError(f"{effect.name}: {error}") from error
+
+
+def _amplitudes(
+    effect: Effect, shape: Mapping[str, float], content: Mapping[str, Any]
+) -> tuple[float, ...]:
+    """Amplitudes of an entry in the order of the effect."""
+    given = object_of(content, "amplitudes")
+    names = [parameter.name for parameter in effect.amplitudes(shape)]
+    for name in given:
+        if name not in names:
+            raise InputError(f"amplitude {name!r}: unknown, expected {', '.join(names)}")
+    count = len(names) if not effect.fewer_amplitudes(shape) else max(len(given), 1)
+    return tuple(number_of(given, name) for name in names[:count])
+
+
+@dataclass(frozen=True)
+class Model:
+    """Calibrated baseline and effects of one drive at one shaft.
+
+    Attributes
+    ----------
+    compliance_deg_per_nm : float
+        Slope of the line [deg/(N m)].
+    free_play_deg : float
+        Free play on each side of the datum [deg].
+    datum_deg : float
+        Middle of the dead zone on the dial [deg].
+    torque_zero_nm : float
+        What the torque column reads without load [N m]. It shows only where both crossings of the
+        dead zone were recorded.
+    side : {"input", "output"}
+        Shaft to which angles and torques belong.
+    effects : tuple of EffectValue
+        What the published model leaves out.
+    output_pin_count : int
+        Pins of the drive, for the orders of the mesh position.
+    drive : str
+        Name of the drive.
+    notes : tuple of str
+        What a user of the model should know, one sentence each.
+    """
+
+    compliance_deg_per_nm: float
+    free_play_deg: float
+    datum_deg: float = 0.0
+    side: Literal["input", "output"] = "input"
+    effects: tuple[EffectValue, ...] = ()
+    output_pin_count: int = 8
+    drive: str = ""
+    torque_zero_nm: float = 0.0
+    notes: tuple[str, ...] = field(default=())
+
+    @classmethod
+    def of_drive(cls, drive: Drive, side: Literal["input", "output"] = "input") -> Self:
+        """Published model of a drive at one of its shafts.
+
+        Parameters
+        ----------
+        drive : Drive
+            The drive.
+        side : {"input", "output"}
+            Shaft to which angles and torques belong.
+
+        Returns
+        -------
+        Model
+        """
+        line = drive.nominal_line(side)
+        return cls(
+            compliance_deg_per_nm=line.compliance_deg_per_nm,
+            free_play_deg=line.free_play_deg,
+            side=side,
+            output_pin_count=int(drive.output_pin_count),
+            drive=drive.name,
+        )
+
+    def to_json(self) -> str:
+        """Return the content of ``model.json``."""
+        content = {
+            "schema": SCHEMA,
+            "drive": self.drive,
+            "side": self.side,
+            "output_pin_count": self.output_pin_count,
+            "baseline": {
+                "compliance_deg_per_nm": self.compliance_deg_per_nm,
+                "free_play_deg": self.free_play_deg,
+                "datum_deg": self.datum_deg,
+                "torque_zero_nm": self.torque_zero_nm,
+            },
+            "effects": [value.as_dict() for value in self.effects],
+            "notes": list(self.notes),
+        }
+        return json.dumps(content, indent=1)
+
+    @classmethod
+    def from_json(cls, path: str | Path) -> Self:
+        """Read ``model.json``.
+
+        Parameters
+        ----------
+        path : str or Path
+            File as `to_json` writes it. The order of its keys does not matter.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        InputError
+            The file is no model, or holds an effect, a shape parameter or an amplitude that is
+            unknown, missing or no finite number; one line says which.
+        """
+        try:
+            content = read_object(Path(path))
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from error
+        if content.get("schema") != SCHEMA:
+            raise InputError(f"{path}: schema: expected {SCHEMA!r}")
+        try:
+            return cls._of(content)
+        except InputError as error:
+            raise InputError(f"{path}: not a model: {error}") from error
+
+    @classmethod
+    def _of(cls, content: Mapping[str, Any]) -> Self:
+        """Model of a decoded file."""
+        base = object_of(content, "baseline")
+        compliance = number_of(base, "compliance_deg_per_nm")
+        if compliance <= 0:
+            raise InputError("compliance_deg_per_nm: expected more than zero")
+        side = text_of(content, "side", "input")
+        if side not in ("input", "output"):
+            raise InputError(f"side: found {side!r}, expected 'input' or 'output'")
+        entries = list_of(content, "effects")
+        notes = list_of(content, "notes")
+        return cls(
+            compliance_deg_per_nm=compliance,
+            free_play_deg=number_of(base, "free_play_deg"),
+            datum_deg=number_of(base, "datum_deg", 0.0),
+            torque_zero_nm=number_of(base, "torque_zero_nm", 0.0),
+            side="output" if side == "output" else "input",
+            effects=tuple(
+                EffectValue.from_dict(object_of({f"effect {k}": entry}, f"effect {k}"))
+                for k, entry in enumerate(entries, 1)
+            ),
+            output_pin_count=count_of(content, "output_pin_count", 8),
+            drive=text_of(content, "drive", ""),
+            notes=tuple(text_of({"note": note}, "note") for note in notes),
+        )
+
+
+def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
+    """Twist that effects other than friction add.
+
+    Parameters
+    ----------
+    effects : sequence of EffectValue
+        Effects with their amplitudes; those that act through slip elements are passed over.
+    history : History
+        Load history of n samples with the state of the model along it.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Twist [deg].
+    """
+    total = np.zeros(len(history))
+    for value in effects:
+        if not value.effect.slips:
+            columns = value.effect.columns(history, value.shape)
+            width = min(columns.shape[1], len(value.amplitudes))
+            total += columns[:, :width] @ np.array(value.amplitudes[:width])
+    return total
