@@ -13,13 +13,16 @@ CONTEST_OUT ?= build/contest
 CONTEST_SEED ?= 800000
 CONTEST_POOR_OUT ?= build/contest-poor
 CONTEST_POOR_SEED ?= 900000
+SAME_OUT ?= build/same-diagnosis
+SAME_CASES ?= 300
+SAME_FLAGS ?=
 RECORD := $(BIN)/python -m cyclosweep_challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench docs golden proof \
-	proof-record proof-contest proof-contest-poor clean
+	proof-record proof-contest proof-contest-poor same-diagnosis clean
 .DEFAULT_GOAL := help
 
 help:
@@ -29,10 +32,11 @@ help:
 	@echo "make lint    rustfmt, clippy, ruff, mypy, stubtest"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
-	@echo "make proof-record  the run of record and docs/proof.md; hours, goes on where it stopped"
-	@echo "make proof-contest  the contest with the opponents once more and docs/contest.md; about two hours"
-	@echo "make proof-contest-poor  the same on poor programmes alone and docs/contest-poor.md; about two hours"
-	@echo "make docs    regenerate what in docs comes from code or from the figures of record"
+	@echo "make proof-record  the run of record and proof/proof.md; hours, goes on where it stopped"
+	@echo "make proof-contest  the contest with the opponents once more and proof/contest.md; about two hours"
+	@echo "make proof-contest-poor  the same on poor programmes alone and proof/contest-poor.md; about two hours"
+	@echo "make same-diagnosis OTHER=DIR  whether this code and another checkout (set up) diagnose the same"
+	@echo "make docs    regenerate what in docs and proof comes from code or from the figures of record"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
 
@@ -74,20 +78,28 @@ bench: env
 
 # The loops of a real drive take part where CYCLOSWEEP_MEASURED names the folder of their files.
 proof: env
-	$(RECORD) --subset --fresh --out $(PROOF_OUT) --seed $(PROOF_SEED) --verify 20 --against docs/proof.json $(PROOF_FLAGS)
+	$(RECORD) --subset --fresh --out $(PROOF_OUT) --seed $(PROOF_SEED) --verify 20 --against proof/proof.json $(PROOF_FLAGS)
 
 proof-record: env
-	$(RECORD) --out $(RECORD_OUT) --seed $(RECORD_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
+	$(RECORD) --out $(RECORD_OUT) --seed $(RECORD_SEED) --docs proof --verify 50 $(RECORD_FLAGS)
 
 proof-contest: env
-	$(RECORD) --contest --out $(CONTEST_OUT) --seed $(CONTEST_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
+	$(RECORD) --contest --out $(CONTEST_OUT) --seed $(CONTEST_SEED) --docs proof --verify 50 $(RECORD_FLAGS)
 
 proof-contest-poor: env
-	$(RECORD) --contest-poor --out $(CONTEST_POOR_OUT) --seed $(CONTEST_POOR_SEED) --docs docs --verify 50 $(RECORD_FLAGS)
+	$(RECORD) --contest-poor --out $(CONTEST_POOR_OUT) --seed $(CONTEST_POOR_SEED) --docs proof --verify 50 $(RECORD_FLAGS)
+
+same-diagnosis: env
+	test -x "$(OTHER)/$(BIN)/python" || { echo "OTHER=DIR: a checkout in which make env has run"; exit 2; }
+	rm -rf $(SAME_OUT)
+	$(BIN)/python proof/same_diagnosis.py make $(SAME_OUT)/recordings --cases $(SAME_CASES)
+	$(OTHER)/$(BIN)/python proof/same_diagnosis.py run $(SAME_OUT)/recordings $(SAME_OUT)/other.json $(SAME_FLAGS)
+	$(BIN)/python proof/same_diagnosis.py run $(SAME_OUT)/recordings $(SAME_OUT)/here.json $(SAME_FLAGS)
+	$(BIN)/python proof/same_diagnosis.py compare $(SAME_OUT)/other.json $(SAME_OUT)/here.json
 
 docs: env
 	$(BIN)/python docs/generate.py
-	$(BIN)/python -m cyclosweep_challenge.record --pages docs
+	$(BIN)/python -m cyclosweep_challenge.record --pages proof
 
 golden: env
 	$(BIN)/python -m tests.golden.regenerate

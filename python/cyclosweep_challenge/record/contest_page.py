@@ -52,7 +52,8 @@ def contest_page(
         "diagnosed: their distances, each weighted by its precision, as if their intervals were "
         "symmetric and normal. To take records together was decided after the first two were "
         "read; these figures stand beside the others, and no target is theirs. Which record "
-        "decides which comparison, and when that was settled: [challenge.md](challenge.md).\n\n"
+        "decides which comparison, and when that was settled: "
+        "[challenge.md](../docs/challenge.md).\n\n"
         + behind_table(content, others)
         + ("\n\n" + judged(over) if over else ""),
         f"## Figures\n\nEvery figure for which there are cases here{_only(programme)}.\n\n"

@@ -51,9 +51,9 @@ def _head(content: Plain, log: Sequence[Plain]) -> str:
     return (
         "# The proof: concealed physics, sealed answers, opponents, and a real drive\n\n"
         "Written by `make proof-record` from the run of record; not edited by hand. What is "
-        "concealed and how, and what the tiers mean: [challenge.md](challenge.md). Every figure "
-        "stands with its 95 % interval in brackets: exact (Clopper and Pearson) for shares, by "
-        "bootstrap for the rest.\n\n"
+        "concealed and how, and what the tiers mean: [challenge.md](../docs/challenge.md). "
+        "Every figure stands with its 95 % interval in brackets: exact (Clopper and Pearson) for "
+        "shares, by bootstrap for the rest.\n\n"
         + origin(
             content,
             log,
@@ -71,7 +71,7 @@ def _targets(content: Plain, contests: Mapping[str, Plain]) -> str:
             "The contest with the opponents was run again, with other recordings and more of them "
             "to set thresholds on. How many of them are behind stands below and, without a "
             "target, over all records of one code. Which record decides which comparison, and "
-            "when that was settled: [challenge.md](challenge.md)."
+            "when that was settled: [challenge.md](../docs/challenge.md)."
         )
     for name, there in contests.items():
         compared = [
@@ -236,8 +236,8 @@ For someone who distrusts all of it:
    RECORD_OUT=...`; the contests with the opponents: `make proof-contest CONTEST_SEED=...
    CONTEST_OUT=...` and `make proof-contest-poor CONTEST_POOR_SEED=... CONTEST_POOR_OUT=...`. Each
    may be stopped and called again, or run in pieces with `RECORD_FLAGS="--minutes M"`: all parts
-   grow together, and what is finished is scored. They write their pages into `docs`: `git diff`
-   shows what is different, `git checkout docs` takes it back.
+   grow together, and what is finished is scored. They write their pages into `proof`: `git diff`
+   shows what is different, `git checkout proof` takes it back.
 2. **The answers were sealed before anything was diagnosed.** The root over the answers of each
    slice stands in the log before that slice is diagnosed, every line of the log holds the hash of
    the line before, and the last one's hash is printed above.
@@ -247,10 +247,11 @@ For someone who distrusts all of it:
    It needs the record's folder, which holds thousands of files and is not in this repository; a
    hash also covers a random nonce, so that a run of one's own has other roots for the same answers.
    The diagnosis is a process of its own in a folder with nothing but copies of recordings:
-   `python/cyclosweep_challenge/diagnosing.py`.
+   `python/cyclosweep_challenge/runner/diagnosing.py`.
 3. **The rig shares nothing with what it tests.** `tests/unit/challenge/test_import_rule.py`: the
    generator imports NumPy, SciPy, Polars and itself, and nothing that diagnoses imports the
-   challenge. Other equations, too: [challenge.md](challenge.md) says how each cause is made.
+   challenge. Other equations, too: [challenge.md](../docs/challenge.md) says how each cause is
+   made.
 4. **Nothing was tuned on these seeds.** Records use seeds from 100,000 on (`RECORD_SEED` in
    `python/cyclosweep_challenge/runner/run.py`), development used seeds below 10,000. What earlier
    records of other seeds, whole or partial, showed was repaired before this one was begun; the

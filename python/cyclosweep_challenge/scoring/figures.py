@@ -307,37 +307,9 @@ def unknown(outcomes: Chosen) -> list[Figure]:
                 must=must[1],
             ),
         ]
+    # That exact aliases are called untestable is no figure: a diagnosis lists them unconditionally.
     aliased = [o for o in outcomes if o.tier == "C7"]
-    figures += [
-        _figure(
-            "exact aliases called untestable",
-            share_of([set(o.aliases) <= set(o.untestable) for o in aliased]),
-            at_least=1.0,
-            must=1.0,
-        ),
-        *_always_hidden(outcomes),
-        _figure("alarms on exact aliases", share_of([o.alarm for o in aliased])),
-    ]
-    return figures
-
-
-ANYWHERE = frozenset({"rig_compliance", "torque_offset"})
-AT_ONE_POSITION = frozenset({"transmission_error", "phase_dependent_compliance"})
-"""Exact aliases of the calibration on any programme, and on those at a single mesh position."""
-
-
-def _always_hidden(outcomes: Chosen) -> list[Figure]:
-    """Whether every diagnosis names what its programme can never show."""
-    figures = []
-    for programme, hidden in (("rich", ANYWHERE), ("poor", ANYWHERE | AT_ONE_POSITION)):
-        there = [o for o in outcomes if o.programme == programme and not o.failure]
-        figures.append(
-            _figure(
-                f"exact aliases called untestable in every recording, {programme}",
-                share_of([hidden <= set(o.untestable) for o in there]),
-                at_least=1.0,
-            )
-        )
+    figures.append(_figure("alarms on exact aliases", share_of([o.alarm for o in aliased])))
     return figures
 
 

@@ -25,7 +25,7 @@ from cyclosweep_challenge.runner.folders import LOCK
 from cyclosweep_challenge.runner.work import Options
 from cyclosweep_challenge.trial.seal import SealError
 
-DOCS = Path(__file__).parents[3] / "docs"
+PROOF = Path(__file__).parents[3] / "proof"
 STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
 SMALL = Size(null=4, opened=4, concealed=2, tuning=2, coloured=2, samples=400, steps=2)
@@ -318,13 +318,15 @@ def test_a_contest_alone_has_its_page_beside_the_proof(whole: Path, tmp_path: Pa
 
 def test_committed_pages_are_what_their_figures_give(tmp_path: Path) -> None:
     for kind in ("*.json", "*-published.jsonl", "*-notes.md"):
-        for file in DOCS.glob(kind):
+        for file in PROOF.glob(kind):
             shutil.copy(file, tmp_path)
     given = set(tmp_path.iterdir())
     names = [page.stem for page in write_pages(tmp_path)]
     made = {file.name: file.read_text() for file in set(tmp_path.iterdir()) - given}
     assert "proof" in names
-    there = [f for name in names for f in (DOCS / f"{name}.md", *DOCS.glob(f"{name}-power-*.svg"))]
+    there = [
+        f for name in names for f in (PROOF / f"{name}.md", *PROOF.glob(f"{name}-power-*.svg"))
+    ]
     assert made == {file.name: file.read_text() for file in there}
 
 

@@ -1,6 +1,6 @@
 """Errors on a second programme of the same specimen, with and without the effect that was named.
 
-    python docs/second_programme.py
+    python proof/second_programme.py
 
 makes recordings with the independent generator of the challenge, diagnoses each, predicts the
 second programme with `cyclosweep simulate`, and prints the table of docs/diagnosis.md. "Without" is
