@@ -146,7 +146,7 @@ def kernel(e_mm, count, circle_mm, diameter_mm, length_mm, clocking_deg, l1_mm, 
         square = diameter * diameter
         bending = length**3 * 64.0 / (3.0 * YOUNGS * PI * square * square)
         flexibility = bending + length * 4.0 / (COWPER * SHEAR * PI * square)
-        pin = math.atan(flexibility * TORQUE / (circle * circle)) / TORQUE
+        pin = flexibility / (circle * circle)
         compliance = shaft + pin / pins
         reflected = compliance * RATIO**2
         slope = math.degrees(efficiency * (reflected * NOMINAL))

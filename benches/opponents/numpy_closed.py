@@ -107,7 +107,7 @@ def run(axes: tuple[Reals, ...]) -> Reals:
     square = diameter * diameter
     bending = length * length * length * (64.0 / (3.0 * C.youngs * np.pi)) / (square * square)
     flexibility = bending + length * (4.0 / (COWPER * SHEAR * np.pi)) / square
-    pin = np.arctan(flexibility * C.torque / (circle * circle)) / C.torque
+    pin = flexibility / (circle * circle)
     compliance = shaft + pin / pins
     reflected = compliance * C.ratio**2
     stiffness = 1.0 / reflected

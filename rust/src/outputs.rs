@@ -7,6 +7,7 @@ use crate::compliance::{
 use crate::inputs::NM_PER_RAD_OF_NM_PER_ARCMIN;
 use crate::lanes::{BLOCK, Lanes};
 use crate::map_stage::{Map, MapBlock};
+use crate::pin::{force_per_pin, torque_per_pin};
 use crate::stages::{
     GeometryBlock, PinBending, PinBendingBlock, Rating, RatingBlock, Shaft, ShaftBlock, Stage,
     stage,
@@ -39,6 +40,8 @@ pub enum Output {
     ReflectedCompliance,
     ReflectedStiffness,
     OutputStiffness,
+    TorquePerPin,
+    ForcePerPin,
     PinForceMax,
     PinBendingStress,
     Twist(usize),
@@ -57,7 +60,7 @@ pub enum Kind {
 
 impl Output {
     /// Every column but the twists, in the order of a table.
-    pub const FIXED: [Output; 22] = [
+    pub const FIXED: [Output; 24] = [
         Output::ActivePinsMean,
         Output::ActivePinsMin,
         Output::ActivePinsMax,
@@ -78,6 +81,8 @@ impl Output {
         Output::ReflectedCompliance,
         Output::ReflectedStiffness,
         Output::OutputStiffness,
+        Output::TorquePerPin,
+        Output::ForcePerPin,
         Output::PinForceMax,
         Output::PinBendingStress,
     ];
@@ -108,6 +113,8 @@ impl Output {
             Output::ReflectedCompliance => "reflected_compliance_rad_per_nm",
             Output::ReflectedStiffness => "reflected_stiffness_nm_per_rad",
             Output::OutputStiffness => "output_stiffness_nm_per_arcmin",
+            Output::TorquePerPin => "torque_per_pin_nm",
+            Output::ForcePerPin => "force_per_pin_n",
             Output::PinForceMax => "pin_force_max_n",
             Output::PinBendingStress => "pin_bending_stress_mpa",
             Output::Twist(k) => return twist_name(loads[k]),
@@ -289,6 +296,13 @@ impl Block<'_> {
             Output::ReflectedStiffness => each(out, |k| 1.0 / assembly.reflected[k]),
             Output::OutputStiffness => each(out, |k| {
                 1.0 / (assembly.compliance[k] * NM_PER_RAD_OF_NM_PER_ARCMIN)
+            }),
+            Output::TorquePerPin => each(out, |k| {
+                torque_per_pin(rating.output_torque[k], map.active_mean[k])
+            }),
+            Output::ForcePerPin => each(out, |k| {
+                let torque = torque_per_pin(rating.output_torque[k], map.active_mean[k]);
+                force_per_pin(torque, pin.circle_radius[k])
             }),
             Output::PinForceMax => copy(out, &assembly.pin_force),
             Output::PinBendingStress => each(out, |k| {

@@ -3,7 +3,6 @@
 
 use std::f64::consts::PI;
 
-use crate::elementary::atan;
 use crate::error::DesignError;
 use crate::judge::Judge;
 
@@ -75,14 +74,30 @@ pub fn cowper(m: f64, poisson: f64) -> f64 {
         / ((7.0 + 6.0 * poisson) * square + (20.0 + 12.0 * poisson) * m * m)
 }
 
-/// Compliance C_OP (rad/(N m)) about the drive's axis of one pin that carries `torque` (N m):
-/// Eqs. (8)-(10), `F = T / R`, `phi = atan(delta / R)`, `C = phi / (F R)`.
+/// Compliance C_OP (rad/(N m)) of one pin about the drive's axis, Eqs. (8)-(10):
+/// `delta / (F R^2)` with `flexibility = delta / F`.
 ///
-/// For small deflections it is `flexibility / R^2`, whatever the torque.
+/// The paper's pin is linear over its loads (Fig. 13), so the arc tangent of Eq. (8) is replaced by
+/// its argument: the compliance depends on no rating.
 #[inline(always)]
 #[must_use]
-pub fn pin_compliance(flexibility: f64, pin_circle_radius: f64, torque: f64) -> f64 {
-    atan(flexibility * torque / (pin_circle_radius * pin_circle_radius)) / torque
+pub fn pin_compliance(flexibility: f64, pin_circle_radius: f64) -> f64 {
+    flexibility / (pin_circle_radius * pin_circle_radius)
+}
+
+/// Torque T_O* (N m) of one pin under the output torque, Eqs. (1) and (2): the torque over the mean
+/// number of active hole-pin contacts, which for two discs is `T_O / (eta_OP N_OP)`.
+#[inline(always)]
+#[must_use]
+pub fn torque_per_pin(output_torque: f64, active_mean: f64) -> f64 {
+    output_torque / active_mean
+}
+
+/// Force F_n (N) of a pin that carries `torque_per_pin` (N m) on its circle, Eq. (9).
+#[inline(always)]
+#[must_use]
+pub fn force_per_pin(torque_per_pin: f64, pin_circle_radius: f64) -> f64 {
+    torque_per_pin / pin_circle_radius
 }
 
 #[cfg(test)]
@@ -128,12 +143,17 @@ mod tests {
     }
 
     #[test]
-    fn compliance_tends_to_flexibility_over_radius_squared() {
-        assert_relative_eq!(
-            pin_compliance(3.5e-8, 0.045, 1e-3),
-            3.5e-8 / 0.045_f64.powi(2),
-            max_relative = 1e-9
-        );
+    fn the_arc_tangent_under_the_whole_torque_makes_a_slender_pin_much_too_stiff() {
+        let (circle, torque) = (0.045, 585.0);
+        let pin = Pin {
+            diameter: 0.005,
+            bore: 0.0,
+            length: 0.05,
+        };
+        let flexibility = pin.flexibility(206e9, 0.3);
+        let linear = pin_compliance(flexibility, circle);
+        let with_arc_tangent = (flexibility * torque / (circle * circle)).atan() / torque;
+        assert_relative_eq!(with_arc_tangent / linear, 1.0 - 0.431, max_relative = 0.001);
     }
 
     #[test]

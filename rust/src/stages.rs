@@ -101,6 +101,8 @@ stage! {
         compliance,
         /// Root stress per force (Pa/N).
         stress_per_force,
+        /// R_OP (m).
+        circle_radius,
     }
 }
 
@@ -221,17 +223,16 @@ impl Shaft {
 
 impl PinBending {
     /// The inputs this stage reads.
-    pub const INPUTS: [Input; 7] = [
+    pub const INPUTS: [Input; 6] = [
         Input::YoungsModulus,
         Input::PoissonRatio,
         Input::OutputPinDiameter,
         Input::OutputPinBore,
         Input::OutputPinLength,
         Input::OutputPinCircleRadius,
-        Input::OutputTorque,
     ];
 
-    /// Computes at the rated output torque, which one pin carries in Eqs. (8)-(10).
+    /// Checks and computes.
     #[inline(always)]
     pub fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
         let pin = Pin {
@@ -240,15 +241,15 @@ impl PinBending {
             length: inputs.get(Input::OutputPinLength),
         };
         pin.require(judge);
-        let torque = judge.positive("output_torque", inputs.get(Input::OutputTorque));
         let flexibility = pin.flexibility(
             inputs.get(Input::YoungsModulus),
             inputs.get(Input::PoissonRatio),
         );
         let circle = inputs.get(Input::OutputPinCircleRadius);
         Self {
-            compliance: pin_compliance(flexibility, circle, torque),
+            compliance: pin_compliance(flexibility, circle),
             stress_per_force: pin.root_stress(1.0),
+            circle_radius: circle,
         }
     }
 }

@@ -153,7 +153,7 @@ def shaft_compliance(drive: cs.Drive) -> float:
 
 
 def pin_compliance(drive: cs.Drive) -> float:
-    """Eqs. (8)-(10) in rad/(N m) with a Timoshenko cantilever under the whole rated torque."""
+    """Eqs. (8)-(10) in rad/(N m): delta / (F R^2) of a Timoshenko cantilever."""
     modulus = drive.youngs_modulus_gpa * 1e9
     nu = drive.poisson_ratio
     d, bore = drive.output_pin_diameter_mm / 1e3, drive.output_pin_bore_mm / 1e3
@@ -163,10 +163,8 @@ def pin_compliance(drive: cs.Drive) -> float:
     m2 = (bore / d) ** 2
     kappa = 6 * (1 + nu) * (1 + m2) ** 2 / ((7 + 6 * nu) * (1 + m2) ** 2 + (20 + 12 * nu) * m2)
     shear = modulus / (2 * (1 + nu))
-    force = drive.output_torque_nm / radius
-    deflection = force * length**3 / (3 * modulus * second_moment)
-    deflection += force * length / (kappa * shear * area)
-    return math.atan(deflection / radius) / (force * radius)
+    flexibility = length**3 / (3 * modulus * second_moment) + length / (kappa * shear * area)
+    return flexibility / radius**2
 
 
 def root_stress_mpa(drive: cs.Drive, force: float) -> float:
@@ -217,7 +215,8 @@ def evaluate(drive: cs.Drive, loads_tn: tuple[float, ...]) -> dict[str, float | 
             in_twist, factor = output, eta[drive.criterion]
     reflected = output * drive.ratio**2
     nominal = drive.input_power_kw * 1000 / (drive.input_speed_rpm * 2 * math.pi / 60)
-    force = 4 * drive.output_torque_nm / (contacts * drive.output_pin_circle_radius_mm / 1e3)
+    radius = drive.output_pin_circle_radius_mm / 1e3
+    force = 4 * drive.output_torque_nm / (contacts * radius)
     inertia = drive.input_inertia_kg_m2
 
     columns: dict[str, float | None] = {
@@ -245,6 +244,8 @@ def evaluate(drive: cs.Drive, loads_tn: tuple[float, ...]) -> dict[str, float | 
         "reflected_compliance_rad_per_nm": reflected,
         "reflected_stiffness_nm_per_rad": 1 / reflected,
         "output_stiffness_nm_per_arcmin": 1 / (output * per_arcmin),
+        "torque_per_pin_nm": drive.output_torque_nm / chosen.mean,
+        "force_per_pin_n": drive.output_torque_nm / chosen.mean / radius,
         "pin_force_max_n": force,
         "pin_bending_stress_mpa": root_stress_mpa(drive, force),
     }

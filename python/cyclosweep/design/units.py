@@ -88,7 +88,9 @@ OUTPUTS: dict[str, Quantity] = {
         "", "Hz", "sqrt(K*_OS / J) / (2 pi) with the output locked; null without an inertia"
     ),
     "shaft_compliance_rad_per_nm": Quantity("C_OS^t", "rad/(N m)", "output shaft, Eqs. (4)-(7)"),
-    "pin_compliance_rad_per_nm": Quantity("C_OP", "rad/(N m)", "one output pin, Eqs. (8)-(10)"),
+    "pin_compliance_rad_per_nm": Quantity(
+        "C_OP", "rad/(N m)", "one output pin, delta / (F R_OP^2), Eqs. (8)-(10)"
+    ),
     "output_compliance_rad_per_nm": Quantity("C_OS", "rad/(N m)", "at the output, Eq. (11)"),
     "output_compliance_statics_rad_per_nm": Quantity(
         "", "rad/(N m)", "at the output with the pins' share by statics"
@@ -96,6 +98,10 @@ OUTPUTS: dict[str, Quantity] = {
     "reflected_compliance_rad_per_nm": Quantity("C*_OS", "rad/(N m)", "at the input, Eq. (12)"),
     "reflected_stiffness_nm_per_rad": Quantity("K*_OS", "N m/rad", "1 / C*_OS"),
     "output_stiffness_nm_per_arcmin": Quantity("1/C_OS", "N m/arcmin", "at the output"),
+    "torque_per_pin_nm": Quantity(
+        "T_O*", "N m", "torque of one pin, T_O over the mean number of active pins, Eqs. (1), (2)"
+    ),
+    "force_per_pin_n": Quantity("F_n", "N", "force of a pin that carries T_O*, Eq. (9)"),
     "pin_force_max_n": Quantity(
         "", "N", "largest force on one pin at rated output torque by statics"
     ),
