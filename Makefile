@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO_OUT ?= out/demo
+TEST_PROCESSES ?= -n 2 --dist worksteal
 PROOF_OUT ?= build/proof
 PROOF_SEED ?= 500000
 PROOF_FLAGS ?=
@@ -42,10 +43,12 @@ help:
 
 env: $(VENV)/.ready
 
+# pip reads dependency groups since 25.1; the one that comes with Python 3.11 is older.
 $(VENV)/.ready: $(SOURCES)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet "maturin>=1.9,<2" pip
-	. $(BIN)/activate && maturin develop --release --locked --quiet --extras test,lint,report,dask,challenge
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --group dev
+	. $(BIN)/activate && PIP_QUIET=1 maturin develop --release --locked --quiet --extras report,dask,challenge
 	touch $@
 
 demo: env
@@ -57,8 +60,12 @@ test: test-rust test-python
 test-rust:
 	cargo test --release --locked --quiet
 
+# One process a core, so one thread for the linear algebra of each.
 test-python: env
-	$(BIN)/python -m pytest
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(TEST_PROCESSES)
+
+coverage: env
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(TEST_PROCESSES) --cov --cov-report=term:skip-covered
 
 test-grid: env
 	CYCLOSWEEP_GRID_DRIVES=10000 $(BIN)/python -m pytest tests/property/test_active_pins_grid.py
@@ -72,7 +79,7 @@ lint: env
 	$(BIN)/python -m mypy.stubtest cyclosweep._core
 
 bench: env
-	. $(BIN)/activate && maturin develop --release --locked --quiet --extras bench
+	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python benches/run.py --full
 	$(BIN)/python benches/instructions.py
 

@@ -1,20 +1,35 @@
 """Sweep, validate and diagnose the torsional compliance of cycloidal gear drives."""
 
+import importlib as _importlib
 import warnings as _warnings
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
 import cyclosweep._core as _core
 import cyclosweep._moved as _moved
 from cyclosweep.design.drive import Cylinder, Drive, Frustum, Keyway
-from cyclosweep.diagnosis import Diagnosis, diagnose
 from cyclosweep.errors import DesignError, InputError, SweepError
-from cyclosweep.recording import Recording
-from cyclosweep.reference.validation import validate
-from cyclosweep.simulation.simulate import Model, simulate
 from cyclosweep.sweep.dataset import scan_dataset
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
 from cyclosweep.sweep.shards import shard, sink
 from cyclosweep.sweep.space import Space, linspace
 from cyclosweep.sweep.study import Objective, Study
+
+if _TYPE_CHECKING:
+    from cyclosweep.diagnosis import Diagnosis, diagnose
+    from cyclosweep.recording import Recording
+    from cyclosweep.reference.validation import validate
+    from cyclosweep.simulation.simulate import Model, simulate
+
+# Imported when first asked for: SciPy takes longer to load than all a worker of a sweep needs.
+_LATER = {
+    "Diagnosis": "diagnosis",
+    "Model": "simulation.simulate",
+    "Recording": "recording",
+    "diagnose": "diagnosis",
+    "simulate": "simulation.simulate",
+    "validate": "reference.validation",
+}
 
 __version__ = _core.__version__
 _moved.register()
@@ -51,3 +66,16 @@ __all__ = [
     "sweep",
     "validate",
 ]
+
+if not _TYPE_CHECKING:  # so that a wrong name stays an error to a type checker
+
+    def __getattr__(name: str) -> _Any:
+        """Import what is asked for later, and keep it."""
+        if name not in _LATER:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        module = _importlib.import_module(f"{__name__}.{_LATER[name]}")
+        value = globals()[name] = getattr(module, name)
+        return value
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *_LATER})
