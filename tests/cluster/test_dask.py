@@ -14,9 +14,8 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.sweep.attempts import write_parts
 from cyclosweep.sweep.executors import dask_executor
-from cyclosweep.sweep.shards import Dataset
+from cyclosweep.sweep.shards import Dataset, write_parts
 
 distributed = pytest.importorskip("distributed", reason="the dask extra is not installed")
 pytestmark = pytest.mark.filterwarnings("default")

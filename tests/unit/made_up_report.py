@@ -1,11 +1,11 @@
 """A made-up diagnosis with everything in it, to build and test the report against."""
 
-from typing import Any
-
 import numpy as np
 
 import cyclosweep as cs
 from cyclosweep.report import HeldOut, Hypothesis, ReportData
+from cyclosweep.result import Answer, answer_of
+from cyclosweep.result.effects import Outcome
 
 C = 2.73  # compliance at the input [deg/(N m)]
 GAP = 28.0  # free play on each side [deg]
@@ -75,7 +75,7 @@ def make(runs: int = 6, samples: int = 400) -> ReportData:
 
 
 def hypothesis(
-    name: str, outcome: str, size: float, p: float, e: float, absorbed: float
+    name: str, outcome: Outcome, size: float, p: float, e: float, absorbed: float
 ) -> Hypothesis:
     """Row of the hypothesis table with an interval around its size."""
     return Hypothesis(
@@ -90,13 +90,13 @@ def hypothesis(
     )
 
 
-def result(before: np.ndarray, after: np.ndarray, angle: np.ndarray) -> dict[str, Any]:
-    """Content of diagnosis.json."""
+def result(before: np.ndarray, after: np.ndarray, angle: np.ndarray) -> Answer:
+    """Answer of the made-up diagnosis."""
 
     def rms(values: np.ndarray) -> float:
         return float(np.sqrt(np.mean(values**2)))
 
-    return {
+    return answer_of({
         "schema": "cyclosweep.diagnosis/1",
         "tolerance_deg": 0.6,
         "verdict": "IDENTIFIED",
@@ -178,4 +178,4 @@ def result(before: np.ndarray, after: np.ndarray, angle: np.ndarray) -> dict[str
             "minutes": 40,
         },
         "model": "model.json",
-    }  # fmt: skip
+    })  # fmt: skip

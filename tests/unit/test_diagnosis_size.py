@@ -1,8 +1,7 @@
-"""Sizes of effects, their intervals, and what the statement says about the alternatives."""
+"""Sizes of effects and their intervals."""
 
 from collections.abc import Callable
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +15,6 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of, spread_of_size
 from cyclosweep.diagnosis.prepare.noise import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import prepare
-from cyclosweep.diagnosis.statement import statement
-from cyclosweep.report.wording import verdict_words
 from cyclosweep.simulation.effects import Shape, effects
 from tests.support.arrays import Floats
 from tests.support.bench_rig import record
@@ -74,39 +71,3 @@ def test_two_causes_are_not_put_down_to_free_offsets_of_the_runs() -> None:
         full=False,
     )
     assert {effect["name"] for effect in found.effects} == {"transmission_error", "thermal_drift"}
-
-
-def said(explanations: list[dict[str, Any]], held: tuple[float, float] = (0.0, 0.0)) -> str:
-    size = {"estimate": 0.5, "ci95": [0.4, 0.6]}
-    effects = [{"name": "creep", "size_deg": size}]
-    numbers = {"before": 0.3, "after": 0.2, "held_before": held[0], "held_after": held[1]}
-    parameters = {
-        "compliance_scale": {"estimate": 1.0},
-        "free_play_deg": {"estimate": 1.0, "nominal": 1.0},
-        "datum_deg": {"estimate": 0.0},
-    }
-    return statement("IDENTIFIED", effects, explanations, [], parameters, numbers)
-
-
-def test_what_is_not_ruled_out_stands_beside_the_name() -> None:
-    one = {"effects": ["creep"], "without_name": [], "probability": 1.0}
-    assert "Missing physics: creep. Size" in said([one])
-    two = [
-        {"effects": ["creep"], "without_name": [], "probability": 0.6},
-        {"effects": ["viscous_drag"], "without_name": [], "probability": 0.38},
-    ]
-    text = said(two)
-    assert "creep, with a probability of 60 %; not ruled out: viscous drag (38 %)" in text
-
-
-def test_a_verdict_with_rivals_is_headed_by_its_probability() -> None:
-    fits = [{"probability": 0.6}, {"probability": 0.38}]
-    alone = {"verdict": "IDENTIFIED", "explanation_set": fits[:1]}
-    assert verdict_words(alone)[1] == "Cause identified"
-    assert verdict_words(alone | {"explanation_set": fits})[1] == "Most probable cause (60 %)"
-
-
-def test_error_on_data_not_used_is_said_only_where_it_was_computed() -> None:
-    one = [{"effects": ["creep"], "without_name": [], "probability": 1.0}]
-    assert "data not used" not in said(one)
-    assert "data not used from 0.3 deg" in said(one, (0.3, 0.2))

@@ -13,13 +13,10 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.report import ReportData, write_html
 from cyclosweep.report.html import page
+from cyclosweep.result import Answer, Bound, Mismatch, Region, Remainder
 from tests.unit.made_up_report import make
 
-FAULTY = {
-    "verdict": "DATA_FAULT",
-    "statement": "Time runs backwards.",
-    "noise": {"sigma_deg": None, "autocorrelation": None, "resolution_deg": 0.0},
-}
+FAULTY = Answer(verdict="DATA_FAULT", statement="Time runs backwards.")
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +83,7 @@ def test_nothing_is_drawn_outside_the_page(whole: ReportData) -> None:
 
 def test_foreign_text_is_escaped(whole: ReportData) -> None:
     recording = replace(whole.recording, name="<script>x</script>", notes=('<img src="x">',))
-    result = {**whole.result, "statement": "<b>bold</b> & more"}
+    result = replace(whole.result, statement="<b>bold</b> & more")
     text = page(replace(whole, recording=recording, result=result))
     assert "<script>x" not in text
     assert "<img" not in text
@@ -128,21 +125,30 @@ def test_many_samples_are_thinned() -> None:
 
 
 def test_an_event_in_time_is_shown_over_time(whole: ReportData) -> None:
-    region = {"torque_nm": [-32.0, 32.0], "direction": "both", "run": [4, 4],
-              "time_s": [3000.0, 3100.0], "mean_residual_deg": 0.5,
-              "share_of_excess": 0.9}  # fmt: skip
-    result = {**whole.result, "mismatch": {"p_value": 0.001, "regions": [region]}}
+    region = Region(
+        torque_nm=(-32.0, 32.0),
+        direction="both",
+        run=(4, 4),
+        time_s=(3000.0, 3100.0),
+        mean_residual_deg=0.5,
+        share_of_excess=0.9,
+    )
+    result = replace(whole.result, mismatch=Mismatch(p_value=0.001, regions=(region,)))
     first = svgs(page(replace(whole, result=result)))[0]
     words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
     assert words.count("time (s)") == 2
 
 
 def test_unknown_physics_has_shape_place_and_size(whole: ReportData) -> None:
-    rest = {"shape": "step of the angle", "place": "from t = 2671 s (run 7)", "size_deg": 0.16}
-    result = {
-        **whole.result, "verdict": "UNKNOWN_PHYSICS", "effects": [], "unknown": rest,
-        "undecided": [{"name": "creep", "upper95_deg": 0.9}],
-    }  # fmt: skip
+    result = replace(
+        whole.result,
+        verdict="UNKNOWN_PHYSICS",
+        effects=(),
+        unknown=Remainder(
+            shape="step of the angle", place="from t = 2671 s (run 7)", size_deg=0.16
+        ),
+        undecided=(Bound(name="creep", upper95_deg=0.9),),
+    )
     text = page(replace(whole, result=result))
     assert "Step of the angle of 0.16 deg (9.6 arcmin), from t = 2671 s (run 7)." in text
     assert "Creep: could be as large as 0.9 deg (54 arcmin), above the tolerance" in text

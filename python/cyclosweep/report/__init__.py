@@ -1,10 +1,11 @@
 """Reports of a diagnosis: one HTML page, PNG pictures, a terminal summary."""
 
-from cyclosweep.report.data import HeldOut, Hypothesis, ReportData
+from cyclosweep.report.data import HeldOut, ReportData
 from cyclosweep.report.html import write_html
 from cyclosweep.report.png import write_png
 from cyclosweep.report.terminal import print_summary, summary
 from cyclosweep.report.write import write_report
+from cyclosweep.result import Hypothesis
 
 __all__ = [
     "HeldOut",

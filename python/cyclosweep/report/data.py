@@ -2,44 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cyclosweep.recording import Recording
+from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, answer_of
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Hypothesis:
-    """One effect of the library, as it fared.
-
-    Attributes
-    ----------
-    name : str
-        Name in the vocabulary of effects.
-    outcome : str
-        ``accepted``, ``ruled out``, ``undecided`` or ``not testable``.
-    absorbed_share : float or None
-        Share of its signature that a refitted baseline hides.
-    size_deg, ci95_deg : float, (float, float), or None
-        Size of the effect [deg] and its 95 % interval.
-    p_value, e_value : float or None
-        Evidence of the scan and of the held-out data.
-    smallest_detectable_deg : float or None
-        Size that this recording would show [deg].
-    """
-
-    name: str
-    outcome: str
-    absorbed_share: float | None = None
-    size_deg: float | None = None
-    ci95_deg: tuple[float, float] | None = None
-    p_value: float | None = None
-    e_value: float | None = None
-    smallest_detectable_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,13 +27,14 @@ class HeldOut:
     floor_deg : float or None
         What noise or replicates leave [deg].
     told_before_deg, told_after_deg : float or None
-        Where the errors are of a forecast: those of the same models told the flank in contact.
+        Where the errors are of a forecast: those of the same models with the flank in contact
+        taken from the recording [deg].
     near_before_deg, near_after_deg : float or None
-        Where they are: root mean square distance to the predicted curve.
+        Where they are: root mean square distance to the predicted curve [deg].
     """
 
     block: str
-    samples: int
+    samples: int | None
     rmse_before_deg: float
     rmse_after_deg: float
     floor_deg: float | None = None
@@ -71,6 +42,29 @@ class HeldOut:
     told_after_deg: float | None = None
     near_before_deg: float | None = None
     near_after_deg: float | None = None
+
+    @classmethod
+    def of(cls, block: HeldOutBlock, noise_deg: float | None) -> "HeldOut":
+        """Row of a block; the floor is what replicates leave of a forecast, otherwise the noise.
+
+        Parameters
+        ----------
+        block : HeldOutBlock
+            Errors of a diagnosis.
+        noise_deg : float or None
+            Standard deviation of the noise [deg].
+        """
+        return cls(
+            block=block.block,
+            samples=block.samples,
+            rmse_before_deg=block.before_deg,
+            rmse_after_deg=block.after_deg,
+            floor_deg=block.floor_deg if block.is_forecast else noise_deg,
+            told_before_deg=block.told_before_deg,
+            told_after_deg=block.told_after_deg,
+            near_before_deg=block.near_before_deg,
+            near_after_deg=block.near_after_deg,
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,8 +75,8 @@ class ReportData:
     ----------
     recording : Recording
         What was measured.
-    result : mapping
-        Content of ``diagnosis.json``.
+    result : Answer
+        What the diagnosis says; a mapping with the content of ``diagnosis.json`` is read.
     before_deg, after_deg : ndarray of float, shape (n,), or None
         Angle by the calibrated published model and by the repaired model [deg]; None where there
         is nothing to predict from.
@@ -95,13 +89,13 @@ class ReportData:
     hypotheses : tuple of Hypothesis
         Rows of the hypothesis table.
     held_out : tuple of HeldOut
-        Rows of the held-out table.
+        Rows of the held-out table; default: the blocks of the result.
     provenance : mapping of str to str
         Hashes, versions, seeds.
     """
 
     recording: Recording
-    result: Mapping[str, Any]
+    result: Answer
     before_deg: Floats | None = None
     after_deg: Floats | None = None
     rated_torque_nm: float | None = None
@@ -110,6 +104,16 @@ class ReportData:
     hypotheses: tuple[Hypothesis, ...] = ()
     held_out: tuple[HeldOut, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.result, Answer):
+            object.__setattr__(self, "result", answer_of(self.result))
+
+    @property
+    def held_out_rows(self) -> tuple[HeldOut, ...]:
+        """Rows of the held-out table."""
+        noise = self.result.noise.sigma_deg
+        return self.held_out or tuple(HeldOut.of(b, noise) for b in self.result.repaired.blocks)
 
     @property
     def residual_before_deg(self) -> Floats | None:
@@ -124,7 +128,7 @@ class ReportData:
     @property
     def is_repaired(self) -> bool:
         """Whether the repaired model differs from the published one."""
-        return bool(self.result.get("effects"))
+        return bool(self.result.effects)
 
     @property
     def scored(self) -> NDArray[np.bool_]:
@@ -134,13 +138,12 @@ class ReportData:
     @property
     def noise(self) -> tuple[float, float]:
         """Standard deviation [deg] and lag-one autocorrelation of the noise."""
-        told: Mapping[str, Any] = self.result.get("noise") or {}
-        sigma, rho = told.get("sigma_deg"), told.get("autocorrelation")
-        if not isinstance(sigma, int | float) or not np.isfinite(sigma) or sigma <= 0:
+        sigma = self.result.noise.sigma_deg
+        if sigma is None or not np.isfinite(sigma) or sigma <= 0:
             residual = self.residual_after_deg
             sigma = 0.0 if residual is None else 1.4826 * float(np.median(np.abs(residual)))
-        known = isinstance(rho, int | float) and bool(np.isfinite(rho))
-        return float(sigma), float(rho or 0.0) if known else 0.0
+        rho = self.result.noise.autocorrelation
+        return sigma, 0.0 if rho is None or not np.isfinite(rho) else rho
 
     def _residual(self, predicted: Floats | None) -> Floats | None:
         measured = self.recording.angle_deg

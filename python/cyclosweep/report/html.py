@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from cyclosweep.atomic import write_text
-from cyclosweep.report import tables
+from cyclosweep.report import sentences, tables
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
 from cyclosweep.report.svg import figure_svg
@@ -50,19 +50,19 @@ def page(data: ReportData) -> str:
             _top(data),
             _verdict(data),
             picture("loop"),
-            _list("What the loop shows", tables.findings(data)),
-            _list("Where simulation and recording differ", tables.regions(data)),
+            _list("What the loop shows", sentences.findings(data)),
+            _list("Where simulation and recording differ", sentences.regions(data)),
             _effects(data),
-            _paragraph("What remains without a name", tables.unknown(data)),
-            _paragraph("Next experiment", tables.next_experiment(data)),
+            _paragraph("What remains without a name", sentences.unknown(data)),
+            _paragraph("Next experiment", sentences.next_experiment(data)),
             _section("Loop", picture("zoom") + _table(tables.loop_table(data))),
             _section("Residuals", picture("profiles")),
             _section("Residual map", picture("map")),
             _section("Parameters", _table(tables.parameter_table(data))),
             _section("Every effect that was tried", _table(tables.hypothesis_table(data))),
-            _list("Explanations that fit", tables.explanations(data)),
-            _list("Not found, with 95 % upper bounds", tables.bounds(data)),
-            _list("What this recording cannot show", tables.untestable(data)),
+            _list("Explanations that fit", sentences.explanations(data)),
+            _list("Not found, with 95 % upper bounds", sentences.bounds(data)),
+            _list("What this recording cannot show", sentences.untestable(data)),
             _section("Errors on data not used", _table(tables.held_out_table(data))),
             _section("Self-check", _table(tables.self_check_table(data))),
             _recording(data),
@@ -83,7 +83,7 @@ def page(data: ReportData) -> str:
 def _top(data: ReportData) -> str:
     """Name of the recording and what it is."""
     recording = data.recording
-    drive = str(data.result.get("drive") or recording.drive or "")
+    drive = recording.drive or ""
     about = [
         Path(drive).name if drive else "",
         f"{recording.side} shaft",
@@ -103,21 +103,21 @@ def _verdict(data: ReportData) -> str:
     figures = "".join(
         f'<div class="figure-value"><b>{escape(value)}</b><span>{escape(label)}</span>'
         f"<span>{escape(remark)}</span></div>"
-        for value, label, remark in tables.headline(data)
+        for value, label, remark in sentences.headline(data)
     )
-    mismatch = data.result.get("mismatch") or {}
-    sufficiency = data.result.get("sufficiency") or {}
     evidence = []
-    if mismatch.get("p_value") is not None:
-        evidence.append(f"mismatch of the calibrated model: p {probability(mismatch['p_value'])}")
-    if sufficiency.get("p_value") is not None:
-        evidence.append(f"mismatch left after the repair: p {probability(sufficiency['p_value'])}")
-    if data.result.get("tolerance_deg") is not None:
-        evidence.append(f"tolerance {number(data.result['tolerance_deg'])} deg")
+    if data.result.mismatch.p_value is not None:
+        p = probability(data.result.mismatch.p_value)
+        evidence.append(f"mismatch of the calibrated model: p {p}")
+    if data.result.sufficiency.p_value is not None:
+        p = probability(data.result.sufficiency.p_value)
+        evidence.append(f"mismatch left after the repair: p {p}")
+    if data.result.tolerance_deg is not None:
+        evidence.append(f"tolerance {number(data.result.tolerance_deg)} deg")
     return (
         f'<section class="verdict" style="--tone:{tone}"><div><div><span class="name">'
         f'{escape(words)}</span><span class="code">{escape(code)}</span></div>'
-        f"<p>{escape(str(data.result.get('statement') or ''))}</p>"
+        f"<p>{escape(data.result.statement)}</p>"
         f'<p class="soft">{escape("; ".join(evidence))}</p></div>'
         f'<div class="figures">{figures}</div></section>'
     )
@@ -129,7 +129,7 @@ def _effects(data: ReportData) -> str:
         f'<div class="card"><h3>{escape(name[:1].upper() + name[1:])}</h3>'
         f'<p class="size">{escape(size)}</p><p>{escape(physics)}</p>'
         f'<p class="soft">{escape(evidence)}</p></div>'
-        for name, size, evidence, physics in tables.effect_cards(data)
+        for name, size, evidence, physics in sentences.effect_cards(data)
     )
     return _section(
         "What was left out of the model", f'<div class="cards">{cards}</div>' if cards else ""
@@ -139,7 +139,7 @@ def _effects(data: ReportData) -> str:
 def _recording(data: ReportData) -> str:
     """Forensics: what was read, recognised, changed and found wrong."""
     recording = data.recording
-    noise = data.result.get("noise") or {}
+    noise = data.result.noise
     structure = recording.structure
     rows = [
         ("samples", f"{len(recording)} in {len(recording.runs)} runs"),
@@ -150,8 +150,8 @@ def _recording(data: ReportData) -> str:
         ("resolution of the angle",
          f"{number(recording.angle_resolution_deg)} deg" if recording.angle_resolution_deg
          else "continuous"),
-        ("noise", f"{number(noise.get('sigma_deg'))} deg, lag-one autocorrelation "
-                  f"{number(noise.get('autocorrelation'), 2)}"),
+        ("noise", f"{number(noise.sigma_deg)} deg, lag-one autocorrelation "
+                  f"{number(noise.autocorrelation, 2)}"),
         ("history", "continuous over the runs" if recording.history == "continuous"
          else "play, slip and creep start afresh with each run"),
         ("conditioning runs", ", ".join(map(str, recording.conditioning_runs)) or "none"),

@@ -1,7 +1,6 @@
 """Where simulation and recording differ, as stretches of an axis and as samples."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,15 +8,15 @@ from numpy.typing import NDArray
 from cyclosweep.recording import Recording
 from cyclosweep.report.charts import Span
 from cyclosweep.report.data import ReportData
+from cyclosweep.result import Region
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-def regions_of(data: ReportData) -> list[Mapping[str, Any]]:
+def regions_of(data: ReportData) -> list[Region]:
     """Regions of mismatch, the largest share first."""
-    regions = (data.result.get("mismatch") or {}).get("regions") or []
-    return sorted(regions, key=lambda r: -(r.get("share_of_excess") or 0.0))[:4]
+    return sorted(data.result.mismatch.regions, key=lambda r: -(r.share_of_excess or 0.0))[:4]
 
 
 def residual_axis(data: ReportData) -> str:
@@ -26,22 +25,22 @@ def residual_axis(data: ReportData) -> str:
     if not regions:
         return "torque"
     recording, first = data.recording, regions[0]
-    torque = first.get("torque_nm")
     share_torque = 1.0
-    if torque:
-        share_torque = (torque[1] - torque[0]) / max(float(np.ptp(recording.torque_nm)), 1e-12)
+    if first.torque_nm:
+        low, high = first.torque_nm
+        share_torque = (high - low) / max(float(np.ptp(recording.torque_nm)), 1e-12)
     share_time = 1.0
-    if first.get("time_s") and recording.time_s is not None:
-        low, high = first["time_s"]
+    if first.time_s and recording.time_s is not None:
+        low, high = first.time_s
         share_time = (high - low) / max(float(np.ptp(recording.time_s)), 1e-12)
-    elif first.get("run"):
-        share_time = float(np.mean(_in_run_range(recording, first["run"])))
+    elif first.run:
+        share_time = float(np.mean(_in_run_range(recording, first.run)))
     return "time" if share_time < 0.75 * share_torque else "torque"
 
 
-def _in_run_range(recording: Recording, ends: Any) -> Mask:
+def _in_run_range(recording: Recording, ends: tuple[int, int]) -> Mask:
     """Mark the samples of the runs from the first to the last named."""
-    first, last = int(min(ends)), int(max(ends))
+    first, last = min(ends), max(ends)
     return (recording.run >= first) & (recording.run <= last)
 
 
@@ -64,17 +63,16 @@ def spans_of(data: ReportData, axis: str, *, labelled: bool) -> Iterator[Span]:
     recording = data.recording
     x, _ = axis_values(recording, axis)
     for region in regions_of(data)[:2]:
+        ends: tuple[float, float] | None = None
         if axis == "torque":
-            ends = region.get("torque_nm")
-        elif region.get("time_s") and recording.time_s is not None and _is_monotone(recording):
-            ends = region["time_s"]
-        elif region.get("run"):
-            rows = _in_run_range(recording, region["run"])
-            ends = [x[rows].min(), x[rows].max()] if rows.any() else None
-        else:
-            ends = None
+            ends = region.torque_nm
+        elif region.time_s and recording.time_s is not None and _is_monotone(recording):
+            ends = region.time_s
+        elif region.run:
+            rows = _in_run_range(recording, region.run)
+            ends = (float(x[rows].min()), float(x[rows].max())) if rows.any() else None
         if ends:
-            yield Span(float(ends[0]), float(ends[1]), _region_label(region) if labelled else "")
+            yield Span(*ends, _region_label(region) if labelled else "")
             labelled = False
 
 
@@ -85,26 +83,25 @@ def located(data: ReportData) -> Mask:
     marked = np.full(len(recording), not regions)
     for region in regions:
         rows = np.ones(len(recording), dtype=bool)
-        for key, values in (
-            ("torque_nm", recording.torque_nm),
-            ("time_s", recording.time_s),
-            ("temperature_c", recording.temperature_c),
+        for ends, values in (
+            (region.torque_nm, recording.torque_nm),
+            (region.time_s, recording.time_s),
+            (region.temperature_c, recording.temperature_c),
         ):
-            if region.get(key) and values is not None:
-                low, high = region[key]
-                rows &= (values >= low) & (values <= high)
-        if region.get("run"):
-            rows &= _in_run_range(recording, region["run"])
-        if region.get("direction") in ("loading", "unloading"):
-            rows &= recording.structure.loading == (region["direction"] == "loading")
+            if ends is not None and values is not None:
+                rows &= (values >= ends[0]) & (values <= ends[1])
+        if region.run:
+            rows &= _in_run_range(recording, region.run)
+        if region.direction in ("loading", "unloading"):
+            rows &= recording.structure.loading == (region.direction == "loading")
         marked |= rows
     return marked
 
 
-def _region_label(region: Mapping[str, Any]) -> str:
+def _region_label(region: Region) -> str:
     """Direction and runs of a region."""
-    words = [str(region["direction"])] if region.get("direction") not in (None, "both") else []
-    run = region.get("run")
-    if run:
-        words.append(f"run {run[0]}" if run[0] == run[-1] else f"runs {run[0]}–{run[-1]}")
+    words = [] if region.direction in (None, "both") else [str(region.direction)]
+    if region.run:
+        first, last = region.run
+        words.append(f"run {first}" if first == last else f"runs {first}–{last}")
     return ", ".join(words)

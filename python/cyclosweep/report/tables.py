@@ -1,15 +1,22 @@
 """The tables of a report as plain rows, shared by the page and the terminal."""
 
-import re
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.loops import LoopFigures, loop_figures
-from cyclosweep.report.wording import ARCMIN, angle, interval, number, plain, probability
+from cyclosweep.report.wording import (
+    ARCMIN,
+    angle,
+    interval,
+    number,
+    plain,
+    probability,
+    with_error,
+    without_unit,
+)
+from cyclosweep.result import CalibratedParameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,27 +93,24 @@ def loop_table(data: ReportData) -> Table | None:
 
 def parameter_table(data: ReportData) -> Table | None:
     """Baseline parameters before and after the repair, with the shift in standard errors."""
-    before = _section(data.result, "baseline").get("parameters") or {}
-    after = _section(data.result, "repaired").get("parameters") or {}
+    before, after = data.result.baseline.parameters, data.result.repaired.parameters
     if not before:
         return None
-    rows = []
-    for name, value in before.items():
-        fitted = after.get(name) or {}
-        rows.append(
-            (
-                _without_unit(name),
-                str(value.get("unit") or "–"),
-                number(value.get("nominal"), 4),
-                _with_error(value),
-                _with_error(fitted) if fitted else "–",
-                _shift(value, fitted),
-            )
+    rows = [
+        (
+            without_unit(name),
+            value.unit or "–",
+            number(value.nominal, 4),
+            _estimate(value),
+            _estimate(after.get(name)),
+            _shift(value, after.get(name)),
         )
+        for name, value in before.items()
+    ]
     rows += [
-        (_without_unit(name), str(value.get("unit") or "–"), "–", "–", _with_error(value), "–")
+        (without_unit(name), value.unit or "–", "–", "–", _estimate(value), "–")
         for name, value in after.items()
-        if name not in before and isinstance(value, Mapping)
+        if name not in before
     ]
     return Table(
         "Parameters",
@@ -158,20 +162,20 @@ def hypothesis_table(data: ReportData) -> Table | None:
 
 def held_out_table(data: ReportData) -> Table | None:
     """Errors on data that was not used."""
-    if not data.held_out:
+    if not data.held_out_rows:
         return None
+    if any(row.told_after_deg is not None for row in data.held_out_rows):
+        return _forecast_table(data)
     rows = tuple(
         (
             row.block,
-            str(row.samples),
+            _count(row.samples),
             number(row.rmse_before_deg),
             number(row.rmse_after_deg),
             number(row.floor_deg),
         )
-        for row in data.held_out
+        for row in data.held_out_rows
     )
-    if any(row.told_after_deg is not None for row in data.held_out):
-        return _forecast_table(data)
     return Table(
         "Held-out errors",
         ("block", "samples", "before (deg rms)", "after (deg rms)", "floor (deg rms)"),
@@ -183,14 +187,19 @@ def held_out_table(data: ReportData) -> Table | None:
 def _forecast_table(data: ReportData) -> Table:
     """Errors of forecasts, three ways, beside the error of another run as the prediction."""
     rows = []
-    for row in data.held_out:
+    for row in data.held_out_rows:
         for how, before, after, floor in (
             ("free forecast, all samples", row.rmse_before_deg, row.rmse_after_deg, row.floor_deg),
-            ("told the flank, samples in contact", row.told_before_deg, row.told_after_deg, None),
+            (
+                "flank as recorded, samples in contact",
+                row.told_before_deg,
+                row.told_after_deg,
+                None,
+            ),
             ("distance to the curve", row.near_before_deg, row.near_after_deg, None),
         ):
             rows.append(
-                (row.block, how, str(row.samples), number(before), number(after), number(floor))
+                (row.block, how, _count(row.samples), number(before), number(after), number(floor))
             )
     return Table(
         "Held-out errors",
@@ -201,9 +210,9 @@ def _forecast_table(data: ReportData) -> Table:
         tuple(rows),
         "A free forecast is what `cyclosweep simulate model.json` gives: it has to find for itself "
         "when the shaft leaves a flank, and a crossing of the dead zone that comes a moment early "
-        "or late costs the whole play for that moment. Told the flank, the same model is asked "
-        "only for the twist on it. The distance to the curve forgives early and late alike. The "
-        "floor is what an earlier run leaves as the prediction of this one.",
+        "or late costs the whole play for that moment. With the flank as recorded, the same model "
+        "is asked only for the twist on it. The distance to the curve forgives early and late "
+        "alike. The floor is what an earlier run leaves as the prediction of this one.",
         frozenset({1}),
         frozenset(range(0, len(rows), 3)),
     )  # fmt: skip
@@ -211,201 +220,30 @@ def _forecast_table(data: ReportData) -> Table:
 
 def self_check_table(data: ReportData) -> Table | None:
     """Say what the diagnosis does on synthetic twins of this recording."""
-    check = _section(data.result, "self_check")
-    if not check:
+    check = data.result.self_check
+    if check is None or (check.false_alarm is None and check.power is None):
         return None
     rows = [
-        ("false alarms with nothing missing", _percent(check.get("false_alarm"))),
-        ("found, when the named effect is there", _percent(check.get("power"))),
+        ("false alarms with nothing missing", _percent(check.false_alarm)),
+        ("found, when the named effect is there", _percent(check.power)),
     ]
-    confusion = check.get("confusion") or {}
-    if isinstance(confusion, Mapping):
-        for name, value in confusion.items():
-            if isinstance(value, Mapping):
-                text = ", ".join(f"{plain(str(k))} {_percent(v)}" for k, v in value.items())
-            else:
-                text = _percent(value)
-            rows.append((f"twin with {plain(str(name))} is called", text))
+    for name, shares in check.confusion.items():
+        text = ", ".join(f"{plain(called)} {_percent(share)}" for called, share in shares.items())
+        rows.append((f"twin with {plain(name)} is called", text))
     return Table(
         "Self-check on synthetic twins of this recording",
         ("", "share of twins"),
         tuple(rows),
         "Twins have the same load history, noise and resolution, and known causes.",
-        frozenset({1}) if confusion else frozenset(),
+        frozenset({1}) if check.confusion else frozenset(),
     )
 
 
-def effect_cards(data: ReportData) -> list[tuple[str, str, str, str]]:
-    """Name, size, evidence and physics of every accepted effect."""
-    cards = []
-    for effect in data.result.get("effects") or []:
-        size = effect.get("size_deg") or {}
-        estimate, ci = size.get("estimate"), size.get("ci95")
-        text = angle(estimate)
-        if ci:
-            text += f", 95 % interval {interval(ci)} deg"
-        if isinstance(estimate, int | float) and data.compliance_deg_per_nm:
-            text += f"; worth {number(abs(estimate / data.compliance_deg_per_nm))} N m"
-        evidence = (
-            f"p {probability(effect.get('p_value'))}, e-value {number(effect.get('e_value'), 2)}, "
-            f"detectability {number(effect.get('detectability'), 3)}"
-        )
-        parameters = "; ".join(
-            f"{_without_unit(name)} {_with_error(value)} {value.get('unit') or ''}".strip()
-            for name, value in (effect.get("parameters") or {}).items()
-        )
-        evidence += f". {parameters[:1].upper()}{parameters[1:]}" if parameters else ""
-        cards.append(
-            (plain(str(effect.get("name"))), text, evidence, str(effect.get("physics") or ""))
-        )
-    return cards
-
-
-def headline(data: ReportData) -> list[tuple[str, str, str]]:
-    """Figures beside the verdict: value, what it is, remark."""
-    base, repaired = _section(data.result, "baseline"), _section(data.result, "repaired")
-    noise = _section(data.result, "noise")
-    rows = []
-    for key, label in (("holdout_rmse_deg", "held-out error"), ("rmse_deg", "fit error")):
-        before, after = base.get(key), repaired.get(key)
-        if before is None and after is None:
-            continue
-        if data.is_repaired and after is not None:
-            rows.append((f"{number(before)} → {number(after)} deg", label, "before → after"))
-        else:
-            rows.append((f"{number(before)} deg", label, "calibrated model"))
-    if noise.get("sigma_deg") is not None:
-        rows.append((f"{number(noise['sigma_deg'])} deg", "noise", "standard deviation"))
-    return rows
-
-
-def bounds(data: ReportData) -> list[str]:
-    """Upper bounds of what was not found, those above the tolerance first."""
-    undecided = [
-        f"{plain(str(row.get('name')))}: could be as large as {angle(row.get('upper95_deg'))}, "
-        "above the tolerance"
-        for row in data.result.get("undecided") or []
-    ]
-    ruled_out = [
-        f"{plain(str(row.get('name')))}: at most {angle(row.get('upper95_deg'))}"
-        for row in data.result.get("ruled_out") or []
-    ]
-    return undecided + ruled_out
-
-
-def unknown(data: ReportData) -> str:
-    """Shape, place and size of what has no name, in one sentence."""
-    rest = _section(data.result, "unknown")
-    if not rest:
-        return ""
-    place = f", {rest['place']}" if rest.get("place") else ""
-    return (
-        f"{plain(str(rest.get('shape') or 'something')).capitalize()} of "
-        f"{angle(rest.get('size_deg'))}{place}. No effect of the vocabulary explains it."
-    )
-
-
-def findings(data: ReportData) -> list[str]:
-    """What the loop shows, in the words of a gear test."""
-    return [f"{row.get('topic')}: {row.get('text')}" for row in data.result.get("findings") or []]
-
-
-def untestable(data: ReportData) -> list[str]:
-    """Say what this recording cannot show, why, and what would."""
-    rows = []
-    for row in data.result.get("not_testable") or []:
-        needs = f" Needs: {row['needs']}." if row.get("needs") else ""
-        reason = str(row.get("reason") or "").rstrip(".")
-        rows.append(f"{plain(str(row.get('name')))}: {reason}.{needs}")
-    return rows
-
-
-def explanations(data: ReportData) -> list[str]:
-    """Structures that fit about as well as the best."""
-    rows = []
-    for row in data.result.get("explanation_set") or []:
-        names = [*(row.get("effects") or []), *(row.get("without_name") or [])]
-        text = " + ".join(plain(str(name)) for name in names) or "nothing missing"
-        rows.append(f"{text}: probability {probability(row.get('probability'))}")
-    return rows
-
-
-def next_experiment(data: ReportData) -> str:
-    """Load programme that would tell most, in one sentence or two."""
-    plan = data.result.get("next_experiment")
-    if not plan:
-        return ""
-    text = str(plan.get("program") or "").rstrip(".") + "."
-    text = text[:1].upper() + text[1:]
-    if plan.get("separates"):
-        names = [plain(str(name)) for name in plan["separates"]]
-        text += f" It would {'show or rule out' if len(names) == 1 else 'separate'} "
-        text += " from ".join(names) + "."
-    if plan.get("detectability"):
-        text += f" Expected detectability {number(plan['detectability'], 2)} noise units."
-    if plan.get("minutes"):
-        text += f" Takes about {number(plan['minutes'], 2)} minutes."
-    return text
-
-
-def regions(data: ReportData) -> list[str]:
-    """Where simulation and recording differ, in words."""
-    texts = []
-    for region in _section(data.result, "mismatch").get("regions") or []:
-        where = []
-        if region.get("torque_nm"):
-            where.append(f"{_range(region['torque_nm'])} N m")
-        if region.get("direction") not in (None, "both"):
-            where.append(str(region["direction"]))
-        if region.get("run"):
-            first, last = region["run"][0], region["run"][-1]
-            where.append(f"run {first}" if first == last else f"runs {first} to {last}")
-        for key, unit in (("time_s", "s"), ("crank_deg", "deg of crank"), ("temperature_c", "°C")):
-            if region.get(key):
-                where.append(f"{_range(region[key])} {unit}")
-        size = angle(region.get("mean_residual_deg"))
-        share = region.get("share_of_excess")
-        part = "" if share is None else f", {100 * share:.0f} % of the excess"
-        texts.append(
-            f"{', '.join(where) or 'everywhere'}: mean residual {size}{part}, "
-            f"p {probability(region.get('p_value'))}"
-        )
-    return texts
-
-
-def _section(result: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    """Part of the result, empty where there is none."""
-    part = result.get(key)
-    return part if isinstance(part, Mapping) else {}
-
-
-def _without_unit(name: str) -> str:
-    """Name of a parameter in words; its unit stands beside it."""
-    return plain(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
-
-
-def _range(ends: Any) -> str:
-    """Write two ends of a range."""
-    return f"{number(ends[0])} to {number(ends[1])}"
-
-
-def _with_error(value: Mapping[str, Any]) -> str:
-    """Estimate and standard error."""
-    text = number(value.get("estimate"), 4)
-    error, estimate = value.get("std_error"), value.get("estimate")
-    if not error:
-        return text
-    if isinstance(estimate, int | float) and error > 10 * abs(estimate) > 0:
-        return f"{text} (poorly determined)"
-    return f"{text} ± {number(error, 2)}"
-
-
-def _shift(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
+def _shift(before: CalibratedParameter, after: CalibratedParameter | None) -> str:
     """How far the repair moved a parameter, in standard errors."""
-    a, b, error = before.get("estimate"), after.get("estimate"), before.get("std_error")
-    if a is None or b is None or not error:
+    if after is None or not before.std_error:
         return "–"
-    shift = (b - a) / error
+    shift = (after.estimate - before.estimate) / before.std_error
     return f"{shift:+.1f}".replace("-", "−")
 
 
@@ -433,6 +271,16 @@ def _mean_energy(figures: LoopFigures) -> str:
     return f"{number(float(np.mean(energy)))} J" if energy else "–"
 
 
-def _percent(value: Any) -> str:
+def _percent(share: float | None) -> str:
     """Write a share in percent."""
-    return f"{100 * value:.3g} %" if isinstance(value, int | float) else str(value)
+    return "–" if share is None else f"{100 * share:.3g} %"
+
+
+def _count(samples: int | None) -> str:
+    """Write a number of samples."""
+    return "–" if samples is None else str(samples)
+
+
+def _estimate(value: CalibratedParameter | None) -> str:
+    """Estimate of a parameter with its standard error."""
+    return "–" if value is None else with_error(value.estimate, value.std_error)

@@ -1,13 +1,13 @@
 """The report in a terminal, from 60 columns up."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rich.console import Console, Group, RenderableType
 from rich.panel import Panel
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from cyclosweep.report import tables
+from cyclosweep.report import sentences
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.wording import (
     angle,
@@ -17,8 +17,9 @@ from cyclosweep.report.wording import (
     probability,
     verdict_words,
 )
+from cyclosweep.result import FoundEffect, Verdict
 
-_STYLES = {
+_STYLES: dict[Verdict, str] = {
     "IDENTIFIED": "green",
     "NOTHING_MISSING": "green",
     "AMBIGUOUS": "yellow",
@@ -50,8 +51,8 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     """Parts of the summary from top to bottom."""
     result = data.result
     code, words, _ = verdict_words(result)
-    style = _STYLES.get(code, "cyan")
-    statement = Text(str(result.get("statement") or ""))
+    style = _STYLES[code]
+    statement = Text(result.statement)
     title = Text(f"{words} ({code})", style=f"bold {style}")
     yield Panel(
         statement, title=title, title_align="left", border_style=style,
@@ -59,22 +60,22 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         subtitle_align="right",
     )  # fmt: skip
     yield from _facts(data)
-    if effects := result.get("effects"):
+    if result.effects:
         yield Text("")
-        yield _effects(effects)
-    rest = tables.unknown(data)
+        yield _effects(result.effects)
+    rest = sentences.unknown(data)
     for heading, lines in (
-        ("What the loop shows", tables.findings(data)),
+        ("What the loop shows", sentences.findings(data)),
         ("What remains without a name", [rest] if rest else []),
-        ("Where simulation and recording differ", tables.regions(data)[:3]),
-        ("Explanations that fit", tables.explanations(data)[:4]),
-        ("Not found (95 % upper bound)", tables.bounds(data)[:6]),
-        ("What this recording cannot show", tables.untestable(data)[:4]),
+        ("Where simulation and recording differ", sentences.regions(data)[:3]),
+        ("Explanations that fit", sentences.explanations(data)[:4]),
+        ("Not found (95 % upper bound)", sentences.bounds(data)[:6]),
+        ("What this recording cannot show", sentences.untestable(data)[:4]),
         ("Remarks on the recording", [fault.reason for fault in data.recording.faults][:4]),
     ):
         if lines:
             yield _bullets(heading, lines)
-    if plan := tables.next_experiment(data):
+    if plan := sentences.next_experiment(data):
         yield Text.assemble(("\nNext experiment\n", "bold"), plan)
 
 
@@ -83,20 +84,18 @@ def _facts(data: ReportData) -> Iterator[RenderableType]:
     grid = RichTable.grid(padding=(0, 2))
     grid.add_column(style="dim")
     grid.add_column(justify="right")
-    rows = [(label, value) for value, label, _ in tables.headline(data)]
-    mismatch = data.result.get("mismatch") or {}
-    if mismatch.get("p_value") is not None:
-        rows.append(("mismatch before, p", probability(mismatch["p_value"])))
-    sufficiency = data.result.get("sufficiency") or {}
-    if sufficiency.get("p_value") is not None:
-        rows.append(("mismatch after, p", probability(sufficiency["p_value"])))
+    rows = [(label, value) for value, label, _ in sentences.headline(data)]
+    if data.result.mismatch.p_value is not None:
+        rows.append(("mismatch before, p", probability(data.result.mismatch.p_value)))
+    if data.result.sufficiency.p_value is not None:
+        rows.append(("mismatch after, p", probability(data.result.sufficiency.p_value)))
     for label, value in rows:
         grid.add_row(label, value)
     if rows:
         yield grid
 
 
-def _effects(effects: list[dict[str, object]]) -> RenderableType:
+def _effects(effects: Sequence[FoundEffect]) -> RenderableType:
     """Table of the accepted effects, narrow enough for 60 columns."""
     table = RichTable(box=None, padding=(0, 2, 0, 0), header_style="bold")
     table.add_column("effect", overflow="fold", ratio=1)
@@ -105,14 +104,12 @@ def _effects(effects: list[dict[str, object]]) -> RenderableType:
     table.add_column("p", justify="right", no_wrap=True)
     table.add_column("e", justify="right", no_wrap=True)
     for effect in effects:
-        size = effect.get("size_deg")
-        size = size if isinstance(size, dict) else {}
         table.add_row(
-            Text(plain(str(effect.get("name")))),
-            angle(size.get("estimate"), 2),
-            interval(size.get("ci95"), 2),
-            probability(effect.get("p_value")),
-            number(effect.get("e_value"), 2),
+            Text(plain(effect.name)),
+            angle(effect.size_deg.estimate, 2),
+            interval(effect.size_deg.ci95, 2),
+            probability(effect.p_value),
+            number(effect.e_value, 2),
         )
     return table
 

@@ -1,12 +1,14 @@
 """Numbers and names as a test engineer reads them."""
 
-from collections.abc import Mapping
-from typing import Any
+import re
+from collections.abc import Sequence
+
+from cyclosweep.result import Answer, Verdict
 
 ARCMIN = 60.0
 """Minutes of arc in a degree."""
 
-VERDICTS = {
+VERDICTS: dict[Verdict, tuple[str, str]] = {
     "IDENTIFIED": ("Cause identified", "#0b6e4f"),
     "AMBIGUOUS": ("More than one cause fits", "#8a5a00"),
     "UNKNOWN_PHYSICS": ("Cause outside the known effects", "#8a2be2"),
@@ -17,22 +19,20 @@ VERDICTS = {
 """Verdict in plain words, and its colour."""
 
 
-def verdict_words(result: Mapping[str, Any]) -> tuple[str, str, str]:
+def verdict_words(result: Answer) -> tuple[Verdict, str, str]:
     """Return verdict, its plain words and its colour."""
-    code = str(result.get("verdict") or "")
-    words, tone = VERDICTS.get(code, (plain(code.lower()), "#1d232b"))
-    if code == "UNKNOWN_PHYSICS" and result.get("effects"):
+    words, tone = VERDICTS[result.verdict]
+    if result.verdict == "UNKNOWN_PHYSICS" and result.effects:
         words = "Known effects found, and something without a name"
-    fitting = result.get("explanation_set") or []
-    if code == "IDENTIFIED" and len(fitting) > 1:
-        words = f"Most probable cause ({100 * fitting[0]['probability']:.0f} %)"
-    return code, words, tone
+    if result.verdict == "IDENTIFIED" and len(result.explanation_set) > 1:
+        words = f"Most probable cause ({100 * result.explanation_set[0].probability:.0f} %)"
+    return result.verdict, words, tone
 
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def number(value: Any, digits: int = 3) -> str:
+def number(value: float | None, digits: int = 3) -> str:
     """Write a number with so many significant digits and a true minus sign.
 
     Examples
@@ -44,9 +44,6 @@ def number(value: Any, digits: int = 3) -> str:
     """
     if value is None:
         return "–"
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return str(value)
-    value = float(value)
     if value != value:
         return "–"
     if value in (float("inf"), float("-inf")):
@@ -64,7 +61,7 @@ def number(value: Any, digits: int = 3) -> str:
     return f"{value:.{digits}g}".replace("-", "−")
 
 
-def angle(value_deg: Any, digits: int = 3) -> str:
+def angle(value_deg: float | None, digits: int = 3) -> str:
     """Write an angle in deg and arcmin.
 
     Examples
@@ -72,12 +69,12 @@ def angle(value_deg: Any, digits: int = 3) -> str:
     >>> angle(0.5)
     '0.5 deg (30 arcmin)'
     """
-    if not isinstance(value_deg, int | float):
+    if value_deg is None:
         return "–"
     return f"{number(value_deg, digits)} deg ({number(value_deg * ARCMIN, digits)} arcmin)"
 
 
-def interval(ends: Any, digits: int = 3) -> str:
+def interval(ends: Sequence[float] | None, digits: int = 3) -> str:
     """Write an interval.
 
     Examples
@@ -85,12 +82,12 @@ def interval(ends: Any, digits: int = 3) -> str:
     >>> interval([0.8, 1.0])
     '0.8 … 1'
     """
-    if not ends or len(ends) != 2 or any(end is None for end in ends):
+    if ends is None:
         return "–"
     return f"{number(ends[0], digits)} … {number(ends[1], digits)}"
 
 
-def probability(value: Any) -> str:
+def probability(value: float | None) -> str:
     """Write a p-value or a probability.
 
     Examples
@@ -100,7 +97,7 @@ def probability(value: Any) -> str:
     >>> probability(1.0)
     '> 0.999'
     """
-    if not isinstance(value, int | float):
+    if value is None:
         return "–"
     if 0 <= value < 0.001:
         return "< 0.001"
@@ -116,3 +113,30 @@ def plain(name: str) -> str:
     'overload softening'
     """
     return name.replace("_", " ")
+
+
+def without_unit(name: str) -> str:
+    """Write the name of a parameter in words, without its unit.
+
+    Examples
+    --------
+    >>> without_unit("free_play_deg")
+    'free play'
+    """
+    return plain(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
+
+
+def with_error(estimate: float, std_error: float | None) -> str:
+    """Write an estimate and its standard error.
+
+    Examples
+    --------
+    >>> with_error(1.04, 0.001), with_error(0.1, 3.0), with_error(2.0, None)
+    ('1.04 ± 0.001', '0.1 (poorly determined)', '2')
+    """
+    text = number(estimate, 4)
+    if not std_error:
+        return text
+    if std_error > 10 * abs(estimate) > 0:
+        return f"{text} (poorly determined)"
+    return f"{text} ± {number(std_error, 2)}"

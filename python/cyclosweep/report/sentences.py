@@ -1,0 +1,173 @@
+"""What a report says in lists and sentences, shared by the page and the terminal."""
+
+from collections.abc import Mapping
+
+from cyclosweep.report.data import ReportData
+from cyclosweep.report.wording import (
+    angle,
+    interval,
+    number,
+    plain,
+    probability,
+    with_error,
+    without_unit,
+)
+from cyclosweep.result import EffectParameter, FoundEffect, Region
+
+
+def effect_cards(data: ReportData) -> list[tuple[str, str, str, str]]:
+    """Name, size, evidence and physics of every accepted effect."""
+    return [
+        (plain(effect.name), _size(effect, data), _evidence(effect), effect.physics)
+        for effect in data.result.effects
+    ]
+
+
+def _size(effect: FoundEffect, data: ReportData) -> str:
+    """Size of an effect with its interval, and the torque that it is worth."""
+    size = effect.size_deg
+    text = f"{angle(size.estimate)}, 95 % interval {interval(size.ci95)} deg"
+    if data.compliance_deg_per_nm:
+        text += f"; worth {number(abs(size.estimate / data.compliance_deg_per_nm))} N m"
+    return text
+
+
+def _evidence(effect: FoundEffect) -> str:
+    """Evidence for an effect, and its parameters."""
+    text = (
+        f"p {probability(effect.p_value)}, e-value {number(effect.e_value, 2)}, "
+        f"detectability {number(effect.detectability, 3)}"
+    )
+    parameters = _parameters(effect.parameters)
+    return text + (f". {parameters[:1].upper()}{parameters[1:]}" if parameters else "")
+
+
+def _parameters(parameters: Mapping[str, EffectParameter]) -> str:
+    """Parameters with their errors and units."""
+    return "; ".join(
+        f"{without_unit(name)} {with_error(value.estimate, value.std_error)} {value.unit}".strip()
+        for name, value in parameters.items()
+    )
+
+
+def headline(data: ReportData) -> list[tuple[str, str, str]]:
+    """Figures beside the verdict: value, what it is, remark."""
+    base, repaired = data.result.baseline, data.result.repaired
+    rows = []
+    for before, after, label in (
+        (base.holdout_rmse_deg, repaired.holdout_rmse_deg, "held-out error"),
+        (base.rmse_deg, repaired.rmse_deg, "fit error"),
+    ):
+        if before is None and after is None:
+            continue
+        if data.is_repaired and after is not None:
+            rows.append((f"{number(before)} → {number(after)} deg", label, "before → after"))
+        else:
+            rows.append((f"{number(before)} deg", label, "calibrated model"))
+    if data.result.noise.sigma_deg is not None:
+        rows.append((f"{number(data.result.noise.sigma_deg)} deg", "noise", "standard deviation"))
+    return rows
+
+
+def bounds(data: ReportData) -> list[str]:
+    """Upper bounds of what was not found, those above the tolerance first."""
+    undecided = [
+        f"{plain(bound.name)}: could be as large as {angle(bound.upper95_deg)}, above the tolerance"
+        for bound in data.result.undecided
+    ]
+    ruled_out = [
+        f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}"
+        for bound in data.result.ruled_out
+    ]
+    return undecided + ruled_out
+
+
+def unknown(data: ReportData) -> str:
+    """Shape, place and size of what has no name, in one sentence."""
+    rest = data.result.unknown
+    if rest is None:
+        return ""
+    place = f", {rest.place}" if rest.place else ""
+    return (
+        f"{plain(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
+        "No effect of the vocabulary explains it."
+    )
+
+
+def findings(data: ReportData) -> list[str]:
+    """What the loop shows, in the words of a gear test."""
+    return [f"{finding.topic}: {finding.text}" for finding in data.result.findings]
+
+
+def untestable(data: ReportData) -> list[str]:
+    """What this recording cannot show, why, and what would show it."""
+    rows = []
+    for row in data.result.not_testable:
+        needs = f" Needs: {row.needs}." if row.needs else ""
+        rows.append(f"{plain(row.name)}: {row.reason.rstrip('.')}.{needs}")
+    return rows
+
+
+def explanations(data: ReportData) -> list[str]:
+    """Structures that fit about as well as the best."""
+    rows = []
+    for explanation in data.result.explanation_set:
+        names = [*explanation.effects, *explanation.without_name]
+        text = " + ".join(map(plain, names)) or "nothing missing"
+        rows.append(f"{text}: probability {probability(explanation.probability)}")
+    return rows
+
+
+def next_experiment(data: ReportData) -> str:
+    """Load programme that would tell most, in one sentence or two."""
+    plan = data.result.next_experiment
+    if plan is None:
+        return ""
+    text = plan.program.rstrip(".") + "."
+    text = text[:1].upper() + text[1:]
+    if plan.separates:
+        text += f" It would {'show or rule out' if len(plan.separates) == 1 else 'separate'} "
+        text += " from ".join(map(plain, plan.separates)) + "."
+    if plan.detectability:
+        text += f" Expected detectability {number(plan.detectability, 2)} noise units."
+    if plan.minutes:
+        text += f" Takes about {number(plan.minutes, 2)} minutes."
+    return text
+
+
+def regions(data: ReportData) -> list[str]:
+    """Where simulation and recording differ, in words."""
+    texts = []
+    for region in data.result.mismatch.regions:
+        size = angle(region.mean_residual_deg)
+        share = region.share_of_excess
+        part = "" if share is None else f", {100 * share:.0f} % of the excess"
+        texts.append(
+            f"{_place(region)}: mean residual {size}{part}, p {probability(region.p_value)}"
+        )
+    return texts
+
+
+def _place(region: Region) -> str:
+    """Limits of a region in words."""
+    where = []
+    if region.torque_nm:
+        where.append(f"{_range(region.torque_nm)} N m")
+    if region.direction not in (None, "both"):
+        where.append(str(region.direction))
+    if region.run:
+        first, last = region.run
+        where.append(f"run {first}" if first == last else f"runs {first} to {last}")
+    for ends, unit in (
+        (region.time_s, "s"),
+        (region.crank_deg, "deg of crank"),
+        (region.temperature_c, "°C"),
+    ):
+        if ends:
+            where.append(f"{_range(ends)} {unit}")
+    return ", ".join(where) or "everywhere"
+
+
+def _range(ends: tuple[float, float]) -> str:
+    """Write two ends of a range."""
+    return f"{number(ends[0])} to {number(ends[1])}"

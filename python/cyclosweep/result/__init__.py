@@ -1,0 +1,53 @@
+"""The result of a diagnosis: its types, its JSON form and schema, and its statement in words."""
+
+from cyclosweep.result.answer import SCHEMA, Answer, Finding, RunToRunDrift
+from cyclosweep.result.calibration import Baseline, CalibratedParameter, NoiseEstimate
+from cyclosweep.result.effects import (
+    Bound,
+    EffectParameter,
+    Explanation,
+    FoundEffect,
+    Hypothesis,
+    Remainder,
+    Size,
+    Untestable,
+)
+from cyclosweep.result.json_form import answer_of, content_of, json_text
+from cyclosweep.result.mismatch import Mismatch, Region
+from cyclosweep.result.proof import (
+    HeldOutBlock,
+    NextExperiment,
+    Repair,
+    SelfCheck,
+    Sufficiency,
+)
+from cyclosweep.result.verdict import Verdict
+
+__all__ = [
+    "SCHEMA",
+    "Answer",
+    "Baseline",
+    "Bound",
+    "CalibratedParameter",
+    "EffectParameter",
+    "Explanation",
+    "Finding",
+    "FoundEffect",
+    "HeldOutBlock",
+    "Hypothesis",
+    "Mismatch",
+    "NextExperiment",
+    "NoiseEstimate",
+    "Region",
+    "Remainder",
+    "Repair",
+    "RunToRunDrift",
+    "SelfCheck",
+    "Size",
+    "Sufficiency",
+    "Untestable",
+    "Verdict",
+    "answer_of",
+    "content_of",
+    "json_text",
+]

@@ -1,0 +1,48 @@
+"""Noise of the recording and the calibrated published model."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from cyclosweep.result.part import Part
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NoiseEstimate(Part):
+    """Noise of the measured angle."""
+
+    sigma_deg: float | None = None
+    """Standard deviation [deg]."""
+    autocorrelation: float | None = None
+    """Correlation of neighbouring samples."""
+    autocorrelation_upper: float | None = None
+    """Upper estimate of that correlation, with which all tests are made."""
+    tail_degrees_of_freedom: float | None = None
+    """Degrees of freedom of Student's t where the noise has heavy tails; null where Gaussian."""
+    resolution_deg: float | None = None
+    """Step of the angle reading [deg]; 0 for a continuous one."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CalibratedParameter(Part):
+    """One parameter of the published model, against its nominal value."""
+
+    nominal: float | None = None
+    """Value by the drive file."""
+    estimate: float
+    """Value that fits the recording."""
+    std_error: float | None = None
+    """Standard error of the estimate; null where the recording does not determine it."""
+    unit: str = ""
+    """Unit of nominal value, estimate and standard error."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Baseline(Part):
+    """The published model with stiffness, free play and datum calibrated, and nothing added."""
+
+    parameters: Mapping[str, CalibratedParameter] = field(default_factory=dict)
+    """Calibrated parameters by name."""
+    rmse_deg: float | None = None
+    """Root mean square error on the fitted data [deg]."""
+    holdout_rmse_deg: float | None = None
+    """Root mean square error on data that were not fitted [deg]; 0 where it was not computed."""

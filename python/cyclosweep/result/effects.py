@@ -1,0 +1,138 @@
+"""Effects that were found, the explanations they form, and what was not found or cannot be."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from cyclosweep.result.part import Part
+
+Outcome = Literal["accepted", "ruled out", "undecided", "not testable"]
+"""How an effect of the library fared."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EffectParameter(Part):
+    """One fitted parameter of an effect."""
+
+    estimate: float
+    """Value that fits the recording."""
+    std_error: float | None = None
+    """Standard error of the estimate; null where the recording does not determine it."""
+    unit: str = ""
+    """Unit of estimate and standard error."""
+    meaning: str = ""
+    """What the parameter is."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Size(Part):
+    """Largest twist of an effect after stiffness, play and datum are calibrated again [deg]."""
+
+    estimate: float
+    """Best estimate [deg]."""
+    ci95: tuple[float, float]
+    """Interval that holds the size with 95 % confidence [deg]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FoundEffect(Part):
+    """An effect that was accepted by name."""
+
+    name: str
+    """Name in the vocabulary of effects."""
+    physics: str = ""
+    """What goes on in the drive."""
+    source: str = ""
+    """Publication that describes it."""
+    parameters: Mapping[str, EffectParameter] = field(default_factory=dict)
+    """Fitted parameters by name."""
+    size_deg: Size
+    """Largest twist that it adds [deg]."""
+    size_arcmin: float | None = None
+    """The same [arcmin]."""
+    size_nm: float | None = None
+    """Torque that would twist the calibrated drive as far [N m]."""
+    rms_deg: float | None = None
+    """Root mean square of its twist over the fitted data [deg]."""
+    p_value: float | None = None
+    """Probability of as much evidence where it is absent."""
+    e_value: float | None = None
+    """Evidence from data that were not used for the choice; 100 is strong."""
+    detectability: float | None = None
+    """Signal-to-noise ratio, calibration and all other effects taken out."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Explanation(Part):
+    """A set of causes that explains the recording, with its probability."""
+
+    effects: tuple[str, ...] = ()
+    """Effects of the vocabulary."""
+    without_name: tuple[str, ...] = ()
+    """Shapes beside them that belong to no effect of the vocabulary."""
+    probability: float
+    """Probability among the explanations that were considered."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bound(Part):
+    """How large an effect that was not found can be at most."""
+
+    name: str
+    """Name in the vocabulary of effects."""
+    upper95_deg: float
+    """95 % upper bound of its size after calibration [deg]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Untestable(Part):
+    """Something that the recording cannot show, and what would show it."""
+
+    name: str
+    """Effect or property of the rig."""
+    reason: str = ""
+    """Why it cannot be seen."""
+    needs: str = ""
+    """What would show it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Remainder(Part):
+    """What is missing from the model and belongs to no effect of the vocabulary."""
+
+    shape: str
+    """What it looks like."""
+    place: str = ""
+    """Where it is."""
+    size_deg: float
+    """How large it is [deg]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hypothesis:
+    """One effect of the library, as it fared.
+
+    Attributes
+    ----------
+    name : str
+        Name in the vocabulary of effects.
+    outcome : str
+        ``accepted``, ``ruled out``, ``undecided`` or ``not testable``.
+    absorbed_share : float or None
+        Share of its signature that a refitted baseline hides.
+    size_deg, ci95_deg : float, (float, float), or None
+        Size of the effect [deg] and its 95 % interval.
+    p_value, e_value : float or None
+        Evidence of the scan and of the held-out data.
+    smallest_detectable_deg : float or None
+        Size that this recording would show [deg].
+    """
+
+    name: str
+    outcome: Outcome
+    absorbed_share: float | None = None
+    size_deg: float | None = None
+    ci95_deg: tuple[float, float] | None = None
+    p_value: float | None = None
+    e_value: float | None = None
+    smallest_detectable_deg: float | None = None

@@ -1,0 +1,49 @@
+"""Where recording and calibrated model differ."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from cyclosweep.result.part import Part
+
+Direction = Literal["loading", "unloading", "both"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Region(Part):
+    """A part of the recording whose mean residual is not noise.
+
+    Ranges are [from, to]; null where the region is not limited in that respect.
+    """
+
+    torque_nm: tuple[float, float] | None = None
+    """Range of torque [N m]."""
+    direction: Direction | None = None
+    """Whether the torque grows in size there, falls, or both."""
+    run: tuple[int, int] | None = None
+    """First and last run, numbered as in the recording."""
+    time_s: tuple[float, float] | None = None
+    """Range of time [s]."""
+    crank_deg: tuple[float, float] | None = None
+    """Range of the mesh position [deg]."""
+    temperature_c: tuple[float, float] | None = None
+    """Temperatures that were read there [degC]."""
+    mean_residual_deg: float
+    """Mean of measured less modelled twist [deg]."""
+    share_of_excess: float | None = None
+    """Share of the misfit beyond noise that this region accounts for."""
+    p_value: float | None = None
+    """Probability of as large a mean anywhere by noise alone."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Mismatch(Part):
+    """Global test of the calibrated model, and the regions in which it fails."""
+
+    p_value: float | None = None
+    """Probability of as large a mismatch where nothing is missing from the model."""
+    evidence: float | None = None
+    """Largest log evidence of any hypothesis beyond what it reaches by chance."""
+    threshold: float | None = None
+    """Evidence from which something is said to be missing."""
+    regions: tuple[Region, ...] = ()
+    """Regions, the strongest first, each after the ones before are taken out."""

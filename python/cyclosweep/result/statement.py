@@ -1,0 +1,215 @@
+"""The answer in sentences that a test engineer can act on."""
+
+from collections.abc import Mapping, Sequence
+
+from cyclosweep.result.answer import Answer
+from cyclosweep.result.calibration import CalibratedParameter
+from cyclosweep.result.effects import Explanation
+from cyclosweep.result.mismatch import Region
+from cyclosweep.result.proof import HeldOutBlock
+
+
+def statement_of(answer: Answer) -> str:
+    """Compose the statement of a diagnosis.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer with all its parts but the statement.
+
+    Returns
+    -------
+    str
+        One paragraph.
+    """
+    return _verdict_sentences(answer) + _forecast_sentences(answer.repaired.blocks)
+
+
+def _verdict_sentences(answer: Answer) -> str:
+    """Say what the verdict means for this recording."""
+    match answer.verdict:
+        case "NOTHING_MISSING":
+            return _nothing_missing(answer)
+        case "INSUFFICIENT_DATA":
+            return _insufficient(answer)
+        case "IDENTIFIED":
+            return _identified(answer)
+        case "AMBIGUOUS":
+            return _ambiguous(answer)
+    return _unknown(answer)
+
+
+def _nothing_missing(answer: Answer) -> str:
+    return (
+        "Nothing is missing: simulation and recording agree within the noise of "
+        f"{degrees(answer.noise.sigma_deg)}, and every effect this recording can show is below "
+        f"{degrees(_largest_bound(answer))} (tolerance {degrees(answer.tolerance_deg)}). "
+        + calibration_words(answer.repaired.parameters)
+    )
+
+
+def _insufficient(answer: Answer) -> str:
+    open_effects = sorted(answer.undecided, key=lambda bound: -bound.upper95_deg)
+    names = listed([bound.name for bound in open_effects[:4]]) if open_effects else "no effect"
+    return (
+        "No difference was found, but the recording is too poor to rule out what matters: "
+        f"{names} could be as large as {degrees(_largest_bound(answer))}, above the "
+        f"tolerance of {degrees(answer.tolerance_deg)}. "
+        + calibration_words(answer.repaired.parameters)
+    )
+
+
+def _identified(answer: Answer) -> str:
+    names = listed([effect.name for effect in answer.effects])
+    return (
+        f"Missing physics: {names}{_others(answer.explanation_set)}. Size after "
+        f"re-calibration: {_sizes(answer)}. It shows most at {place_of(answer.mismatch.regions)}."
+        f"{_improvement(answer)} {calibration_words(answer.repaired.parameters)}"
+    )
+
+
+def _ambiguous(answer: Answer) -> str:
+    options = " or ".join(_option(explanation) for explanation in answer.explanation_set)
+    return (
+        f"Something is missing, and this recording cannot say which: {options}. It shows most "
+        f"at {place_of(answer.mismatch.regions)}.{_improvement(answer)} "
+        f"{calibration_words(answer.repaired.parameters)}"
+    )
+
+
+def _unknown(answer: Answer) -> str:
+    known = ""
+    if answer.effects:
+        names = listed([effect.name for effect in answer.effects])
+        known = f" Beside {names} ({_sizes(answer)}),"
+    remains = ""
+    if answer.unknown is not None:
+        size = f"{answer.unknown.size_deg:.2g} deg"
+        remains = f": a {answer.unknown.shape} of {size}, {answer.unknown.place}"
+    calibration = calibration_words(answer.repaired.parameters)
+    if answer.drift is not None:
+        remains = ": a drift from run to run"
+        calibration = (
+            "The recording is not stationary: a model of some runs misses others by "
+            f"{degrees(answer.drift.other_deg)} against {degrees(answer.drift.own_deg)} on its "
+            "own. It is unfit for a stiffness; warm-up, wear or creep have to settle first."
+        )
+    return (
+        f"Unknown physics:{known} something without a name in the vocabulary remains{remains}. "
+        f"It shows most at {place_of(answer.mismatch.regions)}. {calibration}"
+    )
+
+
+def _forecast_sentences(blocks: Sequence[HeldOutBlock]) -> str:
+    """Say how well whole loops are forecast; nothing where the flank was taken as recorded."""
+    forecasts = [block for block in blocks if block.is_forecast]
+    if not forecasts:
+        return ""
+    block = forecasts[0]
+    text = (
+        " As a forecast of what was not fitted, crossings of the dead zone included, the model "
+        f"errs by {degrees(block.after_deg)}, before the repair by {degrees(block.before_deg)}; "
+        f"with the recorded flank given, by {degrees(block.told_after_deg)}."
+    )
+    if block.floor_deg is not None:
+        text += f" Another run as the prediction leaves {degrees(block.floor_deg)}."
+    return text
+
+
+def _largest_bound(answer: Answer) -> float:
+    """Largest upper bound of an effect that was not found [deg]."""
+    bounds = (*answer.ruled_out, *answer.undecided)
+    return max((bound.upper95_deg for bound in bounds), default=0.0)
+
+
+def _sizes(answer: Answer) -> str:
+    """Accepted effects with their sizes and intervals."""
+    return "; ".join(
+        f"{readable(effect.name)} {degrees(effect.size_deg.estimate)} "
+        f"(95 %: {effect.size_deg.ci95[0]:.2g} to {effect.size_deg.ci95[1]:.2g})"
+        for effect in answer.effects
+    )
+
+
+def _improvement(answer: Answer) -> str:
+    """Errors before and after the repair; those on data not used only where computed."""
+    before, after = answer.baseline, answer.repaired
+    text = f" With it the error falls from {degrees(before.rmse_deg)} to {degrees(after.rmse_deg)}"
+    if before.holdout_rmse_deg is not None and before.holdout_rmse_deg > 0.0:
+        text += (
+            f", on data not used from {degrees(before.holdout_rmse_deg)} to "
+            f"{degrees(after.holdout_rmse_deg)}"
+        )
+    return f"{text}."
+
+
+def _option(explanation: Explanation) -> str:
+    """One explanation with its probability."""
+    names = [*explanation.effects, *explanation.without_name]
+    return f"{' + '.join(map(readable, names))} ({100 * explanation.probability:.0f} %)"
+
+
+def _others(explanations: Sequence[Explanation]) -> str:
+    """What else it may be, beside the explanation that is named."""
+    if len(explanations) < 2:
+        return ""
+    first, *rest = explanations
+    return (
+        f", with a probability of {100 * first.probability:.0f} %; not ruled out: "
+        + " or ".join(_option(explanation) for explanation in rest)
+    )
+
+
+def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
+    """What the calibration found, against nominal."""
+    scale = parameters["compliance_scale"].estimate
+    play = parameters["free_play_deg"]
+    datum = parameters["datum_deg"].estimate
+    words = f"Calibration: compliance {100 * (scale - 1):+.1f} % against nominal"
+    if play.std_error is not None:
+        words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
+    return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
+
+
+def place_of(regions: Sequence[Region]) -> str:
+    """Where the strongest region lies, in words."""
+    if not regions:
+        return "no single place"
+    region = regions[0]
+    parts = []
+    if region.torque_nm is not None:
+        parts.append(f"{region.torque_nm[0]:.3g} to {region.torque_nm[1]:.3g} N m")
+    if region.direction is not None:
+        parts.append(region.direction)
+    if region.run is not None:
+        first, last = region.run
+        parts.append(f"run {first}" if first == last else f"runs {first} to {last}")
+    if region.time_s is not None:
+        parts.append(f"t = {region.time_s[0]:.5g} to {region.time_s[1]:.5g} s")
+    if region.crank_deg is not None:
+        parts.append(f"mesh position {region.crank_deg[0]:.4g} deg")
+    return ", ".join(parts) or "everywhere"
+
+
+def degrees(value: float | None) -> str:
+    """Write an angle in deg and, where small, in arcmin.
+
+    Parameters
+    ----------
+    value : float or None
+        The angle [deg]; None where it is not known.
+    """
+    if value is None:
+        return "an unknown angle"
+    return f"{value:.3g} deg" + (f" ({60 * value:.2g} arcmin)" if abs(value) < 1.0 else "")
+
+
+def readable(name: str) -> str:
+    """Name of an effect in plain words."""
+    return name.replace("_", " ")
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a row."""
+    words = [readable(n) for n in names]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]

@@ -1,0 +1,13 @@
+"""The verdicts of a diagnosis."""
+
+from typing import Literal
+
+Verdict = Literal[
+    "IDENTIFIED",
+    "AMBIGUOUS",
+    "UNKNOWN_PHYSICS",
+    "NOTHING_MISSING",
+    "INSUFFICIENT_DATA",
+    "DATA_FAULT",
+]
+"""What a diagnosis concludes; docs/diagnosis.md says what each verdict means."""

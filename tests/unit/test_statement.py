@@ -1,0 +1,119 @@
+"""What the statement of a diagnosis says, and what stands at the head of its report."""
+
+from dataclasses import replace
+
+from cyclosweep.report.wording import verdict_words
+from cyclosweep.result import (
+    Answer,
+    Baseline,
+    Bound,
+    CalibratedParameter,
+    Explanation,
+    FoundEffect,
+    HeldOutBlock,
+    NoiseEstimate,
+    Remainder,
+    Repair,
+    RunToRunDrift,
+    Size,
+)
+from cyclosweep.result.statement import statement_of
+
+CREEP = FoundEffect(name="creep", size_deg=Size(estimate=0.5, ci95=(0.4, 0.6)))
+CALIBRATED = {
+    "compliance_scale": CalibratedParameter(nominal=1.0, estimate=1.04),
+    "free_play_deg": CalibratedParameter(nominal=28.0, estimate=27.5, std_error=0.02, unit="deg"),
+    "datum_deg": CalibratedParameter(nominal=0.0, estimate=-0.3, unit="deg"),
+}
+ONE = (Explanation(effects=("creep",), probability=1.0),)
+TWO = (
+    Explanation(effects=("creep",), probability=0.6),
+    Explanation(effects=("viscous_drag",), probability=0.38),
+)
+IDENTIFIED = Answer(
+    verdict="IDENTIFIED",
+    tolerance_deg=0.3,
+    noise=NoiseEstimate(sigma_deg=0.2),
+    baseline=Baseline(rmse_deg=0.35, holdout_rmse_deg=0.0),
+    repaired=Repair(parameters=CALIBRATED, rmse_deg=0.2, holdout_rmse_deg=0.0),
+    effects=(CREEP,),
+    explanation_set=ONE,
+)
+
+
+def test_what_is_not_ruled_out_stands_beside_the_name() -> None:
+    assert "Missing physics: creep. Size" in statement_of(IDENTIFIED)
+    text = statement_of(replace(IDENTIFIED, explanation_set=TWO))
+    assert "creep, with a probability of 60 %; not ruled out: viscous drag (38 %)" in text
+
+
+def test_a_verdict_with_rivals_is_headed_by_its_probability() -> None:
+    assert verdict_words(IDENTIFIED)[1] == "Cause identified"
+    rivals = replace(IDENTIFIED, explanation_set=TWO)
+    assert verdict_words(rivals)[1] == "Most probable cause (60 %)"
+
+
+def test_error_on_data_not_used_is_said_only_where_it_was_computed() -> None:
+    assert "data not used" not in statement_of(IDENTIFIED)
+    computed = replace(
+        IDENTIFIED,
+        baseline=replace(IDENTIFIED.baseline, holdout_rmse_deg=0.3),
+        repaired=replace(IDENTIFIED.repaired, holdout_rmse_deg=0.21),
+    )
+    assert "data not used from 0.3 deg (18 arcmin) to 0.21 deg" in statement_of(computed)
+
+
+def test_calibration_stands_beside_every_verdict_that_has_one() -> None:
+    text = statement_of(IDENTIFIED)
+    assert "compliance +4.0 % against nominal" in text
+    assert "free play 27.5 deg each side (nominal 28)" in text
+    one_sided = CALIBRATED | {"free_play_deg": replace(CALIBRATED["free_play_deg"], std_error=None)}
+    unknown = replace(IDENTIFIED, repaired=replace(IDENTIFIED.repaired, parameters=one_sided))
+    assert "free play" not in statement_of(unknown)
+
+
+def test_the_tolerance_decides_what_is_open() -> None:
+    nothing = replace(
+        IDENTIFIED,
+        verdict="NOTHING_MISSING",
+        effects=(),
+        ruled_out=(Bound(name="creep", upper95_deg=0.05), Bound(name="orders", upper95_deg=0.11)),
+    )
+    assert "is below 0.11 deg (6.6 arcmin) (tolerance 0.3 deg" in statement_of(nothing)
+    poor = replace(
+        nothing,
+        verdict="INSUFFICIENT_DATA",
+        undecided=(
+            Bound(name="viscous_drag", upper95_deg=0.4),
+            Bound(name="thermal_drift", upper95_deg=1.5),
+        ),
+    )
+    assert "thermal drift and viscous drag could be as large as 1.5 deg" in statement_of(poor)
+
+
+def test_what_remains_is_described_and_a_drift_takes_the_place_of_a_calibration() -> None:
+    unknown = replace(
+        IDENTIFIED,
+        verdict="UNKNOWN_PHYSICS",
+        unknown=Remainder(shape="step", place="from run 7", size_deg=0.16),
+    )
+    text = statement_of(unknown)
+    assert text.startswith("Unknown physics: Beside creep (creep 0.5 deg")
+    assert "remains: a step of 0.16 deg, from run 7." in text
+    assert "Calibration: compliance" in text
+    drifting = statement_of(replace(unknown, drift=RunToRunDrift(own_deg=0.1, other_deg=1.2)))
+    assert "misses others by 1.2 deg against 0.1 deg" in drifting
+    assert "Calibration" not in drifting
+
+
+def test_forecasts_have_a_sentence_of_their_own() -> None:
+    block = HeldOutBlock(block="run 3", before_deg=1.5, after_deg=0.25)
+    assert "forecast" not in statement_of(replace(IDENTIFIED, repaired=with_block(block)))
+    forecast = replace(block, told_before_deg=1.1, told_after_deg=0.15, floor_deg=0.125)
+    text = statement_of(replace(IDENTIFIED, repaired=with_block(forecast)))
+    assert "errs by 0.25 deg (15 arcmin), before the repair by 1.5 deg" in text
+    assert "Another run as the prediction leaves 0.125 deg" in text
+
+
+def with_block(block: HeldOutBlock) -> Repair:
+    return replace(IDENTIFIED.repaired, blocks=(block,))
