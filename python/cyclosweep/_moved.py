@@ -39,6 +39,15 @@ MOVED: dict[str, str] = {
 }
 """Where the modules of version 0.1 stand now, by their old names."""
 
+RENAMED: dict[str, str] = {
+    "cyclosweep.shards.write_part": "cyclosweep.sweep.attempts.write_part",
+    "cyclosweep.shards.write_parts": "cyclosweep.sweep.attempts.write_parts",
+    "cyclosweep.space.is_count": "cyclosweep.sweep.axes.is_count",
+    "cyclosweep.summary.Record": "cyclosweep.sweep.summary.PartSummary",
+    "cyclosweep.summary.record_of": "cyclosweep.sweep.summary.summary_of_part",
+}
+"""Names of version 0.1 that did not go where their module went, or are called otherwise now."""
+
 
 class _MovedModule(types.ModuleType):
     """A module that looks every name up where its contents stand now."""
@@ -51,10 +60,12 @@ class _MovedModule(types.ModuleType):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        new = self.__dict__["_new"]
+        target = RENAMED.get(f"{self.__name__}.{name}", f"{self.__dict__['_new']}.{name}")
+        new, _, new_name = target.rpartition(".")
         # importlib, because a name in `cyclosweep` may be a function and a module at once.
-        value = getattr(importlib.import_module(new), name)
-        warnings.warn(f"{self.__name__} has moved: use {new}", DeprecationWarning, stacklevel=2)
+        value = getattr(importlib.import_module(new), new_name)
+        use = new if new_name == name else target
+        warnings.warn(f"{self.__name__} has moved: use {use}", DeprecationWarning, stacklevel=2)
         return value
 
 

@@ -14,8 +14,9 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.sweep.attempts import write_parts
 from cyclosweep.sweep.executors import dask_executor
-from cyclosweep.sweep.shards import Dataset, write_parts
+from cyclosweep.sweep.shards import Dataset
 
 distributed = pytest.importorskip("distributed", reason="the dask extra is not installed")
 pytestmark = pytest.mark.filterwarnings("default")

@@ -9,8 +9,7 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.sweep import shards
-from cyclosweep.sweep.dataset import Part
-from cyclosweep.sweep.dataset import Record as PartRecord
+from cyclosweep.sweep.dataset import Part, PartSummary
 
 COUNT, ROWS = 2**14, 2**11
 
@@ -22,7 +21,7 @@ def space() -> cs.Space:
 class KillsItsWorker(shards.Dataset):
     """Kills the process that computes one part, once or always."""
 
-    def write(self, part: Part) -> PartRecord:
+    def write(self, part: Part) -> PartSummary:
         mark = self.folder / "killed"
         if part.index == 3 and (self.folder / "always").exists():
             os.kill(os.getpid(), signal.SIGKILL)
@@ -55,7 +54,7 @@ def test_a_part_that_always_kills_its_worker_is_named_and_the_rest_kept(
 class FailsAlways(shards.Dataset):
     tried = 0
 
-    def write(self, part: Part) -> PartRecord:
+    def write(self, part: Part) -> PartSummary:
         if part.index == 5:
             type(self).tried += 1
             raise RuntimeError("no luck with this one")

@@ -5,7 +5,7 @@ import importlib
 import pytest
 
 import cyclosweep as cs
-from cyclosweep._moved import MOVED
+from cyclosweep._moved import MOVED, RENAMED
 
 
 @pytest.mark.parametrize("old", sorted(MOVED))
@@ -15,6 +15,15 @@ def test_an_old_name_leads_to_the_new_module(old: str) -> None:
     with pytest.warns(DeprecationWarning, match=MOVED[old]):
         found = getattr(importlib.import_module(old), public)
     assert found is getattr(new, public)
+
+
+@pytest.mark.parametrize("old", sorted(RENAMED))
+def test_an_old_name_leads_to_what_it_is_called_now(old: str) -> None:
+    module, _, name = RENAMED[old].rpartition(".")
+    old_module, _, old_name = old.rpartition(".")
+    with pytest.warns(DeprecationWarning, match=module):
+        found = getattr(importlib.import_module(old_module), old_name)
+    assert found is getattr(importlib.import_module(module), name)
 
 
 def test_functions_of_the_package_stay_functions_after_old_imports() -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 import math
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 import cyclosweep as cs
@@ -197,3 +199,44 @@ def test_a_drive_alone_is_its_row_of_a_sweep(reference: cs.Drive) -> None:
     for name, value in reference.evaluate().items():
         assert row[name] == value or (value is None and row[name] is None)
     assert not any(isinstance(v, float) and math.isnan(v) for v in row.values())
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("ratio", np.int64(87)),
+        ("disc_count", np.uint8(2)),
+        ("output_pin_count", np.int32(8)),
+        ("eccentricity_mm", np.float32(0.5)),
+        ("input_inertia_kg_m2", np.float64(0.002)),
+        ("free_play_deg", np.int16(28)),
+        ("shaft_1_length_mm", np.int64(60)),
+    ],
+)
+def test_numpy_numbers_are_numbers(reference: cs.Drive, name: str, value: np.generic) -> None:
+    assert reference.replace(**{name: value}) == reference.replace(**{name: value.item()})
+
+
+def test_a_drive_of_numpy_numbers_is_written_and_read_back(
+    tmp_path: Path, reference: cs.Drive
+) -> None:
+    table = reference.model_dump()
+    table["ratio"], table["eccentricity_mm"] = np.int64(87), np.float64(0.62)
+    table["shaft"][0]["diameter_mm"] = np.float64(table["shaft"][0]["diameter_mm"])
+    drive = cs.Drive(**table)
+    assert type(drive.ratio) is int
+    assert type(drive.eccentricity_mm) is float
+    drive.to_toml(tmp_path / "copy.toml")
+    assert cs.Drive.from_toml(tmp_path / "copy.toml") == reference
+
+
+@pytest.mark.parametrize("value", [np.float64(87.0), np.bool_(True), np.str_("87"), np.array([87])])
+def test_what_is_no_integer_stays_refused(reference: cs.Drive, value: object) -> None:
+    with pytest.raises(cs.InputError, match=r"ratio: found .*, expected integer"):
+        reference.replace(ratio=value)
+
+
+@pytest.mark.parametrize("load", [math.nan, math.inf, True, "1", None])
+def test_a_load_that_is_no_finite_number_is_one_line(reference: cs.Drive, load: Any) -> None:
+    with pytest.raises(cs.InputError, match=r"^loads_tn: found .*, expected .*$"):
+        reference.evaluate((1.0, load))

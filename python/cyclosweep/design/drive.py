@@ -7,16 +7,21 @@ import re
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import polars as pl
 import tomli_w
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import ValidationError
 
 import cyclosweep._core as _core
 from cyclosweep.atomic import write_text
+from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion, count_active_pins
+from cyclosweep.design.inputs import DriveInputs
+from cyclosweep.design.numbers import checked_loads
+from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
+from cyclosweep.design.toml_files import one_line, read_toml
 from cyclosweep.errors import InputError
 
 __all__ = [
@@ -30,72 +35,9 @@ __all__ = [
     "NominalLine",
 ]
 
-Criterion = Literal["published-map", "inside", "statics"]
-CRITERIA: tuple[Criterion, ...] = ("published-map", "inside", "statics")
 Side = Literal["input", "output"]
 
-_MARKS = ("published", "derived", "reading", "assumed", "measured")
 _BUILT_IN = {"reference-87": "reference_87.toml"}
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
-
-
-class Keyway(_Part):
-    """Cylindrical shaft segment with a keyway, Eq. (5).
-
-    Attributes
-    ----------
-    diameter_mm, length_mm, keyway_depth_mm : float
-        Dimensions [mm]; the keyway must not reach the axis.
-
-    Notes
-    -----
-    ``c = 32 / (pi G) (l + k h l / D) / D^4`` is a reading of an ambiguous print: its form is 85 %
-    sure, k = 10 (``keyway_coefficient``) about 75 %. A Saint-Venant torsion solution of standard
-    keyways gives k of about 1.2 to 1.3 on the same depth.
-    """
-
-    kind: Literal["keyway"] = "keyway"
-    diameter_mm: Positive
-    length_mm: Positive
-    keyway_depth_mm: NonNegative
-
-
-class Cylinder(_Part):
-    """Plain cylindrical shaft segment.
-
-    Attributes
-    ----------
-    diameter_mm, length_mm : float
-        Dimensions [mm].
-    """
-
-    kind: Literal["cylinder"] = "cylinder"
-    diameter_mm: Positive
-    length_mm: Positive
-
-
-class Frustum(_Part):
-    """Conical shaft segment, Eq. (7).
-
-    Attributes
-    ----------
-    diameter_mm, end_diameter_mm, length_mm : float
-        Diameter at the free end and at the flange end, length [mm].
-    """
-
-    kind: Literal["frustum"] = "frustum"
-    diameter_mm: Positive
-    end_diameter_mm: Positive
-    length_mm: Positive
-
-
-Segment = Annotated[Keyway | Cylinder | Frustum, Field(discriminator="kind")]
 
 
 class NominalLine(NamedTuple):
@@ -113,27 +55,7 @@ class NominalLine(NamedTuple):
     compliance_deg_per_nm: float
 
 
-class ActivePins(NamedTuple):
-    """Active hole-pin contacts of one drive, all discs together, over one turn.
-
-    Attributes
-    ----------
-    mean, minimum, maximum : float, int, int
-        Number of active contacts [1].
-    torque_transfer_efficiency : float
-        eta_OP [1], Eqs. (1)-(3).
-    sectors : polars.DataFrame
-        Columns ``start_deg``, ``end_deg`` (position of the mesh zone) and ``active``.
-    """
-
-    mean: float
-    minimum: int
-    maximum: int
-    torque_transfer_efficiency: float
-    sectors: pl.DataFrame
-
-
-class Drive(_Part):
+class Drive(DriveInputs):
     """A single-stage cycloidal drive, frozen and checked.
 
     Every attribute is a key of a drive file, an axis of a study and a column of a sweep; its
@@ -164,55 +86,6 @@ class Drive(_Part):
     >>> round(drive.nominal_torque_nm, 4)
     7.2575
     """
-
-    name: str = "drive"
-    ratio: Annotated[int, Field(ge=3, le=300)]
-    disc_count: Annotated[int, Field(ge=1, le=4)]
-    eccentricity_mm: Positive
-    ring_pin_circle_radius_mm: Positive
-    hole_clocking_deg: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    output_pin_count: Annotated[int, Field(ge=3, le=64)]
-    output_pin_circle_radius_mm: Positive
-    output_pin_diameter_mm: Positive
-    output_pin_bore_mm: NonNegative = 0.0
-    output_pin_length_mm: Positive
-    bush_wall_mm: NonNegative = 0.0
-    disc_outer_radius_mm: Positive
-    disc_bore_radius_mm: NonNegative
-    youngs_modulus_gpa: Positive
-    poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] = 0.3
-    keyway_coefficient: NonNegative = 10.0
-    input_power_kw: Positive
-    input_speed_rpm: Positive
-    output_torque_nm: Positive
-    free_play_deg: NonNegative = 0.0
-    input_inertia_kg_m2: Positive | None = None
-    output_stiffness_nm_per_arcmin: Positive | None = None
-    criterion: Criterion = "published-map"
-    shaft: tuple[Segment, ...] = ()
-    provenance: dict[str, str] = Field(default_factory=dict)
-
-    _SCALARS: ClassVar[tuple[str, ...]] = tuple(name for name, _, _ in _core.input_table())
-
-    @field_validator("shaft", mode="before")
-    @classmethod
-    def _shaft_is_a_sequence(cls, value: object) -> object:
-        return tuple(value) if isinstance(value, list) else value
-
-    @model_validator(mode="after")
-    def _is_complete(self) -> Self:
-        if not self.shaft and self.output_stiffness_nm_per_arcmin is None:
-            raise ValueError(
-                "neither [[shaft]] nor output_stiffness_nm_per_arcmin, expected one of them"
-            )
-        for key, mark in self.provenance.items():
-            if key not in self.inputs():
-                raise ValueError(f"provenance.{key}: no such input of this drive")
-            if mark.partition(":")[0].strip() not in _MARKS:
-                raise ValueError(
-                    f"provenance.{key}: found {mark!r}, expected one of {', '.join(_MARKS)}"
-                )
-        return self
 
     @classmethod
     def reference_87(cls) -> Drive:
@@ -309,30 +182,6 @@ class Drive(_Part):
             del table["shaft"]
         write_text(path, tomli_w.dumps(table))
 
-    def inputs(self) -> tuple[str, ...]:
-        """Names of every input that can be an axis of a study of this drive, in order."""
-        segments = (
-            f"shaft_{number}_{field}"
-            for number, segment in enumerate(self.shaft, start=1)
-            for field in _core.SEGMENT_FIELDS
-            if field in type(segment).model_fields
-        )
-        return (*self._SCALARS, *segments)
-
-    def values(self) -> dict[str, float]:
-        """Every input's value by name, NaN where left out, the criterion by its number."""
-        values: dict[str, float] = {}
-        for name in self._SCALARS:
-            value = getattr(self, name)
-            if name == "criterion":
-                value = CRITERIA.index(value)
-            values[name] = math.nan if value is None else float(value)
-        for number, segment in enumerate(self.shaft, start=1):
-            for field in _core.SEGMENT_FIELDS:
-                if field in type(segment).model_fields:
-                    values[f"shaft_{number}_{field}"] = float(getattr(segment, field))
-        return values
-
     def replace(self, **changes: Any) -> Drive:
         """Return this drive with some inputs changed.
 
@@ -373,16 +222,6 @@ class Drive(_Part):
             }
         return self._from_table(table, self.name)
 
-    @property
-    def nominal_torque_nm(self) -> float:
-        """Nominal input torque T_N = P / omega [N m]."""
-        return self.input_power_kw * 1e3 / (self.input_speed_rpm * math.pi / 30)
-
-    @property
-    def overall_efficiency(self) -> float:
-        """Rated output torque over i T_N [1]."""
-        return self.output_torque_nm / (self.ratio * self.nominal_torque_nm)
-
     def study(self, loads_tn: tuple[float, ...] = ()) -> _core.Study:
         """Return the core's study of this drive alone."""
         kinds = [segment.kind for segment in self.shaft]
@@ -398,7 +237,8 @@ class Drive(_Part):
         Parameters
         ----------
         loads_tn : tuple of float
-            Loads [T_N] at which twists are computed.
+            Loads [T_N] at which twists are computed; a negative one acts in the other direction
+            and gives the negative of the twist. At zero it is the end of the free play.
 
         Returns
         -------
@@ -409,6 +249,8 @@ class Drive(_Part):
         ------
         DesignError
             When the drive cannot be built.
+        InputError
+            For a load that is no finite number.
 
         Examples
         --------
@@ -416,10 +258,11 @@ class Drive(_Part):
         >>> round(results["twist_1tn_deg"], 1)
         47.8
         """
-        study = self.study(loads_tn)
+        loads = checked_loads(loads_tn, allow_zero=True)
+        study = self.study(loads)
         if (reason := study.explain(0)) is not None:
             raise _core.DesignError(f"{self.name}: {reason}")
-        names = [name for name, _ in _core.output_table(list(loads_tn))]
+        names = [name for name, _ in _core.output_table(list(loads))]
         _, _, columns = study.evaluate_range(0, 1, names)
         values = (float(column[0]) for column in columns)
         return {
@@ -495,28 +338,16 @@ class Drive(_Part):
         >>> Drive.reference_87().active_pins().minimum
         4
         """
-        chosen = criterion or self.criterion
-        code = CRITERIA.index(chosen)
         half_sine = self.eccentricity_mm / (2 * self.output_pin_circle_radius_mm)
         if half_sine >= 1:
             raise _core.DesignError(f"{self.name}: {self.explain()}")
-        arrangement = (
-            float(self.ratio),
-            self.disc_count,
-            self.output_pin_count,
-            math.asin(half_sine) / math.tau,
-            self.hole_clocking_deg / 360,
-        )
-        (mean, low, high), _, _ = _core.active_pins(code, *arrangement)
-        starts, ends, active = zip(*_core.sectors(code, *arrangement), strict=True)
-        sectors = pl.DataFrame({"start_deg": starts, "end_deg": ends, "active": active})
-        contacts = self.disc_count * self.output_pin_count
-        return ActivePins(
-            mean,
-            low,
-            high,
-            mean / (0.5 * contacts),
-            sectors.with_columns(pl.col("start_deg", "end_deg") * 360),
+        return count_active_pins(
+            criterion or self.criterion,
+            ratio=self.ratio,
+            disc_count=self.disc_count,
+            output_pin_count=self.output_pin_count,
+            half_sine=half_sine,
+            clocking_deg=self.hole_clocking_deg,
         )
 
     def hole_locus(self, theta_deg: npt.ArrayLike, hole: int = 0) -> pl.DataFrame:
@@ -556,51 +387,3 @@ class Drive(_Part):
                 "radius_mm": np.hypot(centres[:, 0], centres[:, 1]),
             }
         )
-
-
-def read_toml(path: str | Path) -> dict[str, Any]:
-    """Read a TOML file.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        When it is not there, not text or not TOML.
-    """
-    try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file in UTF-8, expected TOML") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: not valid TOML: {error}") from None
-
-
-def one_line(error: ValidationError) -> str:
-    """Put a validation error into one line: key, what was found, what was expected."""
-    problems = error.errors(include_url=False)
-    first = problems[0]
-    tags = ("keyway", "cylinder", "frustum")
-    where = ".".join(
-        str(part + 1 if isinstance(part, int) else part)
-        for part in first["loc"]
-        if part not in tags
-    )
-    kind = first["type"]
-    if kind == "missing":
-        text = f"{where}: missing"
-    elif kind == "extra_forbidden":
-        text = f"{where}: unknown key"
-    elif kind == "value_error":
-        text = first["msg"].removeprefix("Value error, ")
-        text = f"{where}: {text}" if where else text
-    else:
-        wanted = first["msg"].removeprefix("Input should be ").removeprefix("a valid ")
-        text = f"{where}: found {first['input']!r}, expected {wanted}"
-    more = len(problems) - 1
-    return f"{text} (and {more} more)" if more else text

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from cyclosweep.design.drive import one_line, read_toml
+from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
 from cyclosweep.errors import InputError
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
@@ -16,10 +16,10 @@ CanonicalName = Literal["torque_nm", "angle_deg", "time_s", "run", "crank_deg", 
 SelectValue = int | float | str
 
 
-class _Strict(BaseModel):
-    """Unknown keys and values of another type are refused."""
+class _Strict(TomlTable):
+    """A table of the metadata file; numbers are finite."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(allow_inf_nan=False)
 
 
 class Column(_Strict):

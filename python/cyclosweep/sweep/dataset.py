@@ -17,7 +17,7 @@ from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.scan import frame
 from cyclosweep.sweep.study import Study
-from cyclosweep.sweep.summary import Record, record_of
+from cyclosweep.sweep.summary import PartSummary, summary_of_part
 
 __all__ = ["COMPRESSION", "ROWS_PER_PART", "Dataset", "Part", "scan_dataset"]
 
@@ -153,21 +153,21 @@ class Dataset:
 
     def is_whole(self, part: Part) -> bool:
         """Whether a part is there and belongs to this study."""
-        return self.record(part) is not None
+        return self.summary(part) is not None
 
-    def record(self, part: Part) -> Record | None:
+    def summary(self, part: Part) -> PartSummary | None:
         """What a part's footer says of its rows; None unless it is whole and of this study."""
         footer = read_footer(self.folder / part.name)
         if footer is None or footer.get("study") != self.study.hash:
             return None
-        record = Record.from_json(footer["record"])
-        if (record.start, record.stop) != (part.start, part.stop):
+        summary = PartSummary.from_json(footer["record"])
+        if (summary.start, summary.stop) != (part.start, part.stop):
             return None
         if footer.get("objective") != self._objective():
             # The objective decides no numbers: only the best variants are others now.
             rows = pl.read_parquet(self.folder / part.name)
-            return record_of(rows, part.start, part.stop, self.study)
-        return record
+            return summary_of_part(rows, part.start, part.stop, self.study)
+        return summary
 
     @contextlib.contextmanager
     def lock(self, part_stem: str, timeout: float = -1) -> Iterator[None]:
@@ -185,7 +185,7 @@ class Dataset:
             finally:
                 path.unlink(missing_ok=True)
 
-    def write(self, part: Part) -> Record:
+    def write(self, part: Part) -> PartSummary:
         """Compute a part and put it in place, whole or not at all.
 
         Parameters
@@ -195,7 +195,7 @@ class Dataset:
 
         Returns
         -------
-        Record
+        PartSummary
             A summary of its rows, small enough to send home.
 
         Raises
@@ -204,15 +204,15 @@ class Dataset:
             When it cannot be written; nothing is left behind.
         """
         rows = frame(self.study, part.start, part.stop, list(self.study.schema()))
-        record = record_of(rows, part.start, part.stop, self.study)
-        return self.put(part, rows, record)
+        summary = summary_of_part(rows, part.start, part.stop, self.study)
+        return self.put(part, rows, summary)
 
-    def put(self, part: Part, rows: pl.DataFrame, record: Record) -> Record:
+    def put(self, part: Part, rows: pl.DataFrame, summary: PartSummary) -> PartSummary:
         """Put computed rows in place as a part."""
         footer = {
             **self._identity(),
             "objective": self._objective(),
-            "record": record.to_json(),
+            "record": summary.to_json(),
         }
         with unfinished(self.folder / part.name) as file:
             rows.write_parquet(
@@ -221,7 +221,7 @@ class Dataset:
                 row_group_size=ROWS_PER_PART,
                 metadata={_FOOTER: json.dumps(footer)},
             )
-        return record
+        return summary
 
     def _identity(self) -> dict[str, Any]:
         return {
@@ -236,20 +236,20 @@ class Dataset:
         objective = self.study.objective
         return None if objective is None else [objective.column, objective.maximise]
 
-    def records(self) -> list[Record]:
-        """Return the records of all whole parts, in order."""
-        return [record for part in self.parts() if (record := self.record(part)) is not None]
+    def summaries(self) -> list[PartSummary]:
+        """Return the summaries of all whole parts, in order."""
+        return [summary for part in self.parts() if (summary := self.summary(part)) is not None]
 
-    def finish(self, records: list[Record]) -> None:
+    def finish(self, summaries: list[PartSummary]) -> None:
         """Write the manifest of what is there and sweep up after killed writers."""
         for path in self.folder.glob("part-*.tmp"):
             with contextlib.suppress(Timeout), self.lock(path.name.split(".")[0], timeout=0):
                 path.unlink(missing_ok=True)
-        self.write_manifest(records)
+        self.write_manifest(summaries)
 
-    def write_manifest(self, records: list[Record]) -> None:
+    def write_manifest(self, summaries: list[PartSummary]) -> None:
         """Write the manifest of these parts."""
-        rows = sum(record.stop - record.start for record in records)
+        rows = sum(summary.stop - summary.start for summary in summaries)
         manifest = {
             **self._identity(),
             "definition": self.study.definition(),
@@ -259,7 +259,7 @@ class Dataset:
             "parts": [
                 {"file": self.part(k).name, "start": r.start, "stop": r.stop}
                 for k, r in sorted(
-                    ((r.start - self.study.space.start) // self.rows_per_part, r) for r in records
+                    ((r.start - self.study.space.start) // self.rows_per_part, r) for r in summaries
                 )
             ],
         }

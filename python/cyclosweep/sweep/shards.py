@@ -1,43 +1,30 @@
-"""Running the parts of a study: on threads, processes or a cluster, resumable at any point."""
+"""A study as a folder of parts: the whole of it at once, or one task of a batch array."""
 
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import os
-from collections import Counter, deque
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
-import polars as pl
 from filelock import FileLock, Timeout
 
+from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError, SweepError
-from cyclosweep.sweep.dataset import ROWS_PER_PART, Dataset, Part
+from cyclosweep.sweep.attempts import run_shards
+from cyclosweep.sweep.dataset import ROWS_PER_PART, Dataset
+from cyclosweep.sweep.executors import Engine, executor_of, lend
+from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.progress import Progress
 from cyclosweep.sweep.space import Space
-from cyclosweep.sweep.study import Limits, Objective, Study
-from cyclosweep.sweep.summary import Record, Summary, summarise
+from cyclosweep.sweep.study import Limits, Study
+from cyclosweep.sweep.summary import PartSummary, Summary, summarise
 
 __all__ = ["Engine", "run_shards", "shard", "sink"]
 
-Engine = Literal["threads", "processes", "dask"]
-ENGINES: tuple[Engine, ...] = ("threads", "processes", "dask")
-_ATTEMPTS = 3
+# A task on Dask costs a message: it carries about a million variants.
 _VARIANTS_PER_DASK_TASK = 2**20
-# The study that tasks bring to this process over and over.
-_STUDIES: dict[tuple[str, Objective | None], Study] = {}
 
 
 def sink(
@@ -107,42 +94,43 @@ def sink(
     {'ok': 3}
     """
     study = Study.of(space, loads_tn=loads_tn, limits=limits, objective=objective)
-    if rows_per_part < 1:
-        raise InputError(f"rows_per_part: found {rows_per_part}, expected at least 1")
-    dataset = Dataset(study, Path(folder), rows_per_part)
-    make = _engine(engine, workers, scheduler) if executor is None else _lend(executor)
+    dataset = _dataset(study, folder, rows_per_part)
+    if executor is None:
+        make = executor_of(engine, workers=workers, scheduler=scheduler)
+    else:
+        make = lend(executor)
     parts_per_task = 1
     if engine == "dask":
         # A worker elsewhere stands in another folder; its tasks cost a message each.
         dataset = replace(dataset, folder=dataset.folder.absolute())
         parts_per_task = max(
-            1, min(_VARIANTS_PER_DASK_TASK // rows_per_part, dataset.part_count // 8)
+            1, min(_VARIANTS_PER_DASK_TASK // dataset.rows_per_part, dataset.part_count // 8)
         )
     with _exclusive(dataset, resume=resume, fresh=fresh):
-        records = []
+        summaries = []
         missing = []
         for part in dataset.parts():
-            record = dataset.record(part)
-            if record is None:
+            summary = dataset.summary(part)
+            if summary is None:
                 missing.append(part)
             else:
-                records.append(record)
-        done = sum(record.stop - record.start for record in records)
+                summaries.append(summary)
+        done = sum(summary.stop - summary.start for summary in summaries)
         with Progress("sweep", len(study), done=done, show=progress) as bar:
 
-            def advance(record: Record) -> None:
-                bar.advance(record.stop - record.start)
+            def advance(summary: PartSummary) -> None:
+                bar.advance(summary.stop - summary.start)
 
             try:
-                records += run_shards(
+                summaries += run_shards(
                     dataset, missing, make, advance, parts_per_task=parts_per_task
                 )
             except BaseException:
                 with contextlib.suppress(OSError):
-                    dataset.finish(dataset.records())
+                    dataset.finish(dataset.summaries())
                 raise
-            _finish(dataset, records)
-    return summarise(records, study)
+            _finish(dataset, summaries)
+    return summarise(summaries, study)
 
 
 def shard(
@@ -184,204 +172,36 @@ def shard(
     SweepError
         When a part cannot be written.
     """
-    if of < 1 or not 0 <= index < of:
-        raise InputError(f"shard {index} of {of}: expected 0 <= index < of")
+    of = whole_number("shard: of", of, least=1)
+    index = whole_number("shard: index", index, most=of - 1)
     study = Study.of(space)
-    dataset = Dataset(study, Path(folder), rows_per_part)
+    dataset = _dataset(study, folder, rows_per_part)
     dataset.prepare(resume=True, fresh=False)
     parts = [dataset.part(k) for k in range(index, dataset.part_count, of)]
     total = sum(part.stop - part.start for part in parts)
     with Progress(f"shard {index} of {of}", total, show=progress) as bar:
 
-        def advance(record: Record) -> None:
-            bar.advance(record.stop - record.start)
+        def advance(summary: PartSummary) -> None:
+            bar.advance(summary.stop - summary.start)
 
-        records = run_shards(dataset, parts, _engine("threads", None, None), advance)
+        summaries = run_shards(dataset, parts, executor_of("threads"), advance)
     # Whichever task ends last finds every part there.
     with FileLock(dataset.folder / ".manifest.lock"):
-        dataset.write_manifest(dataset.records())
+        dataset.write_manifest(dataset.summaries())
     (dataset.folder / ".manifest.lock").unlink(missing_ok=True)
-    return summarise(records, study)
+    return summarise(summaries, study)
 
 
-def _finish(dataset: Dataset, records: list[Record]) -> None:
+def _dataset(study: Study, folder: str | Path, rows_per_part: int) -> Dataset:
+    return Dataset(study, Path(folder), whole_number("rows_per_part", rows_per_part, least=1))
+
+
+def _finish(dataset: Dataset, summaries: list[PartSummary]) -> None:
     """Write the manifest; on a full disk the parts themselves still say what is there."""
     try:
-        dataset.finish(records)
+        dataset.finish(summaries)
     except OSError as error:
         raise SweepError(f"{dataset.folder}: manifest: {error.strerror}") from None
-
-
-def write_part(dataset: Dataset, part: Part) -> Record:
-    """Write one part unless it is whole already; what a worker runs.
-
-    A lock that dies with its process keeps two writers from the same part.
-    """
-    with dataset.lock(part.stem):
-        return dataset.record(part) or dataset.write(part)
-
-
-def write_parts(dataset: Dataset, parts: Sequence[Part]) -> list[Record | Exception]:
-    """Write several parts, what a worker runs: a record or the reason for each.
-
-    A study's tables are made once a process, however many tasks bring it along.
-    """
-    dataset = replace(dataset, study=_known_here(dataset.study))
-    outcomes: list[Record | Exception] = []
-    for part in parts:
-        try:
-            outcomes.append(write_part(dataset, part))
-        except Exception as error:
-            outcomes.append(error)
-    return outcomes
-
-
-def _known_here(study: Study) -> Study:
-    key = (study.hash, study.objective)
-    found = _STUDIES.get(key)
-    if found is None:
-        _STUDIES.clear()
-        found = _STUDIES.setdefault(key, study)
-    return found
-
-
-def run_shards(
-    dataset: Dataset,
-    parts: Sequence[Part],
-    make_executor: Callable[[], contextlib.AbstractContextManager[Executor]],
-    on_done: Callable[[Record], None] = lambda record: None,
-    *,
-    parts_per_task: int = 1,
-) -> list[Record]:
-    """Write parts through any executor, each attempted up to three times.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        Where they belong.
-    parts : sequence of Part
-        Which ones.
-    make_executor : callable
-        Gives a context manager of an executor; called again when a worker's death broke it.
-    on_done : callable
-        Called with each part's record.
-    parts_per_task : int
-        Parts that travel to a worker together.
-
-    Returns
-    -------
-    list of Record
-
-    Raises
-    ------
-    SweepError
-        When parts failed for good, naming the first; the others are written before. When the
-        scheduler of the executor is gone.
-    """
-    run = _Run(dataset, on_done)
-    tasks = [
-        list(parts[first : first + parts_per_task])
-        for first in range(0, len(parts), parts_per_task)
-    ]
-    run.waiting.extend(tasks)
-    while run.waiting or run.suspects:
-        # What ran while a worker died goes on alone, so that only the culprit dies again.
-        alone = not run.waiting
-        if alone:
-            run.waiting.append([run.suspects.popleft()])
-        with make_executor() as executor:
-            run.drain(executor, window=1 if alone else None)
-    if run.failed:
-        first = min(run.failed)
-        raise SweepError(
-            f"{dataset.folder}: part {first} failed: {_reason(run.failed[first])}; "
-            f"{len(run.records)} of {len(parts)} parts written, "
-            "the same command goes on from there"
-        )
-    return run.records
-
-
-class _Run:
-    """The state of one `run_shards`: what waits, what was tried how often, what came of it."""
-
-    def __init__(self, dataset: Dataset, on_done: Callable[[Record], None]) -> None:
-        self.dataset = dataset
-        self.on_done = on_done
-        self.waiting: deque[list[Part]] = deque()
-        self.suspects: deque[Part] = deque()
-        self.attempts: Counter[int] = Counter()
-        self.failed: dict[int, BaseException] = {}
-        self.records: list[Record] = []
-
-    def drain(self, executor: Executor, window: int | None) -> None:
-        """Run what waits until nothing does or the executor is broken."""
-        if window is None:
-            window = 2 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
-        running: dict[Future[list[Record | Exception]], list[Part]] = {}
-        broken = False
-        try:
-            while (self.waiting and not broken) or running:
-                while self.waiting and not broken and len(running) < window:
-                    task = self.waiting.popleft()
-                    self.attempts.update(part.index for part in task)
-                    try:
-                        running[executor.submit(write_parts, self.dataset, task)] = task
-                    except BrokenExecutor as gone:
-                        broken = True
-                        self.again(task, gone, crashed=True)
-                done, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in done:
-                    task = running.pop(future)
-                    broken = self.settle(task, future) or broken
-        except BaseException:
-            for future in running:
-                future.cancel()
-            raise
-
-    def settle(self, task: list[Part], future: Future[list[Record | Exception]]) -> bool:
-        """Take in what became of a task; true when the executor broke under it."""
-        if future.cancelled():
-            raise SweepError(
-                f"{self.dataset.folder}: the scheduler is gone; {len(self.records)} parts "
-                "written, the same command goes on from there"
-            )
-        error = future.exception()
-        if error is not None:
-            self.again(task, error, crashed=True)
-            return isinstance(error, BrokenExecutor)
-        for part, outcome in zip(task, future.result(), strict=True):
-            if isinstance(outcome, Record):
-                self.records.append(outcome)
-                self.on_done(outcome)
-            else:
-                self.again([part], outcome, crashed=False)
-        return False
-
-    def again(self, task: list[Part], error: BaseException, *, crashed: bool) -> None:
-        """Have parts tried once more, or give them up."""
-        for part in task:
-            if _is_hopeless(error):
-                self.failed[part.index] = error
-                self.waiting.clear()
-                self.suspects.clear()
-            elif self.attempts[part.index] >= _ATTEMPTS:
-                self.failed[part.index] = error
-            elif crashed:
-                self.suspects.append(part)
-            else:
-                self.waiting.append([part])
-
-
-def _is_hopeless(error: BaseException) -> bool:
-    """A full or read-only disk fails every part alike."""
-    if isinstance(error, OSError):
-        return True
-    return isinstance(error, pl.exceptions.PolarsError) and "os error" in str(error)
-
-
-def _reason(error: BaseException) -> str:
-    lines = str(error).strip().splitlines()
-    return lines[0] if lines else type(error).__name__
 
 
 @contextlib.contextmanager
@@ -414,50 +234,3 @@ def _exclusive(dataset: Dataset, *, resume: bool, fresh: bool) -> Iterator[None]
         if not existed:
             with contextlib.suppress(OSError):
                 folder.rmdir()
-
-
-def _lend(executor: Executor) -> Callable[[], contextlib.AbstractContextManager[Executor]]:
-    """The caller's executor, which stays open."""
-    return lambda: contextlib.nullcontext(executor)
-
-
-def _engine(
-    engine: Engine, workers: int | None, scheduler: str | None
-) -> Callable[[], contextlib.AbstractContextManager[Executor]]:
-    if scheduler is not None and engine != "dask":
-        raise InputError(f"scheduler: only for engine dask, found engine {engine}")
-    if workers is not None and workers < 1:
-        raise InputError(f"workers: found {workers}, expected at least 1")
-    if engine == "threads":
-        # The kernel and the encoder each use every core; two parts in flight overlap them.
-        return lambda: ThreadPoolExecutor(workers or 2)
-    if engine == "processes":
-        count = workers or os.cpu_count() or 1
-        return lambda: _process_pool(count)
-    if engine == "dask":
-        from cyclosweep.sweep.executors import dask_executor
-
-        return lambda: dask_executor(workers, scheduler)
-    raise InputError(f"engine: found {engine!r}, expected one of {', '.join(ENGINES)}")
-
-
-@contextlib.contextmanager
-def _process_pool(workers: int) -> Iterator[Executor]:
-    """Spawned workers of one thread each: fork hangs with the threads of polars."""
-    threads = {"RAYON_NUM_THREADS": "1", "POLARS_MAX_THREADS": "1"}
-    before = {name: os.environ.get(name) for name in threads}
-    os.environ.update(threads)
-    try:
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=context) as pool:
-            try:
-                yield pool
-            except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                raise
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

@@ -2,122 +2,37 @@
 
 from __future__ import annotations
 
-import difflib
-import functools
-import hashlib
 import math
+import operator
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, overload
 
 import numpy as np
-import numpy.typing as npt
 import polars as pl
 
 import cyclosweep._core as _core
-from cyclosweep.design.drive import CRITERIA, Drive
+from cyclosweep.design.active_pins import CRITERIA
+from cyclosweep.design.drive import Drive
+from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError
+from cyclosweep.sweep.axes import (
+    OPTIONAL,
+    WHOLE,
+    Axis,
+    Linspace,
+    criterion_codes,
+    known_input,
+    linspace,
+    listed_axis,
+    sampled_axis,
+)
 
 __all__ = ["Axis", "Linspace", "Method", "Space", "linspace"]
 
 Method = Literal["grid", "sobol", "latin-hypercube", "random", "table"]
 MAX_VARIANTS = 2**63
-# A longer range over a count cannot be of whole numbers that make sense.
-_LONGEST_COUNT = 2**16
-_WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
-_OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if optional)
-
-
-@dataclass(frozen=True)
-class Linspace:
-    """Equidistant values of an axis, both ends included; see :func:`linspace`."""
-
-    start: float
-    stop: float
-    steps: int
-
-
-def linspace(start: float, stop: float, steps: int) -> Linspace:
-    """Equidistant values of an axis, both ends included, in constant memory.
-
-    Parameters
-    ----------
-    start, stop : float
-        First and last value, in the axis's unit.
-    steps : int
-        How many values.
-
-    Returns
-    -------
-    Linspace
-
-    Raises
-    ------
-    InputError
-        For an end that is no finite number, or steps that are no whole number.
-
-    Examples
-    --------
-    >>> linspace(0.3, 0.8, 50).steps
-    50
-    """
-    for name, value in (("start", start), ("stop", stop)):
-        if not np.isfinite(_numbers(f"linspace: {name}", [value])[0]):
-            raise InputError(f"linspace: {name}: found {value!r}, expected a finite number")
-    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)):
-        raise InputError(f"linspace: steps: found {steps!r}, expected a whole number")
-    return Linspace(float(start), float(stop), int(steps))
-
-
-@dataclass(frozen=True)
-class Axis:
-    """One axis as the core knows it.
-
-    Attributes
-    ----------
-    name : str
-        The input that varies.
-    form : {"list", "linspace", "interval", "whole"}
-        How ``numbers`` are meant: the values; (from, to, steps); (low, high); (low, high).
-    numbers : ndarray
-        float64, in the input's unit.
-    """
-
-    name: str
-    form: Literal["list", "linspace", "interval", "whole"]
-    numbers: npt.NDArray[np.float64]
-
-    def values(self) -> npt.NDArray[np.float64] | None:
-        """All values in order; None for an interval or whole numbers of a range."""
-        if self.form == "list":
-            return self.numbers
-        if self.form == "linspace":
-            start, stop, steps = self.numbers
-            return np.linspace(start, stop, int(steps))
-        return None
-
-    @functools.cached_property
-    def dtype(self) -> pl.DataType:
-        """Type of the axis's column: counts where every value is one."""
-        if self.name == "criterion":
-            return pl.Enum(CRITERIA)
-        is_long = self.form == "linspace" and self.numbers[2] > _LONGEST_COUNT
-        if self.name in _WHOLE and not is_long:
-            numbers = self.numbers if self.form != "linspace" else self.values()
-            assert numbers is not None
-            with np.errstate(invalid="ignore"):
-                if np.all((numbers >= 0) & (numbers < 2**32) & (numbers == np.trunc(numbers))):
-                    return pl.UInt32()
-        return pl.Float64()
-
-    def definition(self) -> dict[str, Any]:
-        """What makes this axis itself, for the study's hash and the manifest."""
-        numbers = np.ascontiguousarray(self.numbers)
-        if len(numbers) > 64:
-            digest = hashlib.sha256(numbers.tobytes()).hexdigest()
-            return {"name": self.name, "form": self.form, "count": len(numbers), "sha256": digest}
-        return {"name": self.name, "form": self.form, "numbers": [repr(float(v)) for v in numbers]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +75,7 @@ class Space:
             For an unknown input, an empty axis, a value that is not a number, or more than
             2^63 variants.
         """
-        built = tuple(_countable(drive, name, values) for name, values in axes.items())
+        built = tuple(listed_axis(drive, name, values) for name, values in axes.items())
         return cls._made(drive, "grid", built, 1, 0)
 
     @classmethod
@@ -223,9 +138,9 @@ class Space:
         """
         axes = []
         for column in frame.get_columns():
-            name = _known(drive, column.name)
+            name = known_input(drive, column.name)
             if name == "criterion":
-                numbers = _criterion_codes(column.to_list())
+                numbers = np.array(criterion_codes(column.to_list()))
             else:
                 if not column.dtype.is_numeric():
                     raise InputError(f"{name}: found {column.dtype}, expected numbers")
@@ -237,15 +152,12 @@ class Space:
     def _sampled(
         cls, drive: Drive, method: Method, count: int, seed: int, axes: Mapping[str, Any]
     ) -> Space:
-        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
-            raise InputError(f"count: found {count!r}, expected a whole number above zero")
-        is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
-        if not (is_whole and 0 <= seed < 2**64):
-            raise InputError(f"seed: found {seed!r}, expected a whole number from 0 to 2^64 - 1")
+        count = whole_number("count", count, least=1)
+        seed = whole_number("seed", seed, most=2**64 - 1)
         if not axes:
             raise InputError(f"{method}: no axes, expected at least one input that varies")
-        built = tuple(_sampled_axis(drive, name, values) for name, values in axes.items())
-        return cls._made(drive, method, built, int(count), int(seed))
+        built = tuple(sampled_axis(drive, name, values) for name, values in axes.items())
+        return cls._made(drive, method, built, count, seed)
 
     @classmethod
     def _made(
@@ -295,6 +207,7 @@ class Space:
             if step != 1:
                 raise ValueError("a space is cut in steps of one")
             return replace(self, start=self.start + first, stop=self.start + max(first, last))
+        key = operator.index(key)
         count = self.stop - self.start
         if not -count <= key < count:
             raise IndexError(f"variant {key} of {count}")
@@ -305,9 +218,9 @@ class Space:
             value = float(core.axis_at(axis.name, index)[0])
             if axis.name == "criterion":
                 changes[axis.name] = CRITERIA[int(value)]
-            elif axis.name in _OPTIONAL and math.isnan(value):
+            elif axis.name in OPTIONAL and math.isnan(value):
                 changes[axis.name] = None
-            elif axis.name in _WHOLE and value.is_integer():
+            elif axis.name in WHOLE and value.is_integer():
                 changes[axis.name] = int(value)
             else:
                 changes[axis.name] = value
@@ -331,78 +244,3 @@ class Space:
             "start": self.start,
             "stop": self.stop,
         }
-
-
-def is_count(name: str) -> bool:
-    """Whether an input takes whole numbers only."""
-    return name in _WHOLE
-
-
-def _known(drive: Drive, name: str) -> str:
-    known = drive.inputs()
-    if name not in known:
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f", did you mean {close[0]}?" if close else ""
-        raise InputError(f"{name}: no such input of this drive{hint}")
-    return name
-
-
-def _criterion_codes(values: Iterable[object]) -> npt.NDArray[np.float64]:
-    codes = []
-    for value in values:
-        if value not in CRITERIA:
-            raise InputError(f"criterion: found {value!r}, expected one of {', '.join(CRITERIA)}")
-        codes.append(CRITERIA.index(value))
-    return np.array(codes, dtype=np.float64)
-
-
-def _numbers(name: str, values: Iterable[object]) -> npt.NDArray[np.float64]:
-    listed = list(values)
-    for value in listed:
-        if isinstance(value, (bool, np.bool_)) or not isinstance(
-            value, (int, float, np.integer, np.floating)
-        ):
-            raise InputError(f"{name}: found {value!r}, expected a number")
-    return np.array(listed, dtype=np.float64)
-
-
-def _listed(drive: Drive, name: str, values: Iterable[object]) -> Axis:
-    numbers = _criterion_codes(values) if name == "criterion" else _numbers(name, values)
-    if len(numbers) == 0:
-        raise InputError(f"{name}: no values, expected at least one")
-    return Axis(name, "list", numbers)
-
-
-def _countable(drive: Drive, name: str, values: Linspace | Iterable[object]) -> Axis:
-    _known(drive, name)
-    if isinstance(values, Linspace):
-        if values.steps < 1:
-            raise InputError(f"{name}: found {values.steps} steps, expected at least 1")
-        if name == "criterion":
-            raise InputError("criterion: expected a list of values, not a range")
-        axis = Axis(name, "linspace", np.array([values.start, values.stop, values.steps], float))
-        if name in _WHOLE and axis.dtype != pl.UInt32():
-            raise InputError(
-                f"{name}: {values.steps} steps from {values.start:g} to {values.stop:g} "
-                "are not whole numbers, expected whole ones"
-            )
-        return axis
-    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-        raise InputError(f"{name}: found {values!r}, expected a list of values or linspace(...)")
-    return _listed(drive, name, values)
-
-
-def _sampled_axis(drive: Drive, name: str, values: object) -> Axis:
-    _known(drive, name)
-    if isinstance(values, tuple) and len(values) == 2 and name != "criterion":
-        low, high = _numbers(name, values)
-        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
-            raise InputError(f"{name}: found ({low:g}, {high:g}), expected (low, high)")
-        if name in _WHOLE:
-            if low != np.trunc(low) or high != np.trunc(high):
-                raise InputError(f"{name}: found ({low:g}, {high:g}), expected whole numbers")
-            return Axis(name, "whole", np.array([low, high]))
-        return Axis(name, "interval", np.array([low, high]))
-    if isinstance(values, (Linspace, list, tuple, np.ndarray)):
-        return _countable(drive, name, values)
-    raise InputError(f"{name}: found {values!r}, expected (low, high) or a list of values")

@@ -1,4 +1,4 @@
-"""A study: a space of variants, the loads, limits and objective, and the file that says so."""
+"""A study: a space of variants with the loads, limits and objective of its sweep."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import polars as pl
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 import cyclosweep._core as _core
-from cyclosweep.design.drive import Drive, one_line, read_toml
+from cyclosweep.design.numbers import checked_loads, real_numbers
 from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError
-from cyclosweep.sweep.space import Linspace, Method, Space, is_count
+from cyclosweep.sweep.objective import Objective
+from cyclosweep.sweep.space import Space
+from cyclosweep.sweep.study_file import read_study_file
 
 __all__ = ["DEFAULT_LOADS_TN", "Objective", "Study"]
 
@@ -26,22 +27,6 @@ DEFAULT_LOADS_TN: tuple[float, ...] = (1.0, 2.0, 3.0, 4.0, 4.5)
 _KIND_DTYPES = {"real": pl.Float64(), "count": pl.UInt32(), "flag": pl.Boolean()}
 
 Limits = Mapping[str, tuple[float | None, float | None]]
-
-
-@dataclass(frozen=True)
-class Objective:
-    """What the best variants are best in.
-
-    Attributes
-    ----------
-    column : str
-        A result or an input.
-    maximise : bool
-        Whether more is better.
-    """
-
-    column: str
-    maximise: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +66,8 @@ class Study:
         space : Space or Study
             What varies.
         loads_tn : sequence of float, optional
-            Loads [T_N], each above zero; 1, 2, 3, 4 and 4.5 by default.
+            Loads [T_N], 1, 2, 3, 4 and 4.5 by default. A negative one acts in the other
+            direction: its twist is the negative of that under the same load above zero.
         limits : mapping, optional
             ``{column: (least or None, greatest or None)}``.
         objective : Objective, optional
@@ -90,25 +76,17 @@ class Study:
         Raises
         ------
         InputError
-            For a load that is not above zero, or a limit or objective on an unknown column.
+            For a load that is zero or no finite number, or a limit or objective on an unknown
+            column.
         """
         if isinstance(space, Study):
             if loads_tn is not None or limits is not None or objective is not None:
                 raise InputError("a study already has its loads, limits and objective")
             return space
-        loads = DEFAULT_LOADS_TN if loads_tn is None else tuple(float(load) for load in loads_tn)
-        for load in loads:
-            if not (math.isfinite(load) and load > 0):
-                raise InputError(f"loads_tn: found {load:g}, expected loads above zero")
+        loads = checked_loads(DEFAULT_LOADS_TN if loads_tn is None else loads_tn)
         if len(set(loads)) != len(loads):
             raise InputError(f"loads_tn: found {list(loads)}, expected each load once")
-        bounds = []
-        for name, (low, high) in (limits or {}).items():
-            least = -math.inf if low is None else float(low)
-            most = math.inf if high is None else float(high)
-            if not least <= most:
-                raise InputError(f"limits.{name}: found {least:g} to {most:g}, expected min <= max")
-            bounds.append((name, least, most))
+        bounds = [_bounds(name, low, high) for name, (low, high) in (limits or {}).items()]
         study = cls(space, loads, tuple(bounds), objective)
         columns = [*space.drive.inputs(), *(name for name, _ in _core.output_table(list(loads)))]
         for name, _, _ in bounds:
@@ -136,13 +114,14 @@ class Study:
         InputError
             One line that names the file, the key, what was found and what was expected.
         """
-        table = read_toml(path)
+        file = read_study_file(path)
         try:
-            parsed = _StudyFile.model_validate(table)
-        except ValidationError as error:
-            raise InputError(f"{path}: {one_line(error)}") from None
-        try:
-            return parsed.study(Path(path).parent)
+            return cls.of(
+                file.space(Path(path).parent),
+                loads_tn=file.loads_tn,
+                limits=file.bounds(),
+                objective=file.chosen_objective(),
+            )
         except InputError as error:
             text = str(error)
             raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
@@ -199,116 +178,10 @@ class Study:
         return hashlib.sha256(text.encode()).hexdigest()
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class _Sample(_Part):
-    method: Method = "grid"
-    count: int | None = Field(default=None, gt=0)
-    seed: int = Field(default=0, ge=0)
-    file: str | None = None
-
-
-class _Range(_Part):
-    start: float = Field(alias="from", allow_inf_nan=False)
-    stop: float = Field(alias="to", allow_inf_nan=False)
-    steps: int | None = Field(default=None, ge=1)
-
-
-class _Values(_Part):
-    values: list[float | str] = Field(min_length=1)
-
-
-class _Limit(_Part):
-    min: float | None = None
-    max: float | None = None
-
-
-class _ObjectiveTable(_Part):
-    minimise: str | None = None
-    maximise: str | None = None
-
-
-class _StudyFile(_Part):
-    drive: str = "reference-87"
-    loads_tn: list[Annotated[float, Field(gt=0)]] = list(DEFAULT_LOADS_TN)
-    sample: _Sample = _Sample()
-    axes: dict[str, dict[str, Any]] = {}
-    limits: dict[str, _Limit] = {}
-    objective: _ObjectiveTable | None = None
-
-    def study(self, folder: Path) -> Study:
-        drive = Drive.load(self.drive, beside=folder)
-        limits = {name: (limit.min, limit.max) for name, limit in self.limits.items()}
-        space = self._table(drive, folder) if self.sample.method == "table" else self._space(drive)
-        return Study.of(
-            space, loads_tn=self.loads_tn, limits=limits, objective=self._chosen_objective()
-        )
-
-    def _chosen_objective(self) -> Objective | None:
-        if self.objective is None:
-            return None
-        wanted = self.objective
-        if (wanted.minimise is None) == (wanted.maximise is None):
-            raise InputError("objective: expected either minimise or maximise")
-        return Objective(wanted.minimise or wanted.maximise or "", wanted.maximise is not None)
-
-    def _table(self, drive: Drive, folder: Path) -> Space:
-        if self.sample.file is None:
-            raise InputError("sample.file: missing, expected the table's CSV or Parquet file")
-        if self.axes:
-            raise InputError("axes: not with method table, whose columns are the axes")
-        path = folder / self.sample.file
-        try:
-            reads_parquet = path.suffix == ".parquet"
-            frame = pl.read_parquet(path) if reads_parquet else pl.read_csv(path)
-        except (OSError, pl.exceptions.PolarsError) as error:
-            raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
-        try:
-            return Space.table(drive, frame)
-        except InputError as error:
-            raise InputError(f"{path}: {error}") from None
-
-    def _space(self, drive: Drive) -> Space:
-        if not self.axes:
-            raise InputError("axes: none, expected at least one")
-        if self.sample.file is not None:
-            raise InputError("sample.file: only for method table")
-        is_grid = self.sample.method == "grid"
-        axes = {name: self._axis(name, spec, is_grid) for name, spec in self.axes.items()}
-        if is_grid:
-            if self.sample.count is not None:
-                raise InputError("sample.count: not for a grid, whose axes decide the count")
-            return Space.grid(drive, **axes)
-        if self.sample.count is None:
-            raise InputError(f"sample.count: missing, expected for method {self.sample.method}")
-        make = {
-            "sobol": Space.sobol,
-            "latin-hypercube": Space.latin_hypercube,
-            "random": Space.random,
-        }[self.sample.method]
-        return make(drive, self.sample.count, seed=self.sample.seed, **axes)
-
-    def _axis(self, name: str, spec: dict[str, Any], is_grid: bool) -> Any:
-        try:
-            if "values" in spec:
-                return list(_Values.model_validate(spec).values)
-            parsed = _Range.model_validate(spec)
-        except ValidationError as error:
-            raise InputError(f"axes.{name}.{one_line(error)}") from None
-        if parsed.steps is not None:
-            return Linspace(parsed.start, parsed.stop, parsed.steps)
-        if is_grid:
-            if is_count(name):
-                return _whole_numbers(name, parsed.start, parsed.stop)
-            raise InputError(f"axes.{name}.steps: missing, expected for a grid")
-        return (parsed.start, parsed.stop)
-
-
-def _whole_numbers(name: str, start: float, stop: float) -> Linspace:
-    if not (start.is_integer() and stop.is_integer() and start <= stop):
-        raise InputError(
-            f"axes.{name}: found {start:g} to {stop:g}, expected whole numbers from low to high"
-        )
-    return Linspace(start, stop, int(stop - start) + 1)
+def _bounds(name: str, low: float | None, high: float | None) -> tuple[str, float, float]:
+    """A limit with both ends; InputError unless they are numbers in order."""
+    given = [-math.inf if low is None else low, math.inf if high is None else high]
+    least, most = real_numbers(f"limits.{name}", given)
+    if not least <= most:
+        raise InputError(f"limits.{name}: found {least:g} to {most:g}, expected min <= max")
+    return name, least, most

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
     from cyclosweep.sweep.study import Study
 
-__all__ = ["BEST", "Record", "Summary", "record_of", "summarise"]
+__all__ = ["BEST", "PartSummary", "Summary", "summarise", "summary_of_part"]
 
 BEST = 10
 
 
 @dataclass(frozen=True)
-class Record:
+class PartSummary:
     """What one part holds, small enough to travel.
 
     Attributes
@@ -54,13 +54,13 @@ class Record:
         }
 
     @classmethod
-    def from_json(cls, value: dict[str, Any]) -> Record:
+    def from_json(cls, value: dict[str, Any]) -> PartSummary:
         """Back from :meth:`to_json`."""
         ranges = {name: (low, high) for name, (low, high) in value["ranges"].items()}
         return cls(value["start"], value["stop"], value["status"], ranges, value["best"])
 
 
-def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record:
+def summary_of_part(rows: pl.DataFrame, start: int, stop: int, study: Study) -> PartSummary:
     """Summarise the rows of one part."""
     counts = rows["status"].value_counts().sort("status")
     status = dict(zip(counts["status"].to_list(), counts["count"].to_list(), strict=True))
@@ -80,7 +80,7 @@ def record_of(rows: pl.DataFrame, start: int, stop: int, study: Study) -> Record
         )
         by, reverse = [objective.column, "variant"], [objective.maximise, False]
         best = kept.bottom_k(BEST, by=by, reverse=reverse).drop("status").to_dicts()
-    return Record(start, stop, status, ranges, best)
+    return PartSummary(start, stop, status, ranges, best)
 
 
 def _best_columns(study: Study) -> list[str]:
@@ -156,20 +156,20 @@ def _short(value: object) -> str:
     return f"{value:.5g}" if isinstance(value, float) else f"{value}"
 
 
-def summarise(records: Iterable[Record], study: Study) -> Summary:
-    """Put the records of a sweep's parts together."""
+def summarise(summaries: Iterable[PartSummary], study: Study) -> Summary:
+    """Put the summaries of a sweep's parts together."""
     rows = 0
     status: dict[str, int] = {}
     ranges: dict[str, tuple[float, float]] = {}
     best: list[dict[str, Any]] = []
-    for record in records:
-        rows += record.stop - record.start
-        for name, count in record.status.items():
+    for summary in summaries:
+        rows += summary.stop - summary.start
+        for name, count in summary.status.items():
             status[name] = status.get(name, 0) + count
-        for name, (low, high) in record.ranges.items():
+        for name, (low, high) in summary.ranges.items():
             seen = ranges.get(name, (low, high))
             ranges[name] = (min(low, seen[0]), max(high, seen[1]))
-        best.extend(record.best)
+        best.extend(summary.best)
     order = {name: k for k, name in enumerate(study.outputs)}
     ranges = dict(sorted(ranges.items(), key=lambda item: order[item[0]]))
     status = dict(sorted(status.items(), key=lambda item: -item[1]))

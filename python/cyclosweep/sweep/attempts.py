@@ -1,0 +1,196 @@
+"""Parts of a study computed through an executor, each attempted up to three times."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter, deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import AbstractContextManager
+from dataclasses import replace
+
+import polars as pl
+
+from cyclosweep.errors import SweepError
+from cyclosweep.sweep.dataset import Dataset, Part
+from cyclosweep.sweep.objective import Objective
+from cyclosweep.sweep.study import Study
+from cyclosweep.sweep.summary import PartSummary
+
+__all__ = ["run_shards", "write_parts"]
+
+_ATTEMPTS = 3
+# The study that tasks bring to this process over and over.
+_STUDIES: dict[tuple[str, Objective | None], Study] = {}
+
+
+def write_part(dataset: Dataset, part: Part) -> PartSummary:
+    """Write one part unless it is whole already; what a worker runs.
+
+    A lock that dies with its process keeps two writers from the same part.
+    """
+    with dataset.lock(part.stem):
+        return dataset.summary(part) or dataset.write(part)
+
+
+def write_parts(dataset: Dataset, parts: Sequence[Part]) -> list[PartSummary | Exception]:
+    """Write several parts, what a worker runs: a summary or the reason for each.
+
+    A study's tables are made once a process, however many tasks bring it along.
+    """
+    dataset = replace(dataset, study=_study_of_this_process(dataset.study))
+    outcomes: list[PartSummary | Exception] = []
+    for part in parts:
+        try:
+            outcomes.append(write_part(dataset, part))
+        except Exception as error:
+            outcomes.append(error)
+    return outcomes
+
+
+def _study_of_this_process(study: Study) -> Study:
+    key = (study.hash, study.objective)
+    found = _STUDIES.get(key)
+    if found is None:
+        _STUDIES.clear()
+        found = _STUDIES.setdefault(key, study)
+    return found
+
+
+def run_shards(
+    dataset: Dataset,
+    parts: Sequence[Part],
+    make_executor: Callable[[], AbstractContextManager[Executor]],
+    on_done: Callable[[PartSummary], None] = lambda summary: None,
+    *,
+    parts_per_task: int = 1,
+) -> list[PartSummary]:
+    """Write parts through any executor, each attempted up to three times.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Where they belong.
+    parts : sequence of Part
+        Which ones.
+    make_executor : callable
+        Gives a context manager of an executor; called again when a worker's death broke it.
+    on_done : callable
+        Called with each part's summary.
+    parts_per_task : int
+        Parts that travel to a worker together.
+
+    Returns
+    -------
+    list of PartSummary
+
+    Raises
+    ------
+    SweepError
+        When parts failed for good, naming the first; the others are written before. When the
+        scheduler of the executor is gone.
+    """
+    run = _Run(dataset, on_done)
+    tasks = [
+        list(parts[first : first + parts_per_task])
+        for first in range(0, len(parts), parts_per_task)
+    ]
+    run.waiting.extend(tasks)
+    while run.waiting or run.suspects:
+        # What ran while a worker died goes on alone, so that only the culprit dies again.
+        alone = not run.waiting
+        if alone:
+            run.waiting.append([run.suspects.popleft()])
+        with make_executor() as executor:
+            run.drain(executor, window=1 if alone else None)
+    if run.failed:
+        first = min(run.failed)
+        raise SweepError(
+            f"{dataset.folder}: part {first} failed: {_reason(run.failed[first])}; "
+            f"{len(run.summaries)} of {len(parts)} parts written, "
+            "the same command goes on from there"
+        )
+    return run.summaries
+
+
+class _Run:
+    """The state of one `run_shards`: what waits, what was tried how often, what came of it."""
+
+    def __init__(self, dataset: Dataset, on_done: Callable[[PartSummary], None]) -> None:
+        self.dataset = dataset
+        self.on_done = on_done
+        self.waiting: deque[list[Part]] = deque()
+        self.suspects: deque[Part] = deque()
+        self.attempts: Counter[int] = Counter()
+        self.failed: dict[int, BaseException] = {}
+        self.summaries: list[PartSummary] = []
+
+    def drain(self, executor: Executor, window: int | None) -> None:
+        """Run what waits until nothing does or the executor is broken."""
+        if window is None:
+            window = 2 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
+        running: dict[Future[list[PartSummary | Exception]], list[Part]] = {}
+        broken = False
+        try:
+            while (self.waiting and not broken) or running:
+                while self.waiting and not broken and len(running) < window:
+                    task = self.waiting.popleft()
+                    self.attempts.update(part.index for part in task)
+                    try:
+                        running[executor.submit(write_parts, self.dataset, task)] = task
+                    except BrokenExecutor as gone:
+                        broken = True
+                        self.again(task, gone, crashed=True)
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    task = running.pop(future)
+                    broken = self.take_outcome(task, future) or broken
+        except BaseException:
+            for future in running:
+                future.cancel()
+            raise
+
+    def take_outcome(self, task: list[Part], future: Future[list[PartSummary | Exception]]) -> bool:
+        """Take in what became of a task; true when the executor broke under it."""
+        if future.cancelled():
+            raise SweepError(
+                f"{self.dataset.folder}: the scheduler is gone; {len(self.summaries)} parts "
+                "written, the same command goes on from there"
+            )
+        error = future.exception()
+        if error is not None:
+            self.again(task, error, crashed=True)
+            return isinstance(error, BrokenExecutor)
+        for part, outcome in zip(task, future.result(), strict=True):
+            if isinstance(outcome, PartSummary):
+                self.summaries.append(outcome)
+                self.on_done(outcome)
+            else:
+                self.again([part], outcome, crashed=False)
+        return False
+
+    def again(self, task: list[Part], error: BaseException, *, crashed: bool) -> None:
+        """Have parts tried once more, or give them up."""
+        for part in task:
+            if _is_hopeless(error):
+                self.failed[part.index] = error
+                self.waiting.clear()
+                self.suspects.clear()
+            elif self.attempts[part.index] >= _ATTEMPTS:
+                self.failed[part.index] = error
+            elif crashed:
+                self.suspects.append(part)
+            else:
+                self.waiting.append([part])
+
+
+def _is_hopeless(error: BaseException) -> bool:
+    """A full or read-only disk fails every part alike."""
+    if isinstance(error, OSError):
+        return True
+    return isinstance(error, pl.exceptions.PolarsError) and "os error" in str(error)
+
+
+def _reason(error: BaseException) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0] if lines else type(error).__name__

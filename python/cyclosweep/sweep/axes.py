@@ -1,0 +1,254 @@
+"""The axes of a space: what values an input takes, as lists, equal steps or ranges."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import hashlib
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+import polars as pl
+
+import cyclosweep._core as _core
+from cyclosweep.design.active_pins import CRITERIA
+from cyclosweep.design.drive import Drive
+from cyclosweep.design.numbers import real_numbers, whole_number
+from cyclosweep.errors import InputError
+
+__all__ = [
+    "OPTIONAL",
+    "WHOLE",
+    "Axis",
+    "Linspace",
+    "criterion_codes",
+    "is_count",
+    "known_input",
+    "linspace",
+    "listed_axis",
+    "sampled_axis",
+]
+
+WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
+"""Inputs that take whole numbers only."""
+
+OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if optional)
+"""Inputs that may be left out."""
+
+# A longer range over a count cannot be of whole numbers that make sense.
+_LONGEST_COUNT = 2**16
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis as the core knows it.
+
+    Attributes
+    ----------
+    name : str
+        The input that varies.
+    form : {"list", "linspace", "interval", "whole"}
+        How ``numbers`` are meant: the values; (from, to, steps); (low, high); (low, high).
+    numbers : ndarray
+        float64, in the input's unit.
+    """
+
+    name: str
+    form: Literal["list", "linspace", "interval", "whole"]
+    numbers: npt.NDArray[np.float64]
+
+    def values(self) -> npt.NDArray[np.float64] | None:
+        """All values in order; None for an interval or whole numbers of a range."""
+        if self.form == "list":
+            return self.numbers
+        if self.form == "linspace":
+            start, stop, steps = self.numbers
+            return np.linspace(start, stop, int(steps))
+        return None
+
+    @functools.cached_property
+    def dtype(self) -> pl.DataType:
+        """Type of the axis's column: counts where every value is one."""
+        if self.name == "criterion":
+            return pl.Enum(CRITERIA)
+        is_long = self.form == "linspace" and self.numbers[2] > _LONGEST_COUNT
+        if self.name in WHOLE and not is_long:
+            numbers = self.numbers if self.form != "linspace" else self.values()
+            assert numbers is not None
+            with np.errstate(invalid="ignore"):
+                if np.all((numbers >= 0) & (numbers < 2**32) & (numbers == np.trunc(numbers))):
+                    return pl.UInt32()
+        return pl.Float64()
+
+    def definition(self) -> dict[str, Any]:
+        """What makes this axis itself, for the study's hash and the manifest."""
+        numbers = np.ascontiguousarray(self.numbers)
+        if len(numbers) > 64:
+            digest = hashlib.sha256(numbers.tobytes()).hexdigest()
+            return {"name": self.name, "form": self.form, "count": len(numbers), "sha256": digest}
+        return {"name": self.name, "form": self.form, "numbers": [repr(float(v)) for v in numbers]}
+
+
+@dataclass(frozen=True)
+class Linspace:
+    """Equidistant values of an axis, both ends included; see :func:`linspace`."""
+
+    start: float
+    stop: float
+    steps: int
+
+    def axis(self, name: str) -> Axis:
+        """Make these values the axis of an input; InputError where it cannot take them."""
+        if self.steps < 1:
+            raise InputError(f"{name}: found {self.steps} steps, expected at least 1")
+        if name == "criterion":
+            raise InputError("criterion: expected a list of values, not a range")
+        axis = Axis(name, "linspace", np.array([self.start, self.stop, self.steps], float))
+        if is_count(name) and axis.dtype != pl.UInt32():
+            raise InputError(
+                f"{name}: {self.steps} steps from {self.start:g} to {self.stop:g} "
+                "are not whole numbers, expected whole ones"
+            )
+        return axis
+
+
+def linspace(start: float, stop: float, steps: int) -> Linspace:
+    """Equidistant values of an axis, both ends included, in constant memory.
+
+    Parameters
+    ----------
+    start, stop : float
+        First and last value, in the axis's unit.
+    steps : int
+        How many values.
+
+    Returns
+    -------
+    Linspace
+
+    Raises
+    ------
+    InputError
+        For an end that is no finite number, or steps that are no whole number.
+
+    Examples
+    --------
+    >>> linspace(0.3, 0.8, 50).steps
+    50
+    """
+    for name, value in (("start", start), ("stop", stop)):
+        if not math.isfinite(real_numbers(f"linspace: {name}", [value])[0]):
+            raise InputError(f"linspace: {name}: found {value!r}, expected a finite number")
+    return Linspace(float(start), float(stop), whole_number("linspace: steps", steps))
+
+
+def is_count(name: str) -> bool:
+    """Whether an input takes whole numbers only."""
+    return name in WHOLE
+
+
+def known_input(drive: Drive, name: str) -> str:
+    """Return the name of an input, and refuse one that a drive does not have.
+
+    Parameters
+    ----------
+    drive : Drive
+        Whose inputs.
+    name : str
+        The name.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        With the nearest name that the drive does have.
+    """
+    known = drive.inputs()
+    if name not in known:
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f", did you mean {close[0]}?" if close else ""
+        raise InputError(f"{name}: no such input of this drive{hint}")
+    return name
+
+
+def criterion_codes(values: Iterable[object]) -> list[float]:
+    """Numbers by which the core knows criteria; InputError for a name that is none."""
+    codes = []
+    for value in values:
+        if value not in CRITERIA:
+            raise InputError(f"criterion: found {value!r}, expected one of {', '.join(CRITERIA)}")
+        codes.append(float(CRITERIA.index(value)))
+    return codes
+
+
+def listed_axis(drive: Drive, name: str, values: object) -> Axis:
+    """Make an axis that takes each of its values, as every axis of a grid does.
+
+    Parameters
+    ----------
+    drive : Drive
+        What the axis belongs to.
+    name : str
+        The input that varies.
+    values : Linspace or iterable
+        Equal steps, or the values one by one in the input's unit; names for ``criterion``.
+
+    Returns
+    -------
+    Axis
+
+    Raises
+    ------
+    InputError
+        For an unknown input, no values, or one that is no number.
+    """
+    known_input(drive, name)
+    if isinstance(values, Linspace):
+        return values.axis(name)
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise InputError(f"{name}: found {values!r}, expected a list of values or linspace(...)")
+    numbers = criterion_codes(values) if name == "criterion" else real_numbers(name, values)
+    if not numbers:
+        raise InputError(f"{name}: no values, expected at least one")
+    return Axis(name, "list", np.array(numbers))
+
+
+def sampled_axis(drive: Drive, name: str, values: object) -> Axis:
+    """Make an axis for sampling: a range, or values that are drawn with equal shares.
+
+    Parameters
+    ----------
+    drive : Drive
+        What the axis belongs to.
+    name : str
+        The input that varies.
+    values : tuple of two numbers, Linspace or iterable
+        ``(low, high)`` in the input's unit, whole numbers for counts; or as for a grid.
+
+    Returns
+    -------
+    Axis
+
+    Raises
+    ------
+    InputError
+        For an unknown input, a range from high to low, or values that are no numbers.
+    """
+    known_input(drive, name)
+    if isinstance(values, tuple) and len(values) == 2 and name != "criterion":
+        low, high = real_numbers(name, values)
+        if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+            raise InputError(f"{name}: found ({low:g}, {high:g}), expected (low, high)")
+        if is_count(name) and not (low.is_integer() and high.is_integer()):
+            raise InputError(f"{name}: found ({low:g}, {high:g}), expected whole numbers")
+        return Axis(name, "whole" if is_count(name) else "interval", np.array([low, high]))
+    if isinstance(values, (str, bytes)) or not isinstance(values, (Linspace, Iterable)):
+        raise InputError(f"{name}: found {values!r}, expected (low, high) or a list of values")
+    return listed_axis(drive, name, values)

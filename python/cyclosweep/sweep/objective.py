@@ -1,0 +1,23 @@
+"""What the best variants of a study are best in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Objective"]
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What the best variants are best in.
+
+    Attributes
+    ----------
+    column : str
+        A result or an input.
+    maximise : bool
+        Whether more is better.
+    """
+
+    column: str
+    maximise: bool = False

@@ -1,0 +1,157 @@
+"""The TOML file of a study: its drive, axes, sampling, limits and objective."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+from pydantic import Field, ValidationError
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
+from cyclosweep.errors import InputError
+from cyclosweep.sweep.axes import Linspace, is_count
+from cyclosweep.sweep.objective import Objective
+from cyclosweep.sweep.space import Method, Space
+
+__all__ = ["StudyFile", "read_study_file"]
+
+
+def read_study_file(path: str | Path) -> StudyFile:
+    """Read a study file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    StudyFile
+
+    Raises
+    ------
+    InputError
+        One line that names the file, the key, what was found and what was expected.
+    """
+    table = read_toml(path)
+    try:
+        return StudyFile.model_validate(table)
+    except ValidationError as error:
+        raise InputError(f"{path}: {one_line(error)}") from None
+
+
+class _Sample(TomlTable):
+    method: Method = "grid"
+    count: int | None = Field(default=None, gt=0)
+    seed: int = Field(default=0, ge=0)
+    file: str | None = None
+
+
+class _Range(TomlTable):
+    start: float = Field(alias="from", allow_inf_nan=False)
+    stop: float = Field(alias="to", allow_inf_nan=False)
+    steps: int | None = Field(default=None, ge=1)
+
+
+class _Values(TomlTable):
+    values: list[float | str] = Field(min_length=1)
+
+
+class _Limit(TomlTable):
+    min: float | None = None
+    max: float | None = None
+
+
+class _ObjectiveTable(TomlTable):
+    minimise: str | None = None
+    maximise: str | None = None
+
+
+class StudyFile(TomlTable):
+    """The tables of a study file."""
+
+    drive: str = "reference-87"
+    loads_tn: list[float] | None = None
+    sample: _Sample = _Sample()
+    axes: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    limits: dict[str, _Limit] = Field(default_factory=dict)
+    objective: _ObjectiveTable | None = None
+
+    def space(self, folder: Path) -> Space:
+        """Return the file's space; files that it names are taken from ``folder``."""
+        drive = Drive.load(self.drive, beside=folder)
+        return self._table(drive, folder) if self.sample.method == "table" else self._drawn(drive)
+
+    def bounds(self) -> dict[str, tuple[float | None, float | None]]:
+        """Least and greatest value of each limited column, None where there is none."""
+        return {name: (limit.min, limit.max) for name, limit in self.limits.items()}
+
+    def chosen_objective(self) -> Objective | None:
+        """Return what the best variants are best in; None where the file does not say."""
+        if self.objective is None:
+            return None
+        wanted = self.objective
+        if (wanted.minimise is None) == (wanted.maximise is None):
+            raise InputError("objective: expected either minimise or maximise")
+        return Objective(wanted.minimise or wanted.maximise or "", wanted.maximise is not None)
+
+    def _table(self, drive: Drive, folder: Path) -> Space:
+        if self.sample.file is None:
+            raise InputError("sample.file: missing, expected the table's CSV or Parquet file")
+        if self.axes:
+            raise InputError("axes: not with method table, whose columns are the axes")
+        path = folder / self.sample.file
+        try:
+            reads_parquet = path.suffix == ".parquet"
+            frame = pl.read_parquet(path) if reads_parquet else pl.read_csv(path)
+        except (OSError, pl.exceptions.PolarsError) as error:
+            raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
+        try:
+            return Space.table(drive, frame)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
+
+    def _drawn(self, drive: Drive) -> Space:
+        if not self.axes:
+            raise InputError("axes: none, expected at least one")
+        if self.sample.file is not None:
+            raise InputError("sample.file: only for method table")
+        is_grid = self.sample.method == "grid"
+        axes = {name: self._axis(name, spec, is_grid) for name, spec in self.axes.items()}
+        if is_grid:
+            if self.sample.count is not None:
+                raise InputError("sample.count: not for a grid, whose axes decide the count")
+            return Space.grid(drive, **axes)
+        if self.sample.count is None:
+            raise InputError(f"sample.count: missing, expected for method {self.sample.method}")
+        make = {
+            "sobol": Space.sobol,
+            "latin-hypercube": Space.latin_hypercube,
+            "random": Space.random,
+        }[self.sample.method]
+        return make(drive, self.sample.count, seed=self.sample.seed, **axes)
+
+    def _axis(self, name: str, spec: dict[str, Any], is_grid: bool) -> Any:
+        try:
+            if "values" in spec:
+                return list(_Values.model_validate(spec).values)
+            parsed = _Range.model_validate(spec)
+        except ValidationError as error:
+            raise InputError(f"axes.{name}.{one_line(error)}") from None
+        if parsed.steps is not None:
+            return Linspace(parsed.start, parsed.stop, parsed.steps)
+        if is_grid:
+            if is_count(name):
+                return _whole_numbers(name, parsed.start, parsed.stop)
+            raise InputError(f"axes.{name}.steps: missing, expected for a grid")
+        return (parsed.start, parsed.stop)
+
+
+def _whole_numbers(name: str, start: float, stop: float) -> Linspace:
+    if not (start.is_integer() and stop.is_integer() and start <= stop):
+        raise InputError(
+            f"axes.{name}: found {start:g} to {stop:g}, expected whole numbers from low to high"
+        )
+    return Linspace(start, stop, int(stop - start) + 1)
