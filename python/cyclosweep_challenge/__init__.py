@@ -1,4 +1,4 @@
-"""Independent rig, sealed answers, scoring and opponents: the proof of the diagnosis."""
+"""The proof of the diagnosis: independent rig, committed answers, scoring and opponents."""
 
 from __future__ import annotations
 

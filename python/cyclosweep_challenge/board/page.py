@@ -190,8 +190,8 @@ def write_page(score: Score, exhibits: Sequence[Exhibit], path: Path) -> None:
         '<meta name="viewport" content="width=device-width">'
         f"<title>Challenge, seed {about['seed']}</title><style>{STYLE}</style></head><body>"
         f"<h1>Challenge: {about['cases']} concealed recordings</h1>"
-        f"<p>Seed {about['seed']}, mix {escape(str(about['mix']))}. Answers were sealed before "
-        f"any diagnosis ran; SHA-256 over all their hashes: <code>{about['root']}</code></p>"
+        f"<p>Seed {about['seed']}, mix {escape(str(about['mix']))}. The hashes of the answers were "
+        f"published before any diagnosis ran; SHA-256 over them: <code>{about['root']}</code></p>"
         f"<h2>Figures and targets</h2>{_figures(score)}"
         f'<h2>Power, naming, probabilities</h2><div class="row">{charts}</div>'
         f"<h2>Opponents on the same recordings</h2>{_opponents(score)}"

@@ -18,7 +18,7 @@ from cyclosweep_challenge.record.compare import compare
 from cyclosweep_challenge.record.paper import write_pages, write_paper
 from cyclosweep_challenge.record.parts import CONTEST, CONTEST_POOR, COUNTS, FULL, SUBSET
 from cyclosweep_challenge.record.run import FLAGS, Kept, Record, run_record
-from cyclosweep_challenge.record.verify import verify_record
+from cyclosweep_challenge.record.verify import verify_log, verify_record
 from cyclosweep_challenge.runner.folders import alone
 from cyclosweep_challenge.runner.run import RECORD_SEED
 from cyclosweep_challenge.runner.work import Options, OutOfTimeError
@@ -38,6 +38,12 @@ def _parser() -> argparse.ArgumentParser:
     out.add_argument("--out", type=Path, metavar="DIR", help="folder of the record")
     out.add_argument(
         "--pages", type=Path, metavar="DIR", help="write the pages there again, from their figures"
+    )
+    out.add_argument(
+        "--verify-log",
+        type=Path,
+        metavar="FILE",
+        help="check a published log, and the figures beside it, without the record's folder",
     )
     add("--seed", type=int, default=RECORD_SEED, help="a multiple of ten (default %(default)s)")
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes at a time")
@@ -85,13 +91,28 @@ def _run(given: argparse.Namespace) -> int:
         for page in write_pages(given.pages):
             screen.print(f"written: {page}")
         return 0
+    if given.verify_log is not None:
+        return _report(
+            _verify_log(given.verify_log), "lines, order and head of the log fit", screen
+        )
     if not given.only_verify:
         _make(given, screen)
     if given.verify or given.only_verify:
         complaints = verify_record(given.out, max(1, given.verify or 1))
-        screen.print("\n".join(complaints) or "verified: seals, order, answers and recordings fit")
-        return 1 if complaints else 0
+        return _report(complaints, "hashes, order, answers and recordings fit", screen)
     return 0
+
+
+def _report(complaints: Sequence[str], good: str, screen: Console) -> int:
+    """Print what does not fit, or that all does; return the exit status."""
+    screen.print("\n".join(complaints) or f"verified: {good}")
+    return 1 if complaints else 0
+
+
+def _verify_log(log: Path) -> list[str]:
+    """Check a log, with the figures of its page where they lie beside it."""
+    figures = log.with_name(log.name.replace("-published.jsonl", ".json"))
+    return verify_log(log, figures if figures != log and figures.exists() else None)
 
 
 def _make(given: argparse.Namespace, screen: Console) -> None:

@@ -25,6 +25,8 @@ class Ledger:
     ----------
     file : pathlib.Path
         File of the log; made at the first line.
+    repair : bool
+        Take a last line that a kill cut short out of the file; it never counted.
 
     Raises
     ------
@@ -32,14 +34,13 @@ class Ledger:
         If a line was changed or taken out.
     """
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, *, repair: bool = True) -> None:
         self.file = file
         self.head = START
         self.lines: list[dict[str, Any]] = []
         text = file.read_text() if file.exists() else ""
         whole, _, cut = text.rpartition("\n")
-        if cut:
-            # A line that a kill cut short never counted.
+        if cut and repair:
             file.write_text(whole + "\n" if whole else "")
         for number, line in enumerate(whole.splitlines(), start=1):
             entry = json.loads(line)

@@ -50,7 +50,7 @@ def origin(content: Plain, log: Sequence[Plain], name: str, command: str) -> str
         table(("", ""), rows)
         + "\n\n"
         + table(("part", "done", "planned", "what"), counted)
-        + f"\n\nAll numbers are in [{name}.json]({name}.json), the root of every slice of sealed "
-        f"answers with the time of its publication in "
+        + f"\n\nAll numbers are in [{name}.json]({name}.json), the root over the answers "
+        f"of every slice with the time of its publication in "
         f"[{name}-published.jsonl]({name}-published.jsonl)."
     )

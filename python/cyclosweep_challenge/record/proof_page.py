@@ -49,7 +49,7 @@ def proof_page(
 
 def _head(content: Plain, log: Sequence[Plain]) -> str:
     return (
-        "# The proof: concealed physics, sealed answers, opponents, and a real drive\n\n"
+        "# The proof: concealed physics, committed answers, opponents, and a real drive\n\n"
         "Written by `make proof-record` from the run of record; not edited by hand. What is "
         "concealed and how, and what the tiers mean: [challenge.md](../docs/challenge.md). "
         "Every figure stands with its 95 % interval in brackets: exact (Clopper and Pearson) for "
@@ -238,11 +238,11 @@ For someone who distrusts all of it:
    may be stopped and called again, or run in pieces with `RECORD_FLAGS="--minutes M"`: all parts
    grow together, and what is finished is scored. They write their pages into `proof`: `git diff`
    shows what is different, `git checkout proof` takes it back.
-2. **The answers were sealed before anything was diagnosed.** The root over the answers of each
+2. **The answers were fixed before anything was diagnosed.** The root over the answers of each
    slice stands in the log before that slice is diagnosed, every line of the log holds the hash of
    the line before, and the last one's hash is printed above.
    `python -m cyclosweep_challenge.record --out DIR --only-verify --verify 20` checks the log, its
-   order, the seals and the kept diagnoses, and makes every twentieth recording and answer again
+   order, the answers and the kept diagnoses, and makes every twentieth recording and answer again
    from the seed (the same versions of the libraries, and a like processor, give the same bytes).
    It needs the record's folder, which holds thousands of files and is not in this repository; a
    hash also covers a random nonce, so that a run of one's own has other roots for the same answers.

@@ -25,10 +25,10 @@ from cyclosweep_challenge.runner.folders import LOCK, Folders
 from cyclosweep_challenge.runner.stages import (
     diagnose,
     gallery,
-    open_answers,
     opponents_said,
     predict_all,
     prepare,
+    reveal_answers,
 )
 from cyclosweep_challenge.runner.work import Options, OutOfTimeError, program_of, work
 from cyclosweep_challenge.scoring.figures import Figure, timing
@@ -159,7 +159,7 @@ class Record:
             part=part.name,
             first=first,
             last=last,
-            root=said_hash(new, folders),
+            root=diagnoses_hash(new, folders),
         )
         if not self.kept.recordings:
             for entry in new:
@@ -168,7 +168,7 @@ class Record:
     def _publish(
         self, part: Part, first: int, last: int, new: Sequence[Entry], screen: Console
     ) -> None:
-        """Make and seal a slice, and write down its root before anybody diagnoses it."""
+        """Make a slice and write down the root of its answers before anybody diagnoses it."""
         folders = self.folders(part)
         published = self.ledger.find("sealed", part.name, first)
         if published is None:
@@ -179,7 +179,7 @@ class Record:
             self.ledger.append(
                 "sealed", part=part.name, first=first, last=last, answers=len(new), root=root
             )
-            screen.print(f"{part.name} {first} to {last - 1} sealed: SHA-256 {root}")
+            screen.print(f"{part.name} {first} to {last - 1} committed: SHA-256 {root}")
         elif published["root"] != root:
             raise SealError(f"{part.name} from {first}: root is {root}, not what was published")
 
@@ -205,7 +205,7 @@ class Record:
             folders, done = self.folders(part), self.ledger.done(part.name)
             plan = self.plan(part, done)
             self._check_said(part, plan, folders)
-            for outcome in open_answers(plan, folders, self.kept.options):
+            for outcome in reveal_answers(plan, folders):
                 outcomes.append(replace(outcome, key=f"{part.name}/{outcome.key}"))
             known = {entry.key for entry in plan}
             for key, words in opponents_said(folders).items():
@@ -217,7 +217,7 @@ class Record:
         """Make sure that the kept diagnoses are those that were written down."""
         for line in self.ledger.lines:
             if line["event"] == "diagnosed" and line["part"] == part.name:
-                found = said_hash(plan[line["first"] : line["last"]], folders)
+                found = diagnoses_hash(plan[line["first"] : line["last"]], folders)
                 if found != line["root"]:
                     raise SealError(
                         f"{part.name} from {line['first']}: diagnoses changed after they were kept"
@@ -272,7 +272,7 @@ class Record:
         return timing([o.elapsed_s for o in outcomes], elapsed, agree)
 
 
-def said_hash(plan: Sequence[Entry], folders: Folders) -> str:
+def diagnoses_hash(plan: Sequence[Entry], folders: Folders) -> str:
     """One hash over the kept diagnoses of some cases."""
     return root_hash(
         (

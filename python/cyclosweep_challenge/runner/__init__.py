@@ -1,1 +1,1 @@
-"""A whole challenge: recordings, sealed answers, diagnoses, opponents and score; resumable."""
+"""A whole challenge: recordings, committed answers, diagnoses, opponents and score; resumable."""

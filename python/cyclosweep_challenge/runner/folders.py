@@ -8,7 +8,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from cyclosweep_challenge.trial.seal import new_passphrase, root_hash
+from cyclosweep_challenge.trial.seal import root_hash
 
 LOCK = ".lock"
 """File by which a process has a run's folder to itself."""
@@ -43,18 +43,12 @@ class Folders:
         for folder in (self.recordings, self.answers, self.diagnoses, self.opponents):
             folder.mkdir(parents=True, exist_ok=True)
 
-    def passphrase(self, given: str) -> str:
-        """Key of this run's answers."""
-        if given:
-            return given
-        file = self.out / "answers.key"
-        if not file.exists():
-            file.touch(mode=0o600)
-            file.write_text(new_passphrase())
-        return file.read_text().strip()
+    def answer(self, key: str) -> Path:
+        """File of one answer."""
+        return self.answers / f"{key}.json"
 
     def hashes(self) -> dict[str, str]:
-        """Return the published hash of every sealed answer, by key."""
+        """Return the published hash of every answer, by key."""
         file = self.answers / "HASHES.txt"
         lines = file.read_text().splitlines() if file.exists() else []
         return dict(line.split(" ", 1) for line in lines if line)

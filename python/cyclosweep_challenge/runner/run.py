@@ -18,10 +18,10 @@ from cyclosweep_challenge.runner.folders import Folders, alone
 from cyclosweep_challenge.runner.stages import (
     diagnose,
     gallery,
-    open_answers,
     opponents_said,
     predict_all,
     prepare,
+    reveal_answers,
 )
 from cyclosweep_challenge.runner.work import Options, work
 from cyclosweep_challenge.scoring.score import Score, make_score
@@ -100,7 +100,7 @@ def run_challenge(
     Raises
     ------
     SealError
-        If an answer was changed after it was sealed.
+        If an answer was changed after its hash was published.
     OutOfTimeError
         If ``options.until`` is over before the last case; what is done is kept.
     ValueError
@@ -128,7 +128,7 @@ def _run(
     """Run a challenge whose folder nobody else uses."""
     _claim(folders.out, about)
     root = prepare(plan, folders, options, screen)
-    screen.print(f"answers sealed: SHA-256 {root} over {len(folders.hashes())} answers")
+    screen.print(f"answers committed: SHA-256 {root} over {len(folders.hashes())} answers")
     diagnose(plan, folders, options, screen)
     predict_all(plan, folders, options, screen)
     if options.opponents != "none" and absent():
@@ -142,7 +142,7 @@ def _run(
         home=about.get("noise", "white"),
     )
     work("opponents", options.workers, meetings, screen, until=options.until)
-    outcomes = open_answers(plan, folders, options)
+    outcomes = reveal_answers(plan, folders)
     score = make_score(outcomes, opponents_said(folders), about | {"root": root})
     (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
     (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))

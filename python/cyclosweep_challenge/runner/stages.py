@@ -1,4 +1,4 @@
-"""Stages of a challenge: recordings and sealed answers, diagnoses, predictions, opened answers."""
+"""Stages of a challenge: recordings and committed answers, diagnoses, predictions, scoring."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from cyclosweep_challenge.runner.folders import Folders
 from cyclosweep_challenge.runner.work import Options, program_of, work
 from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep_challenge.trial.plan import Entry, make_entry
-from cyclosweep_challenge.trial.seal import seal, unseal
+from cyclosweep_challenge.trial.seal import commit_answer, reveal_answer
 
 
-def _prepare(entry: Entry, recordings: Path, answers: Path, passphrase: str) -> tuple[str, str]:
-    """Make one case, write its recording, seal its answer; return key and hash."""
+def _prepare(entry: Entry, recordings: Path, target: Path) -> tuple[str, str]:
+    """Make one case, write its recording, commit to its answer; return key and hash."""
     case = make_entry(entry)
     # With nothing missing there is no repaired model whose predictions would be scored, and a
     # programme for each of ten thousand nulls would take gigabytes.
@@ -42,12 +42,11 @@ def _prepare(entry: Entry, recordings: Path, answers: Path, passphrase: str) -> 
     if predicted:
         answer["held_out_clean_deg"] = case.held_out_clean_deg.round(5).tolist()
         answer["held_out_read_deg"] = case.held_out_read_deg.round(5).tolist()
-    return entry.key, seal(answer, answers / f"{entry.key}.sealed", passphrase)
+    return entry.key, commit_answer(answer, target)
 
 
 def prepare(plan: Sequence[Entry], folders: Folders, options: Options, console: Console) -> str:
-    """Write every recording and seal every answer; return the root hash."""
-    passphrase = folders.passphrase(options.passphrase)
+    """Write every recording, commit to every answer; return the root of the hashes."""
     hashes = folders.hashes()
     missing = [entry for entry in plan if entry.key not in hashes]
     made = 0
@@ -59,9 +58,7 @@ def prepare(plan: Sequence[Entry], folders: Folders, options: Options, console: 
         if made % 200 == 0:
             folders.publish(hashes)
 
-    jobs = [
-        (_prepare, (entry, folders.recordings, folders.answers, passphrase)) for entry in missing
-    ]
+    jobs = [(_prepare, (entry, folders.recordings, folders.answer(entry.key))) for entry in missing]
     try:
         work("recordings", options.workers, jobs, console, keep, until=options.until)
     finally:
@@ -69,15 +66,11 @@ def prepare(plan: Sequence[Entry], folders: Folders, options: Options, console: 
     return root
 
 
-def _removed(entry: Entry, folders: Folders, options: Options) -> str:
+def _removed(entry: Entry, folders: Folders) -> str:
     """Effect that a case's diagnosis has to do without; empty for none."""
     if entry.stratum.tier != "C5-removed":
         return ""
-    answer = unseal(
-        folders.answers / f"{entry.key}.sealed",
-        folders.passphrase(options.passphrase),
-        folders.hashes()[entry.key],
-    )
+    answer = reveal_answer(folders.answer(entry.key), folders.hashes()[entry.key])
     return str(answer["removed"])
 
 
@@ -86,7 +79,7 @@ def diagnose(plan: Sequence[Entry], folders: Folders, options: Options, console:
     waiting: dict[tuple[str, ...], list[str]] = {}
     for entry in plan:
         if not (folders.diagnoses / entry.key / "diagnosis.json").exists():
-            removed = _removed(entry, folders, options)
+            removed = _removed(entry, folders)
             flags: tuple[str, ...] = (options.removal_flag, removed) if removed else ()
             waiting.setdefault(flags, []).append(entry.key)
     jobs: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
@@ -137,13 +130,12 @@ def held_out_ratio(answer: dict[str, Any], prediction: Path) -> HeldOut:
     return HeldOut(known=float(error / own), fitted=float(error / fitted))
 
 
-def open_answers(plan: Sequence[Entry], folders: Folders, options: Options) -> list[Outcome]:
-    """Open the answers, check their hashes and lay them beside the diagnoses."""
-    passphrase = folders.passphrase(options.passphrase)
+def reveal_answers(plan: Sequence[Entry], folders: Folders) -> list[Outcome]:
+    """Reveal the answers, check their hashes and score the diagnoses by them."""
     hashes = folders.hashes()
     outcomes = []
     for entry in plan:
-        answer = unseal(folders.answers / f"{entry.key}.sealed", passphrase, hashes[entry.key])
+        answer = reveal_answer(folders.answer(entry.key), hashes[entry.key])
         ratio = held_out_ratio(answer, folders.diagnoses / entry.key / "prediction.csv")
         for column in ("held_out_clean_deg", "held_out_read_deg", "files"):
             answer.pop(column, None)

@@ -1,4 +1,4 @@
-"""Check a finished challenge from its folder alone: seals, answers and recordings."""
+"""Check a finished challenge from its folder alone: hashes, answers and recordings."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from tempfile import TemporaryDirectory
 
 from cyclosweep_challenge.runner.run import plan_of
 from cyclosweep_challenge.trial.plan import Entry, make_entry
-from cyclosweep_challenge.trial.seal import SealError, root_hash, unseal
+from cyclosweep_challenge.trial.seal import SealError, reveal_answer, root_hash
 
 
 def verify_run(out: str | Path, every: int = 1) -> list[str]:
     """Check that a challenge is what it says it is.
 
-    The root hash must follow from the published hashes, every answer must open to what was
+    The root hash must follow from the published hashes, every answer must be the one that was
     published, and recordings and answers must come out the same when made again from the seed.
 
     Parameters
     ----------
     out : str or pathlib.Path
-        Folder of the run, with its ``answers.key``.
+        Folder of the run.
     every : int
         Check each so many-th case only.
 
@@ -36,19 +36,16 @@ def verify_run(out: str | Path, every: int = 1) -> list[str]:
     lines = (folder / "answers" / "HASHES.txt").read_text().splitlines()
     hashes = dict(line.split(" ", 1) for line in lines)
     published = (folder / "answers" / "ROOT.txt").read_text().split()[0]
-    passphrase = (folder / "answers.key").read_text().strip()
     complaints = []
     if root_hash(hashes.items()) != published:
         complaints.append("ROOT.txt: not the hash of HASHES.txt")
     for entry in plan_of(about, len(hashes))[::every]:
-        complaints += verify_entry(entry, folder, passphrase, hashes)
+        complaints += verify_entry(entry, folder, hashes)
     return complaints
 
 
-def verify_entry(
-    entry: Entry, folder: Path, passphrase: str, hashes: Mapping[str, str]
-) -> list[str]:
-    """Check one case: its seal, and that its answer and recording are what its seed gives.
+def verify_entry(entry: Entry, folder: Path, hashes: Mapping[str, str]) -> list[str]:
+    """Check one case: its hash, and that its answer and recording are what its seed gives.
 
     Parameters
     ----------
@@ -56,17 +53,14 @@ def verify_entry(
         The case.
     folder : pathlib.Path
         Folder of the run. Where recordings were deleted, those made again are compared with
-        the hashes in the sealed answer.
-    passphrase : str
-        Key of the answers.
+        the hashes in the answer.
     hashes : mapping
         Published hashes by key.
     """
     if entry.key not in hashes:
         return [f"{entry.key}: no hash was published"]
-    file = folder / "answers" / f"{entry.key}.sealed"
     try:
-        answer = unseal(file, passphrase, hashes[entry.key])
+        answer = reveal_answer(folder / "answers" / f"{entry.key}.json", hashes[entry.key])
     except (SealError, OSError) as error:
         return [str(error)]
     case = make_entry(entry)

@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import os
 import time
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -43,7 +44,7 @@ class Options:
     costly_limit : int
         Recordings of each stratum that the costly opponents see.
     passphrase : str
-        Key of the answers; drawn at random and kept beside the run where empty.
+        Deprecated and without effect: answers are committed to by a hash and not encrypted.
     until : float
         Clock of ``time.monotonic`` after which no further work is begun [s].
     """
@@ -58,6 +59,15 @@ class Options:
     costly_limit: int = 300
     passphrase: str = ""
     until: float = math.inf
+
+    def __post_init__(self) -> None:
+        """Say that a passphrase does nothing any more."""
+        if self.passphrase:
+            warnings.warn(
+                "passphrase: deprecated and without effect, answers are no longer encrypted",
+                DeprecationWarning,
+                stacklevel=3,
+            )
 
     def batches(self, items: Sequence[T]) -> Iterator[Sequence[T]]:
         """Share work out in batches, about two for every worker if there are several."""

@@ -1,1 +1,1 @@
-"""One concealed recording: what is hidden how, how visible it is, and the sealed answer."""
+"""One concealed recording: what is hidden how, how visible it is, and its answer."""

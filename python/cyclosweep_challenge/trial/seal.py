@@ -1,92 +1,78 @@
-"""Sealed answers: encrypted, with a hash that is public before any diagnosis runs."""
+"""Commit and reveal: the hash of an answer is published before any diagnosis runs.
+
+An answer is written with a random nonce as canonical JSON; its commitment is the SHA-256 of that
+file, so that ``sha256sum`` checks it. The file stays in a folder that the diagnosis is not shown,
+and is compared with its commitment when the answers are revealed. Nothing is encrypted: what is
+proved is that an answer was not changed after its hash was published.
+"""
 
 from __future__ import annotations
 
 import hashlib
-import hmac
 import json
 import secrets
-import zlib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-MAGIC = b"cyclosweep.sealed/1\n"
-SALT, TAG = 16, 32
+LAST_ENCRYPTED = "c770241"
+"""Last commit that can open the encrypted answers (``.sealed``) of earlier records."""
 
 
 class SealError(ValueError):
-    """An answer is not the one that was sealed."""
+    """An answer is not the one whose hash was published."""
 
 
-def _keys(passphrase: str, salt: bytes) -> tuple[bytes, bytes]:
-    """Keys for hiding and for authenticating, from a passphrase and one answer's salt."""
-    # The passphrase is 256 random bits unless the scorer gives one; a single hash is enough.
-    root = hashlib.sha256(passphrase.encode() + salt).digest()
-    return hashlib.sha256(root + b"hide").digest(), hashlib.sha256(root + b"tag").digest()
-
-
-def _veil(data: bytes, key: bytes) -> bytes:
-    """Exclusive-or of the data with the key's SHAKE-256 stream; its own inverse."""
-    stream = hashlib.shake_256(key).digest(len(data))
-    return (int.from_bytes(data, "big") ^ int.from_bytes(stream, "big")).to_bytes(len(data), "big")
-
-
-def new_passphrase() -> str:
-    """Return 256 random bits as text."""
-    return secrets.token_hex(32)
-
-
-def seal(answer: dict[str, Any], path: Path, passphrase: str) -> str:
-    """Write an answer so that it can be neither read nor exchanged.
+def commit_answer(answer: dict[str, Any], path: Path) -> str:
+    """Write an answer and return the hash that commits to it.
 
     Parameters
     ----------
     answer : dict
         The answer; anything JSON can hold.
     path : pathlib.Path
-        File to write.
-    passphrase : str
-        Kept by whoever scores.
+        JSON file to write, whole or not at all.
 
     Returns
     -------
     str
-        SHA-256 of the plain answer [hex]. The answer is salted with random bits first, so that
-        guessing answers and hashing them leads nowhere.
+        SHA-256 of the file [hex]. The 256 random bits of its nonce keep anyone from finding the
+        answer by hashing likely ones.
     """
-    salted = {"nonce": secrets.token_hex(16), "answer": answer}
-    plain = json.dumps(salted, sort_keys=True, separators=(",", ":")).encode()
-    salt = secrets.token_bytes(SALT)
-    hide, tag = _keys(passphrase, salt)
-    hidden = _veil(zlib.compress(plain, 6), hide)
-    body = MAGIC + salt + hmac.new(tag, salt + hidden, hashlib.sha256).digest() + hidden
+    content = {"nonce": secrets.token_hex(32), "answer": answer}
+    plain = json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
     partial = path.with_suffix(".tmp")
-    partial.write_bytes(body)
+    partial.write_bytes(plain)
     partial.replace(path)
     return hashlib.sha256(plain).hexdigest()
 
 
-def unseal(path: Path, passphrase: str, expected_hash: str) -> dict[str, Any]:
-    """Open an answer and check that it is the one whose hash was published.
+def reveal_answer(path: Path, published: str) -> dict[str, Any]:
+    """Read an answer back and check that it is the one that was committed to.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        File that `commit_answer` wrote.
+    published : str
+        Its published hash [hex].
 
     Raises
     ------
     SealError
-        If the file was changed, the passphrase is another, or the hash does not match.
+        If the file's hash is another, or if an earlier version encrypted the answer.
+    OSError
+        If there is no such file.
     """
-    body = path.read_bytes()
-    if not body.startswith(MAGIC):
-        raise SealError(f"{path.name}: not a sealed answer")
-    rest = body[len(MAGIC) :]
-    salt, mac, hidden = rest[:SALT], rest[SALT : SALT + TAG], rest[SALT + TAG :]
-    hide, tag = _keys(passphrase, salt)
-    if not hmac.compare_digest(mac, hmac.new(tag, salt + hidden, hashlib.sha256).digest()):
-        raise SealError(f"{path.name}: changed since it was sealed, or another passphrase")
-    plain = zlib.decompress(_veil(hidden, hide))
+    if not path.exists() and path.with_suffix(".sealed").exists():
+        raise SealError(
+            f"{path.with_suffix('.sealed').name}: encrypted by an earlier version; "
+            f"commit {LAST_ENCRYPTED} can open it"
+        )
+    plain = path.read_bytes()
     found = hashlib.sha256(plain).hexdigest()
-    if found != expected_hash:
-        raise SealError(f"{path.name}: hash is {found}, published was {expected_hash}")
+    if found != published:
+        raise SealError(f"{path.name}: hash is {found}, published was {published}")
     answer: dict[str, Any] = json.loads(plain)["answer"]
     return answer
 

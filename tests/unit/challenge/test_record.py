@@ -19,7 +19,7 @@ from cyclosweep_challenge.record.ledger import Ledger
 from cyclosweep_challenge.record.paper import write_pages, write_paper
 from cyclosweep_challenge.record.parts import COLOURED, CONTEST, CONTEST_POOR, FULL, SUBSET, Size
 from cyclosweep_challenge.record.run import Kept, Record, run_record
-from cyclosweep_challenge.record.verify import verify_record
+from cyclosweep_challenge.record.verify import verify_log, verify_record
 from cyclosweep_challenge.rig.noise import NOISES
 from cyclosweep_challenge.runner.folders import LOCK
 from cyclosweep_challenge.runner.work import Options
@@ -161,6 +161,39 @@ def test_a_changed_log_or_diagnosis_is_noticed(tmp_path: Path, whole: Path) -> N
     with pytest.raises(SealError, match="does not follow"):
         Record(tmp_path, 40, SMALL)
     assert "does not follow" in verify_record(tmp_path)[0]
+
+
+@pytest.mark.parametrize("name", ["proof", "contest", "contest-poor"])
+def test_published_logs_are_unbroken_and_lead_to_their_figures(name: str) -> None:
+    log, figures = PROOF / f"{name}-published.jsonl", PROOF / f"{name}.json"
+    assert verify_log(log, figures) == []
+    with pytest.raises(SystemExit) as ended:
+        main(["--verify-log", str(log)])
+    assert ended.value.code == 0
+
+
+def test_what_is_wrong_with_a_published_log_is_found(tmp_path: Path) -> None:
+    log, figures = PROOF / "proof-published.jsonl", PROOF / "proof.json"
+    lines = log.read_text().splitlines(keepends=True)
+
+    def complaints(*kept: str) -> list[str]:
+        (tmp_path / "log.jsonl").write_text("".join(kept))
+        return verify_log(tmp_path / "log.jsonl", figures)
+
+    assert complaints(*lines) == []
+    assert "line 3 does not follow" in complaints(*lines[:2], *lines[3:])[0]
+    assert "head of the log" in complaints(*lines[:-1])[0]
+    assert complaints()[0] == "log.jsonl: no lines"
+    # Written anew with hashes that fit: a slice was diagnosed before it was published.
+    swapped = Ledger(tmp_path / "again.jsonl")
+    for entry in map(json.loads, [lines[1], lines[0]]):
+        swapped.append(
+            entry["event"],
+            **{k: entry[k] for k in ("part", "first", "last", "answers") if k in entry},
+        )
+    assert verify_log(tmp_path / "again.jsonl") == [
+        "null from 0: diagnosed before it was published"
+    ]
 
 
 def test_words_of_the_opponents_are_laid_beside_the_right_part(whole: Path, tmp_path: Path) -> None:

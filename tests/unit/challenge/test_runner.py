@@ -29,7 +29,7 @@ def run(cases: int, out: Path, options: Options = OPTIONS) -> tuple[dict, str]:
 def test_runs_goes_on_and_notices_a_changed_answer(tmp_path: Path) -> None:
     score, text = run(6, tmp_path)
     assert score["about"]["cases"] == 6
-    assert text.index("answers sealed: SHA-256") < text.index("figure")
+    assert text.index("answers committed: SHA-256") < text.index("figure")
     assert (tmp_path / "score.html").exists()
     first = (tmp_path / "diagnoses" / "case-000003" / "diagnosis.json").stat().st_mtime_ns
     shown = sorted(p.name for p in (tmp_path / "recordings" / "case-000000").iterdir())
@@ -40,8 +40,8 @@ def test_runs_goes_on_and_notices_a_changed_answer(tmp_path: Path) -> None:
     again = (tmp_path / "diagnoses" / "case-000003" / "diagnosis.json").stat().st_mtime_ns
     assert again == first
 
-    answer = tmp_path / "answers" / "case-000001.sealed"
-    other = tmp_path / "answers" / "case-000002.sealed"
+    answer = tmp_path / "answers" / "case-000001.json"
+    other = tmp_path / "answers" / "case-000002.json"
     answer.write_bytes(other.read_bytes())
     with pytest.raises(SealError, match="published"):
         run(8, tmp_path)
