@@ -161,7 +161,7 @@ def test_replacing_drops_the_mark_of_what_changed(reference: cs.Drive) -> None:
     assert not any(key.startswith("shaft_") for key in without.provenance)
 
 
-@pytest.mark.parametrize("name", ["shaft_4_diameter_mm", "shaft_2_keyway_depth_mm", "eccentricity"])
+@pytest.mark.parametrize("name", ["shaft_7_diameter_mm", "shaft_2_keyway_depth_mm", "eccentricity"])
 def test_replacing_what_is_not_there(reference: cs.Drive, name: str) -> None:
     with pytest.raises(cs.InputError, match=f"{name}: no such input"):
         reference.replace(**{name: 1.0})

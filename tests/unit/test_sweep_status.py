@@ -29,7 +29,7 @@ REFUSED: list[tuple[str, dict[str, float], str]] = [
     ("non_positive_dimension", {"input_inertia_kg_m2": 0.0}, "input_inertia"),
     ("non_positive_dimension", {"output_stiffness_nm_per_arcmin": 0.0}, "output_stiffness"),
     ("non_positive_dimension", {"shaft_1_diameter_mm": 0.0}, "shaft diameter"),
-    ("non_positive_dimension", {"shaft_3_end_diameter_mm": -1.0}, "shaft end diameter"),
+    ("non_positive_dimension", {"shaft_6_end_diameter_mm": -1.0}, "shaft end diameter"),
     ("negative_dimension", {"bush_wall_mm": -0.1}, "bush_wall must not be negative"),
     ("negative_dimension", {"free_play_deg": -1.0}, "free_play"),
     ("negative_dimension", {"keyway_coefficient": -1.0}, "keyway_coefficient"),
