@@ -18,7 +18,7 @@ from cyclosweep.sweep.study import Objective, Study
 if _TYPE_CHECKING:
     from cyclosweep.diagnosis import Diagnosis, diagnose
     from cyclosweep.recording import Recording
-    from cyclosweep.reference.validation import validate
+    from cyclosweep.reference.rows import validate
     from cyclosweep.simulation.simulate import Model, simulate
 
 # Imported when first asked for: SciPy takes longer to load than all a worker of a sweep needs.

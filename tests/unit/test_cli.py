@@ -109,7 +109,7 @@ def test_a_wrong_drive_is_one_line(study: Path, tmp_path: Path) -> None:
         ("output_pin_diameter_mm = 16.0", "output_pin_diameter_mm = -16.0", ("-16.0", "greater")),
         ("output_pin_diameter_mm = 16.0", "output_pin_diameter_mm = '16'", ("'16'", "number")),
         ("output_pin_diameter_mm = 16.0", "", ("output_pin_diameter_mm", "missing")),
-        ('kind = "frustum"', 'kind = "cone"', ("shaft.3", "cone", "frustum")),
+        ('kind = "frustum"', 'kind = "cone"', ("shaft.6", "cone", "frustum")),
     ):
         text = drive.read_text().replace(old, new)
         wrong = tmp_path / "wrong.toml"
@@ -164,6 +164,22 @@ def test_a_broken_fact_fails_the_validation(tmp_path: Path) -> None:
     assert result.returncode == 1
     failed = [f["fact"] for f in json.loads(result.stdout)["facts"] if f["ok"] is False]
     assert "nominal input torque T_N" in failed
+
+
+def test_validate_says_what_counts_and_what_deliberate_errors_break() -> None:
+    plain = run("validate", "--broken-models")
+    assert plain.returncode == 0, plain.stderr
+    assert "disagree and are explained, 0 disagree unexplained" in plain.stdout
+    assert "Broken by none of them: no row." in plain.stdout
+    report = json.loads(run("validate", "--json", "--broken-models").stdout)
+    assert report["counts"]["evidence"]["explained"] > 0
+    assert report["counts"]["evidence"]["fail"] == report["counts"]["identity"]["fail"] == 0
+    broken = {row["model"]: row["evidence"] + row["identity"] for row in report["broken_models"]}
+    assert broken["E halved"] > 0
+    assert min(broken.values()) > 0
+    assert report["sectors"]["published"] == [None, None, 8, None, None, None, None, None]
+    assert report["sectors"]["ours"] == [4, 6, 8, 8, 6, 8, 8, 6]
+    assert "broken_models" not in json.loads(run("validate", "--json").stdout)
 
 
 def test_a_failed_fact_without_a_number_is_still_json(tmp_path: Path) -> None:

@@ -1,26 +1,35 @@
-"""The three criteria side by side, and McIver's claim on pulsation."""
+"""The three criteria for an active pin side by side, and McIver's claim on pulsation."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import polars as pl
 
-import cyclosweep._core as _core
-from cyclosweep.design.drive import CRITERIA, Drive
+from cyclosweep.design.drive import CRITERIA, Criterion, Drive
 from cyclosweep.reference.facts import Fact, Mark
+from cyclosweep.reference.model import Model
 
-__all__ = ["facts", "pulsation"]
+__all__ = ["facts", "mciver", "pulsation"]
 
+GROUP = "three criteria"
 PIN_COUNTS = range(6, 16)
+_MCIVER: dict[Criterion, str] = {
+    "published-map": "by the reconstruction nine pins pulsate more than eight: their windows "
+    "no longer end together",
+    "inside": "",
+    "statics": "by statics neither eight nor nine pins on two discs pulsate at all: the sum of "
+    "sin^2 is the same in every position",
+}
 
 
-def facts(drive: Drive) -> Iterator[Fact]:
+def facts(model: Model, drive: Drive) -> Iterator[Fact]:
     """Figures of each criterion for one drive, for comparison only.
 
     Parameters
     ----------
+    model : Model
+        The package, or the package with one error put in.
     drive : Drive
         The drive.
 
@@ -28,8 +37,7 @@ def facts(drive: Drive) -> Iterator[Fact]:
     ------
     Fact
     """
-    group = "three criteria"
-    notes = {
+    notes: dict[Criterion, str] = {
         "published-map": "feeds the published study; a reconstruction that matches the map",
         "inside": "the hole's centre inside the pitch circle, no clipping",
         "statics": "one spring per contact, loads by sin(psi): twist from C_OS^t + C_OP/(N_OP p)",
@@ -37,17 +45,57 @@ def facts(drive: Drive) -> Iterator[Fact]:
     for criterion in CRITERIA:
         note = notes[criterion]
         mark: Mark = "reconstruction" if criterion == "published-map" else "derived"
-        active = drive.active_pins(criterion)
+        active = model.pin_map(drive, criterion)
         for name, value in (
             ("mean", active.mean),
             ("fewest", float(active.minimum)),
             ("most", float(active.maximum)),
         ):
             fact = f"active pins, {name}, {criterion}"
-            yield Fact(group, fact, None, value, "1", mark, None, note)
-        chosen = drive.replace(criterion=criterion)
-        twist = chosen.evaluate((1.0,))["twist_1tn_deg"]
-        yield Fact(group, f"twist at 1 T_N, {criterion}", None, twist, "deg", "assumed", None, note)
+            yield Fact(GROUP, fact, None, value, "1", mark, "comparison", None, note)
+        twist = model.evaluate(drive.replace(criterion=criterion))["twist_1tn_deg"]
+        fact = f"twist at 1 T_N, {criterion}"
+        yield Fact(GROUP, fact, None, twist, "deg", "assumed", "comparison", None, note)
+
+
+def mciver(model: Model) -> Iterator[Fact]:
+    """Compare McIver's claim that nine pins pulsate less with what each criterion says.
+
+    Parameters
+    ----------
+    model : Model
+        The package, or the package with one error put in.
+
+    Yields
+    ------
+    Fact
+        One row of kind ``evidence`` for each criterion; 1 means that the claim holds.
+    """
+    drive = Drive.reference_87()
+    for criterion in CRITERIA:
+        eight, nine = (
+            _pulsation(model, drive.replace(output_pin_count=pins), criterion) for pins in (8, 9)
+        )
+        yield Fact(
+            GROUP,
+            f"McIver: nine pins pulsate less than eight (1 = yes), {criterion}",
+            1.0,
+            float(nine < eight - 1e-9),
+            "1",
+            "derived",
+            "evidence",
+            0.0,
+            "cited in section 5 of the paper; on the 87:1 drive with another number of pins",
+            _MCIVER[criterion],
+        )
+
+
+def _pulsation(model: Model, drive: Drive, criterion: Criterion) -> float:
+    """(greatest - least) / mean over one turn: of stiffness by statics, else of contacts."""
+    found = model.pin_map(drive, criterion)
+    if criterion == "statics":
+        return (found.stiffness_maximum - found.stiffness_minimum) / found.stiffness_mean
+    return (found.maximum - found.minimum) / found.mean
 
 
 def pulsation(drive: Drive) -> pl.DataFrame:
@@ -73,19 +121,11 @@ def pulsation(drive: Drive) -> pl.DataFrame:
     ``statics`` an even number does not pulsate at all, nor does any number on two discs.
     """
     rows = []
-    half_sine = drive.eccentricity_mm / (2 * drive.output_pin_circle_radius_mm)
-    delta = math.asin(half_sine) / math.tau
     for discs in sorted({1, drive.disc_count}):
         for pins in PIN_COUNTS:
             row: dict[str, float] = {"disc_count": discs, "output_pin_count": pins}
-            for code, criterion in enumerate(CRITERIA):
-                (mean, low, high), (p_mean, p_low, p_high), _ = _core.active_pins(
-                    code, float(drive.ratio), discs, pins, delta, drive.hole_clocking_deg / 360
-                )
-                if criterion == "statics":
-                    mean, ripple = p_mean, p_high - p_low
-                else:
-                    ripple = high - low
-                row[criterion.replace("-", "_")] = ripple / mean
+            changed = drive.replace(disc_count=discs, output_pin_count=pins)
+            for criterion in CRITERIA:
+                row[criterion.replace("-", "_")] = _pulsation(Model(), changed, criterion)
             rows.append(row)
     return pl.DataFrame(rows)

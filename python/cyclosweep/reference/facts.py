@@ -1,13 +1,25 @@
-"""One row of a validation: what is published, what is computed, and on what it rests."""
+"""One row of the validation: what a source says, what the package computes, how the row counts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
-__all__ = ["Fact", "Mark"]
+__all__ = ["COUNTED", "KINDS", "Fact", "Kind", "Mark"]
 
-Mark = Literal["published", "derived", "reading", "assumed", "reconstruction", "identity"]
+Mark = Literal["published", "derived", "reading", "assumed", "reconstruction", "identity", "ours"]
+Kind = Literal["evidence", "identity", "input", "reconstruction", "comparison", "not computed"]
+KINDS: dict[Kind, str] = {
+    "evidence": "a number of a source that the computed one was not built from",
+    "identity": "what the formulas must fulfil whatever the dimensions: a check of the code",
+    "input": "typed into the drive, or a dimension chosen so that the number comes out",
+    "reconstruction": "a rule compared with what the rule was built from",
+    "comparison": "figures side by side; no source gives a number",
+    "not computed": "in a source, but outside the model",
+}
+"""What a row is worth, by kind."""
+COUNTED: tuple[Kind, ...] = ("evidence", "identity")
+"""The kinds that count; of the others agreement says nothing."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +41,16 @@ class Fact:
     mark : str
         What the computed number rests on: ``published`` inputs only, ``derived`` from them, a
         ``reading`` of an ambiguous print, ``assumed`` dimensions, a ``reconstruction`` that
-        matches the published map, or a mathematical ``identity``.
+        matches the published map, a mathematical ``identity``, or numbers that are ``ours`` and
+        printed nowhere.
+    kind : str
+        What the row is worth, one of :data:`KINDS`; ``evidence`` and ``identity`` count.
     tolerance : float or None
         Largest allowed distance, in the same unit; None where the row only compares.
     note : str
         Reason why nothing is computed, source, or what to make of it.
+    explanation : str
+        Why the two numbers are known to disagree; empty where they should agree.
     """
 
     group: str
@@ -42,8 +59,21 @@ class Fact:
     computed: float | None
     unit: str
     mark: Mark
+    kind: Kind
     tolerance: float | None = None
     note: str = ""
+    explanation: str = ""
+
+    def __post_init__(self) -> None:
+        if self.kind not in get_args(Kind):
+            raise ValueError(f"{self.fact}: no such kind of row, {self.kind!r}")
+        if self.counted and (self.published is None or self.tolerance is None):
+            raise ValueError(f"{self.fact}: a counted row needs a number and a tolerance")
+
+    @property
+    def counted(self) -> bool:
+        """Whether the row counts."""
+        return self.kind in COUNTED
 
     @property
     def ok(self) -> bool | None:

@@ -1,132 +1,166 @@
-"""The validation as one table: published facts, identities, criteria, independent cases."""
+"""The validation printed on a terminal and written as JSON."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.reference import criteria, identities, independent, paper_87
+from cyclosweep.reference import criteria, paper_87
+from cyclosweep.reference.facts import COUNTED
+from cyclosweep.reference.rows import broken_rows, broken_table, tally, validate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from rich.console import RenderableType
+    from rich.table import Table
 
-    from cyclosweep.reference.facts import Fact
-
-__all__ = ["report_json", "report_tables", "validate"]
-
-_SCHEMA = {
-    "group": pl.String,
-    "fact": pl.String,
-    "published": pl.Float64,
-    "computed": pl.Float64,
-    "unit": pl.String,
-    "mark": pl.String,
-    "tolerance": pl.Float64,
-    "ok": pl.Boolean,
-    "note": pl.String,
-}
+__all__ = ["report_json", "report_tables", "summary", "untouched", "validate"]
 
 
-def validate(drive: Drive | None = None) -> pl.DataFrame:
-    """Compare the library with everything published that it can be compared with.
+def report_json(drive: Drive | None = None, *, broken_models: bool = False) -> dict[str, Any]:
+    """Return the validation as plain JSON values, sector lists and pulsation included.
 
     Parameters
     ----------
     drive : Drive, optional
         The 87:1 drive; the built-in one by default.
-
-    Returns
-    -------
-    polars.DataFrame
-        ``group``, ``fact``, ``published``, ``computed``, ``unit``, ``mark``, ``tolerance``,
-        ``ok``, ``note``. ``computed`` is null where the model cannot compute the fact, ``ok``
-        where there is nothing to decide; ``note`` says why.
-
-    Raises
-    ------
-    DesignError
-        When the drive cannot be built.
-
-    Examples
-    --------
-    >>> validate().filter(pl.col("fact") == "nominal input torque T_N")["ok"].item()
-    True
+    broken_models : bool
+        Whether to add what deliberate errors break.
     """
-    table = pl.DataFrame([{**asdict(f), "ok": f.ok} for f in _facts(drive)], schema=_SCHEMA)
-    return table.with_columns(pl.col("computed").fill_nan(None))  # not there at all: not ok
-
-
-def _facts(drive: Drive | None) -> list[Fact]:
-    drive = drive or Drive.reference_87()
-    return [
-        *paper_87.facts(drive),
-        *identities.facts(drive),
-        *criteria.facts(drive),
-        *independent.facts(),
-    ]
-
-
-def report_json(drive: Drive | None = None) -> dict[str, Any]:
-    """Return the validation as plain JSON values, sector lists and pulsation included."""
     table = validate(drive)
     mean, sectors = paper_87.ideal_sectors()
     drive = drive or Drive.reference_87()
-    return {
+    counts = tally(table)
+    report: dict[str, Any] = {
         "schema": "cyclosweep.validation/1",
         "drive": drive.name,
-        "ok": not table["ok"].eq(False).any(),
+        "ok": not any(found["fail"] for found in counts.values()),
+        "counts": counts,
+        "counted": list(COUNTED),
         "facts": table.to_dicts(),
         "sectors": {
-            "published": list(paper_87.IDEAL_SECTORS),
+            "published": list(paper_87.PRINTED_SECTORS),
+            "ours": list(paper_87.IDEAL_SECTORS),
             "reconstruction_ideal": sectors,
             "reconstruction_ideal_mean": mean,
             "this_drive": drive.active_pins("published-map").sectors.to_dicts(),
         },
         "pulsation": criteria.pulsation(drive).to_dicts(),
     }
+    if broken_models:
+        rows = broken_rows()
+        report["broken_models"] = broken_table(rows).to_dicts()
+        report["broken_by_none"] = untouched(rows)
+        report["ok"] = report["ok"] and all(
+            found["evidence"] + found["identity"] > 0 for found in report["broken_models"]
+        )
+    return report
 
 
-def report_tables(drive: Drive | None = None) -> Iterable[RenderableType]:
-    """Tables for a terminal."""
-    from rich import box
-    from rich.table import Table
+def untouched(rows: pl.DataFrame) -> list[str]:
+    """Counted rows that agree whatever deliberate error is put in, by name."""
+    hit = pl.any_horizontal(pl.exclude("kind", "group", "fact"))
+    return rows.filter(~hit)["fact"].to_list()
 
+
+def summary(counts: dict[str, dict[str, int]]) -> str:
+    """Say in a few lines what counts and what does not.
+
+    Parameters
+    ----------
+    counts : dict
+        As :func:`cyclosweep.reference.rows.tally` returns them.
+    """
+    evidence, identity = counts["evidence"], counts["identity"]
+    lines = [
+        f"Counted, evidence: {evidence['agree']} agree, {evidence['explained']} disagree and are "
+        f"explained, {evidence['fail']} disagree unexplained.",
+        f"Counted, identities of the code: {identity['agree']} hold, {identity['fail']} do not.",
+        "Not counted: "
+        + ", ".join(
+            f"{sum(found.values())} {kind}" for kind, found in counts.items() if kind not in COUNTED
+        )
+        + ".",
+    ]
+    others = sum(found["fail"] for kind, found in counts.items() if kind not in COUNTED)
+    if others:
+        lines.append(f"{others} rows that do not count differ from the print: another drive.")
+    return "\n".join(lines)
+
+
+def report_tables(
+    drive: Drive | None = None, *, broken_models: bool = False
+) -> Iterable[RenderableType]:
+    """Tables for a terminal.
+
+    Parameters
+    ----------
+    drive : Drive, optional
+        The 87:1 drive; the built-in one by default.
+    broken_models : bool
+        Whether to add what deliberate errors break.
+    """
     table = validate(drive)
     for (group,), rows in table.group_by("group", maintain_order=True):
-        shown = Table(title=str(group), box=box.SIMPLE_HEAD, title_justify="left")
-        shown.add_column("fact", ratio=3)
-        shown.add_column("published", justify="right")
-        shown.add_column("computed", justify="right")
-        shown.add_column("unit")
-        shown.add_column("mark")
+        shown = _table(str(group), "fact", ("published", "computed"), ("unit", "kind", "mark"))
         shown.add_column("ok")
         for row in rows.iter_rows(named=True):
-            ok = {True: "yes", False: "[bold red]NO[/]", None: "-"}[row["ok"]]
             shown.add_row(
-                row["fact"] + (f"\n[dim]{row['note']}[/]" if row["note"] else ""),
+                "\n".join(
+                    [row["fact"], *(f"[dim]{row[n]}[/]" for n in ("note", "explanation") if row[n])]
+                ),
                 _number(row["published"]),
                 _number(row["computed"]),
                 row["unit"],
+                row["kind"],
                 row["mark"],
-                ok,
+                _outcome(row["ok"], row["counted"], row["explanation"]),
             )
         yield shown
-    shown = Table(
-        title="McIver's claim: (greatest - least) / mean over one turn",
-        box=box.SIMPLE_HEAD,
-        title_justify="left",
-    )
     pulsation = criteria.pulsation(drive or Drive.reference_87())
-    for name in pulsation.columns:
-        shown.add_column(name.replace("_", " "), justify="right")
+    names = [name.replace("_", " ") for name in pulsation.columns]
+    title = "McIver's claim: (greatest - least) / mean over one turn"
+    shown = _table(title, names[0], tuple(names[1:]))
     for cells in pulsation.iter_rows():
         shown.add_row(*(f"{v:.3f}" if isinstance(v, float) else f"{v}" for v in cells))
     yield shown
+    if broken_models:
+        yield from _broken_tables()
+
+
+def _broken_tables() -> Iterable[RenderableType]:
+    rows = broken_rows()
+    title = f"deliberate errors, and how many of the {rows.height} rows that agree each breaks"
+    shown = _table(title, "error", ("evidence", "identity"), ("one of them",))
+    for row in broken_table(rows).iter_rows(named=True):
+        name = f"{row['model']}\n[dim]{row['error']}[/]"
+        shown.add_row(name, str(row["evidence"]), str(row["identity"]), row["first"])
+    yield shown
+    left = untouched(rows)
+    yield "Broken by none of them: " + ("; ".join(left) if left else "no row") + "."
+
+
+def _table(title: str, first: str, right: tuple[str, ...], left: tuple[str, ...] = ()) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    shown = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
+    shown.add_column(first, ratio=3)
+    for name in right:
+        shown.add_column(name, justify="right")
+    for name in left:
+        shown.add_column(name)
+    return shown
+
+
+def _outcome(ok: bool | None, counted: bool, explanation: str) -> str:
+    if ok is None:
+        return "-"
+    if ok:
+        return "yes" if counted else "[dim](yes)[/]"
+    return "no" if explanation else "[bold red]NO[/]"
 
 
 def _number(value: float | None) -> str:

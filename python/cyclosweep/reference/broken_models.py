@@ -1,0 +1,203 @@
+"""Models with one deliberate error each, and which counted rows of the validation each breaks."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from cyclosweep.reference.model import Model, Results, assembled
+
+if TYPE_CHECKING:
+    from cyclosweep.design.drive import Drive
+
+__all__ = ["BROKEN_MODELS", "broken_model"]
+
+
+def _lengths_as_metres(drive: Drive) -> Drive:
+    table = drive.model_dump()
+    for part in (table, *table["shaft"]):
+        for name, value in part.items():
+            if name.endswith("_mm"):
+                part[name] = 1e3 * value
+    return type(drive).model_validate(table)
+
+
+def _without_second_segment(drive: Drive) -> Drive:
+    return drive.replace(shaft=[*drive.shaft[:1], *drive.shaft[2:]]) if drive.shaft[1:] else drive
+
+
+def _frustums_as_cylinders(drive: Drive) -> Drive:
+    changes = {
+        f"shaft_{number}_end_diameter_mm": segment.diameter_mm
+        for number, segment in enumerate(drive.shaft, start=1)
+        if segment.kind == "frustum"
+    }
+    return drive.replace(**changes)
+
+
+def _no_shear(drive: Drive, results: Results) -> Results:
+    # The deflection is a L^3 + b L; a pin twice as long tells a from b.
+    longer = drive.replace(output_pin_length_mm=2 * drive.output_pin_length_mm).evaluate()
+    twice = longer["pin_compliance_rad_per_nm"]
+    assert twice is not None
+    bending = (twice - 2 * results["pin_compliance_rad_per_nm"]) / 6
+    return assembled(drive, results, pin_compliance=bending)
+
+
+def _no_reflection(drive: Drive, results: Results) -> Results:
+    return assembled(drive, results, reflection=drive.ratio**-2)
+
+
+def _no_efficiency(drive: Drive, results: Results) -> Results:
+    eta = results["torque_transfer_efficiency"]
+    return assembled(drive, results, efficiency=1 / eta)
+
+
+def _arc_tangent(drive: Drive, results: Results) -> Results:
+    torque = drive.output_torque_nm
+    compliance = math.atan(results["pin_compliance_rad_per_nm"] * torque) / torque
+    moved = assembled(drive, results, pin_compliance=compliance)
+    force = 1e3 * torque / drive.output_pin_circle_radius_mm
+    return {**moved, "torque_per_pin_nm": torque, "force_per_pin_n": force}
+
+
+def _one_disc_carries_all(drive: Drive, results: Results) -> Results:
+    factor = drive.disc_count
+    moved = {"pin_force_max_n", "pin_bending_stress_mpa"}
+    return {name: value * (factor if name in moved else 1) for name, value in results.items()}
+
+
+def _circular_frequency(_: Drive, results: Results) -> Results:
+    return {
+        name: value * (math.tau if name.startswith("natural_frequency") else 1)
+        for name, value in results.items()
+    }
+
+
+def _free_play_with_every_load(drive: Drive, results: Results) -> Results:
+    twists = [name for name in results if name.startswith("twist_")]
+    once = results[twists[0]] - drive.free_play_deg
+    loads = {name: (results[name] - drive.free_play_deg) / once for name in twists}
+    more = {name: results[name] + (load - 1) * drive.free_play_deg for name, load in loads.items()}
+    return {**results, **more}
+
+
+def _shares_by_sine(_: Drive, results: Results) -> Results:
+    return {**results, "pin_participation_statics": 2 / math.pi}
+
+
+def _stiffness_not_reflected(_: Drive, results: Results) -> Results:
+    stiffness = 1 / results["output_compliance_rad_per_nm"]
+    return {**results, "reflected_stiffness_nm_per_rad": stiffness}
+
+
+def _degrees_for_arcminutes(_: Drive, results: Results) -> Results:
+    stiffness = results["output_stiffness_nm_per_arcmin"]
+    return {**results, "output_stiffness_nm_per_arcmin": 60 * stiffness}
+
+
+BROKEN_MODELS: tuple[Model, ...] = (
+    Model(
+        "E halved",
+        "Young's modulus is half of what the drive states",
+        lambda d: d.replace(youngs_modulus_gpa=d.youngs_modulus_gpa / 2),
+    ),
+    Model(
+        "e halved",
+        "the eccentricity is half of what the drive states",
+        lambda d: d.replace(eccentricity_mm=d.eccentricity_mm / 2),
+    ),
+    Model(
+        "a pin less",
+        "one output pin fewer than the drive states",
+        lambda d: d.replace(output_pin_count=d.output_pin_count - 1),
+    ),
+    Model(
+        "k = 1.25",
+        "the keyway coefficient of Eq. (5) is 1.25 instead of the printed 10",
+        lambda d: d.replace(keyway_coefficient=1.25),
+    ),
+    Model("i^2 forgotten", "Eq. (12) without the ratio squared", change_results=_no_reflection),
+    Model("eta dropped", "Eq. (13) without the efficiency", change_results=_no_efficiency),
+    Model(
+        "a step left out",
+        "the shaft's second segment is missing in Eq. (4)",
+        _without_second_segment,
+    ),
+    Model(
+        "shear left out",
+        "the pin's deflection in Eqs. (8)-(10) is by bending alone",
+        change_results=_no_shear,
+    ),
+    Model(
+        "metres for millimetres",
+        "every length in mm is taken as one in m",
+        _lengths_as_metres,
+    ),
+    Model(
+        "rated torque on one pin",
+        "Eqs. (8)-(10) with the whole rated torque on one pin and the arc tangent kept",
+        change_results=_arc_tangent,
+    ),
+    Model(
+        "one disc carries all",
+        "the pin's force as if one disc carried the whole torque",
+        change_results=_one_disc_carries_all,
+    ),
+    Model(
+        "frustum as a cylinder",
+        "Eq. (7) with the smaller diameter all along",
+        _frustums_as_cylinders,
+    ),
+    Model(
+        "speed in rad/s",
+        "the input speed in rpm is taken as one in rad/s",
+        lambda d: d.replace(input_speed_rpm=d.input_speed_rpm * 30 / math.pi),
+    ),
+    Model(
+        "2 pi forgotten",
+        "the natural frequency in rad/s instead of Hz",
+        change_results=_circular_frequency,
+    ),
+    Model(
+        "free play with every load",
+        "the free play is added once for every nominal torque",
+        change_results=_free_play_with_every_load,
+    ),
+    Model(
+        "shares by sine alone",
+        "statics with the contacts' lever arms left out: sine where sine squared is meant",
+        change_results=_shares_by_sine,
+    ),
+    Model(
+        "stiffness not reflected",
+        "the stiffness at the output where the one at the input is meant",
+        change_results=_stiffness_not_reflected,
+    ),
+    Model(
+        "degrees for arc minutes",
+        "the stiffness in N m/deg where N m/arcmin is meant",
+        change_results=_degrees_for_arcminutes,
+    ),
+)
+"""Each must break at least one counted row that the package itself meets."""
+
+
+def broken_model(name: str) -> Model:
+    """Return the model with a given error.
+
+    Parameters
+    ----------
+    name : str
+        Name of one of :data:`BROKEN_MODELS`.
+
+    Raises
+    ------
+    ValueError
+        For another name; the message lists those there are.
+    """
+    for model in BROKEN_MODELS:
+        if model.name == name:
+            return model
+    known = ", ".join(model.name for model in BROKEN_MODELS)
+    raise ValueError(f"broken model {name!r}: no such model, expected one of {known}")

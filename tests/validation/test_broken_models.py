@@ -1,0 +1,157 @@
+"""The validation can fail: every deliberate error breaks counted rows, the package itself none."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.reference.broken_models import BROKEN_MODELS
+from cyclosweep.reference.facts import COUNTED, Fact
+from cyclosweep.reference.rows import broken_rows, broken_table, tally
+from cyclosweep.reference.validation import untouched
+
+ROOT = Path(__file__).parents[2]
+ERRORS = [model.name for model in BROKEN_MODELS]
+REQUIRED = {
+    "E halved",
+    "e halved",
+    "a pin less",
+    "k = 1.25",
+    "i^2 forgotten",
+    "eta dropped",
+    "a step left out",
+    "shear left out",
+    "metres for millimetres",
+}
+EXPLAINED = {
+    "Krol et al. 2019, design 1: inner force": (348.87, 387.5),
+    "Eq. (6): extra length of a shoulder / d at D/d = 1.25": (0.0453, 0.061),
+    "Eq. (6): extra length of a shoulder / d at D/d = 2": (0.1257, 0.1094),
+    "Eq. (6): extra length of a shoulder / d at D/d = 3": (0.1493, 0.1204),
+    "Eq. (5): 50 mm shaft with its standard keyway, 14 x 5.5 mm / without": (1.131, 2.10),
+    "mean active pins of 8, inside": (6.75, 7.9653),
+    "fewest active pins, inside": (4, 6),
+    "mean active pins of 8, statics": (6.75, 8),
+    "fewest active pins, statics": (4, 8),
+    "start of hole H1's active zone without clocking": (66, 67.123),
+    "McIver: nine pins pulsate less than eight (1 = yes), published-map": (1, 0),
+    "McIver: nine pins pulsate less than eight (1 = yes), statics": (1, 0),
+}
+
+
+@pytest.fixture(scope="module")
+def intact() -> pl.DataFrame:
+    return cs.validate()
+
+
+@pytest.fixture(scope="module")
+def rows() -> pl.DataFrame:
+    return broken_rows()
+
+
+def test_only_evidence_and_identities_count(intact: pl.DataFrame) -> None:
+    assert set(intact.filter("counted")["kind"]) == set(COUNTED)
+    assert set(intact.filter(~pl.col("counted"))["kind"]).isdisjoint(COUNTED)
+    assert intact.filter("counted")["ok"].null_count() == 0
+
+
+def test_what_is_typed_in_or_reconstructed_does_not_count(intact: pl.DataFrame) -> None:
+    kinds = dict(zip(intact["fact"], intact["kind"], strict=True))
+    assert kinds["ratio i"] == kinds["free play at the input"] == "input"
+    assert kinds["twist at 2.5 T_N, 75 to 80 deg"] == "input"
+    assert kinds["C_OS, Eq. (13) multiplying by 0.84375, from"] == "input"
+    assert kinds["eta_OP"] == kinds["start of hole H1's active zone"] == "reconstruction"
+    assert kinds["nominal input torque T_N"] == "evidence"
+
+
+def test_the_sector_values_that_are_printed_nowhere_are_marked_as_ours(
+    intact: pl.DataFrame,
+) -> None:
+    sectors = intact.filter(pl.col("fact").str.contains(r"^active pins near \d+ deg$"))
+    assert sectors["published"].to_list() == [None, None, 8, None, None, None, None, None]
+    assert sectors["computed"].to_list() == [4, 6, 8, 8, 6, 8, 8, 6]
+    assert set(sectors.filter(pl.col("published").is_null())["mark"]) == {"ours"}
+    assert not sectors["counted"].any()
+
+
+def test_what_disagrees_is_named_with_both_numbers_and_explained(intact: pl.DataFrame) -> None:
+    wrong = intact.filter(pl.col("counted") & ~pl.col("ok"))
+    assert (wrong["explanation"].str.len_chars() > 40).all()
+    found = {r["fact"]: (r["published"], r["computed"]) for r in wrong.iter_rows(named=True)}
+    assert found.keys() == EXPLAINED.keys()
+    for fact, numbers in EXPLAINED.items():
+        assert found[fact] == pytest.approx(numbers, rel=1e-3)
+    assert intact.filter("ok")["explanation"].unique().to_list() == [""]
+    assert all(kind["fail"] == 0 for kind in tally(intact).values())
+
+
+def test_every_error_the_project_asks_for_is_there() -> None:
+    assert set(ERRORS) >= REQUIRED
+    assert len(set(ERRORS)) == len(ERRORS)
+
+
+@pytest.mark.parametrize("error", ERRORS)
+def test_no_error_breaks_nothing(rows: pl.DataFrame, error: str) -> None:
+    assert rows[error].sum() > 0
+
+
+@pytest.mark.parametrize(
+    ("error", "fact"),
+    [
+        ("E halved", "Eqs. (8)-(10): deflection of the pin / by Hutchinson's shear coefficient"),
+        ("e halved", "unit case, 18 ring pins: short-width coefficient K1"),
+        ("a pin less", "unit case, 6 output pins, 1 N m on one disc: inner force"),
+        ("k = 1.25", "Eq. (5): coefficient k read back from a keyway"),
+        ("i^2 forgotten", "Eq. (12): C*_OS / (C_OS i^2)"),
+        ("eta dropped", "Eq. (13): (theta' - gamma) / (eta C*_OS T_N)"),
+        ("a step left out", "Eq. (4): whole shaft / its segments and shoulders one by one"),
+        (
+            "shear left out",
+            "Eqs. (8)-(10): deflection of the pin / by Hutchinson's shear coefficient",
+        ),
+        (
+            "metres for millimetres",
+            "29:1, two discs, 4 output pins on 68 mm: force on an output roller",
+        ),
+        ("rated torque on one pin", "Eqs. (8)-(10): C_OP / C_OP of a drive rated at a hundredth"),
+    ],
+)
+def test_an_error_breaks_the_row_that_is_about_it(
+    rows: pl.DataFrame, error: str, fact: str
+) -> None:
+    assert rows.filter(pl.col("fact") == fact)[error].item()
+
+
+def test_every_counted_row_can_fail(rows: pl.DataFrame) -> None:
+    """Rows that no listed error breaks are known by name; each is a limit of one formula."""
+    assert untouched(rows) == []
+
+
+def test_the_table_of_errors_counts_what_the_rows_say(rows: pl.DataFrame) -> None:
+    for row in broken_table(rows).iter_rows(named=True):
+        assert row["evidence"] + row["identity"] == rows[row["model"]].sum()
+
+
+def test_a_counted_row_needs_a_number_and_a_tolerance() -> None:
+    with pytest.raises(ValueError, match="needs a number"):
+        Fact("g", "f", None, 1.0, "1", "derived", "evidence", 0.1)
+    with pytest.raises(ValueError, match="needs a number"):
+        Fact("g", "f", 1.0, 1.0, "1", "derived", "identity")
+
+
+def test_an_unknown_error_is_refused_by_name() -> None:
+    with pytest.raises(ValueError, match=r"'E doubled': no such model, expected one of E halved"):
+        cs.validate(broken="E doubled")
+
+
+def test_the_page_on_the_validation_is_up_to_date() -> None:
+    spec = importlib.util.spec_from_file_location("generate", ROOT / "docs" / "generate.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert (ROOT / "docs" / "validation.md").read_text("utf-8") == module.validation()
