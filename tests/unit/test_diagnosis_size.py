@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.hypotheses.flexible_basis import rich_basis
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.terms import Term
@@ -30,9 +30,9 @@ def fitted(
     problem = prepare(recording, drive.nominal_line("input"), int(drive.output_pin_count))
     library = build_library(problem.history, problem.fitted, tuple(KNOWN.values()))
     use = problem.fitted
-    rich = rich_basis(problem, library, None)
+    rich = flexible_basis(problem, library, None)
     noise = estimate_noise(problem.angle_deg[use], rich, problem.gap[use], 0.0, problem.weight[use])
-    return SimpleNamespace(fit=fit(problem, noise, (Term(KNOWN[name], shape),)))
+    return fit(problem, noise, (Term(KNOWN[name], shape),))
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """The diagnosis from beginning to end: prepare, calibrate, search, prove, say."""
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +9,11 @@ import numpy as np
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis import refuse as fault
 from cyclosweep.diagnosis import statement as words
-from cyclosweep.diagnosis.hypotheses.flexible_basis import rich_basis
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library, build_library
 from cyclosweep.diagnosis.identify.alarm import DRAWS, probability
-from cyclosweep.diagnosis.identify.fit import Fit
-from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.diagnosis.identify.testability import (
     Testability,
     hidden_effects,
@@ -22,25 +21,23 @@ from cyclosweep.diagnosis.identify.testability import (
     spread_of_size,
     testability,
 )
-from cyclosweep.diagnosis.identify.verdict import Decision, decide, decide_structured
+from cyclosweep.diagnosis.identify.verdict import Decision, decide, decide_whole_loop
 from cyclosweep.diagnosis.locate import Region, find_regions
 from cyclosweep.diagnosis.prepare.noise import Noise, estimate_noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, prepare
 from cyclosweep.diagnosis.result import SCHEMA, Diagnosis
 from cyclosweep.diagnosis.statement import statement
 from cyclosweep.diagnosis.verify.experiment import next_experiment
-from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge
+from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check
-from cyclosweep.diagnosis.whole_loop import structured
-from cyclosweep.diagnosis.whole_loop.findings import findings, limits_of
-from cyclosweep.diagnosis.whole_loop.forecast import PIECES
-from cyclosweep.diagnosis.whole_loop.known_flank import ForecastFit
+from cyclosweep.diagnosis.whole_loop import run_comparison, stepwise
+from cyclosweep.diagnosis.whole_loop.findings import limits_of
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
 from cyclosweep.report import HeldOut, Hypothesis
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects import effects as all_effects
-from cyclosweep.simulation.simulate import EffectValue, Model
+from cyclosweep.simulation.effects.history import History
 
 Progress = Callable[[str], None]
 
@@ -129,7 +126,7 @@ def _drive_of(recording: Recording) -> Drive:
     return Drive.load(recording.drive, beside)
 
 
-def _noise(problem: Problem, library: Library, best: Node | None) -> Noise:
+def _noise(problem: Problem, library: Library, best: Candidate | None) -> Noise:
     """Noise that a rich model leaves, with the accepted structure in it."""
     use = problem.fitted
     extra = None
@@ -139,7 +136,7 @@ def _noise(problem: Problem, library: Library, best: Node | None) -> Noise:
             [fitted.history.elastic_nm[use]]
             + [term.columns(fitted.history)[use] for term in fitted.terms]
         )
-    rich = rich_basis(problem, library, extra)
+    rich = flexible_basis(problem, library, extra)
     resolution = problem.resolution_deg
     return estimate_noise(
         problem.angle_deg[use], rich, problem.gap[use], resolution, problem.weight[use]
@@ -152,7 +149,7 @@ def _search(problem: Problem, library: Library, seed: int, say: Progress) -> Sea
     search = Search(problem, noise, library, seed)
     if noise.structured:
         say("adding effects one at a time")
-        search.settled = structured.climb(search)
+        search.chosen = stepwise.choose_effects(search)
         return search
     for _ in range(RESTARTS):
         search.run(say)
@@ -176,36 +173,40 @@ def _conclude(
 ) -> Diagnosis:
     """Turn the visited structures into verdict, tables and model."""
     problem, noise = search.problem, search.noise
-    base = search.root.fit
+    base = search.baseline.fit
     twist = base.history.largest_twist_deg
     tolerance = 0.01 * twist if tolerance_deg is None else tolerance_deg
     late = fault.check_compliance(problem, drive, base.history.compliance_deg_per_nm)
     if late is not None:
         return fault.refuse(problem.recording, drive, *late, search.seed)
     say("bounding what was not found")
-    p_of = {name: search.alarm.p_value(value) for name, value in search.root.excesses.items()}
-    bounds = testability(search, search.root, p_of)
+    p_of = {name: search.alarm.p_value(value) for name, value in search.baseline.excesses.items()}
+    bounds = testability(search, search.baseline, p_of)
     decision = decide(search, bounds, tolerance)
     repeats = None
     if noise.structured:
-        top = search.settled or search.root
-        repeats = structured.repetition(problem, top.fit)
-        decision = decide_structured(search, repeats.is_physics)
-    node = decision.best if decision.best is not None else search.root
-    accepted = _named_part(search, node)
-    remaining = bounds if accepted is search.root else testability(search, accepted, p_of)
+        top = search.chosen or search.baseline
+        repeats = run_comparison.repetition(problem, top.fit)
+        decision = decide_whole_loop(search.chosen, repeats=repeats.is_physics)
+    candidate = decision.best if decision.best is not None else search.baseline
+    accepted = _named_part(search, candidate)
+    remaining = bounds if accepted is search.baseline else testability(search, accepted, p_of)
     possible = {t.name for n, _ in decision.explanations for t in n.fit.terms}
     excluded = {b.name for b in remaining if b.upper95_deg < tolerance} - possible
-    regions = find_regions(search, search.root) if search.root.left >= search.threshold else []
+    regions = (
+        find_regions(search, search.baseline) if search.baseline.left >= search.threshold else []
+    )
     if decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
         regions = find_regions(search, accepted) or regions
-    held = judge(problem, noise, accepted.fit) if full else HeldOutResult((), 0.0, 0.0, 1.0, "")
+    held = judge_left_out(accepted.fit) if full else HeldOutResult((), 0.0, 0.0, 1.0, "")
     drift = _drift(problem, accepted.fit, held) if noise.structured else None
     if drift is not None:
         decision = Decision("UNKNOWN_PHYSICS", decision.best, decision.explanations, True)
     effects = [_effect(search, accepted, k, held) for k in range(len(accepted.fit.terms))]
-    sufficiency = probability(search.null(node), node.left)
-    model = _model(accepted.fit, drive)
+    sufficiency = probability(search.null(candidate), candidate.left)
+    model = accepted.fit.model(drive.name)
+    before = accepted.fit.baseline_prediction(base)
+    after = accepted.fit.prediction
     content: dict[str, Any] = {
         "schema": SCHEMA,
         "tolerance_deg": tolerance,
@@ -220,12 +221,12 @@ def _conclude(
         },
         "baseline": {
             "parameters": parameters_of(base, problem),
-            "rmse_deg": _error_of(accepted.fit, before=True) or base.rmse_deg,
+            "rmse_deg": before.error_deg,
             "holdout_rmse_deg": held.before_deg,
         },
         "mismatch": {
-            "p_value": search.alarm.p_value(search.root.left),
-            "evidence": search.root.left,
+            "p_value": search.alarm.p_value(search.baseline.left),
+            "evidence": search.baseline.left,
             "threshold": search.threshold,
             "regions": [region.as_dict() for region in regions],
         },
@@ -243,7 +244,7 @@ def _conclude(
         "sufficiency": {"p_value": sufficiency},
         "repaired": {
             "parameters": parameters_of(accepted.fit, problem),
-            "rmse_deg": _error_of(accepted.fit) or accepted.fit.rmse_deg,
+            "rmse_deg": after.error_deg,
             "holdout_rmse_deg": held.after_deg,
             "holdout": held.label,
             "blocks": [block.as_dict() for block in held.blocks],
@@ -276,24 +277,19 @@ def _conclude(
     content["statement"] = _statement(search, decision, content, regions, bounds, tolerance, drift)
     content["statement"] += words.forecast(content["repaired"]["blocks"])
     repeated = None if repeats is None else repeats.correlation
-    content["findings"] = findings(problem, accepted.fit, repeated, unsteady=drift is not None)
+    content["findings"] = accepted.fit.findings(repeated, unsteady=drift is not None)
     if noise.structured:
         content["not_testable"] += limits_of(problem, drive)
-        if accepted.fit is not base and _has_zero(accepted.fit):
+        if accepted.fit.torque_zero is not None:
             content["not_testable"] = [
                 row for row in content["not_testable"] if row["name"] != "torque_offset"
             ]
-    before = _at_samples(problem, base)
-    after = _at_samples(problem, accepted.fit)
-    if isinstance(accepted.fit, ForecastFit):
-        before = _at_samples(problem, base, accepted.fit.before.angle_deg)
-        after = _at_samples(problem, accepted.fit, accepted.fit.forecast.angle_deg)
     return Diagnosis(
         recording=problem.recording,
         content=content,
         model=model,
-        before_deg=before,
-        after_deg=after,
+        before_deg=_at_samples(problem, before.angle_deg, base.history),
+        after_deg=_at_samples(problem, after.angle_deg, accepted.fit.history),
         hypotheses=_hypotheses(effects, remaining, content["not_testable"], excluded, bounds),
         held_out=tuple(
             HeldOut(
@@ -311,12 +307,13 @@ def _conclude(
     )
 
 
-def _drift(problem: Problem, fitted: Fit, held: HeldOutResult) -> structured.Steadiness | None:
+def _drift(
+    problem: Problem, fitted: FittedStructure, held: HeldOutResult
+) -> run_comparison.Steadiness | None:
     """How far a model of some runs fails on others, where that is far more than on its own."""
     span = float(np.ptp(problem.angle_deg))
-    found = [structured.Steadiness(_error_of(fitted) or fitted.rmse_deg, held.after_deg)]
-    if isinstance(fitted, ForecastFit):
-        found += structured.steadiness(fitted.forecast)
+    pairs = [(fitted.prediction.error_deg, held.after_deg), *fitted.run_to_run_errors()]
+    found = [run_comparison.Steadiness(own, other) for own, other in pairs]
     drifts = [each for each in found if each.is_drift(span)]
     return max(drifts, key=lambda each: each.other_deg / each.own_deg, default=None)
 
@@ -326,34 +323,35 @@ def _rated(drive: Drive, recording: Recording) -> float:
     return float(drive.nominal_torque_nm if at_input else drive.output_torque_nm)
 
 
-def _named_part(search: Search, node: Node) -> Node:
+def _named_part(search: Search, candidate: Candidate) -> Candidate:
     """Return the structure without its nameless terms, for sizes, repair and prediction."""
-    if node.named_only:
-        return node
-    named = [t for t, own in zip(node.fit.terms, node.carries, strict=True) if own]
+    if candidate.all_recognised:
+        return candidate
+    named = [t for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own]
     if not named:
-        return search.root
-    known = search.nodes.get(frozenset(t.name for t in named))
+        return search.baseline
+    known = search.visited.get(frozenset(t.name for t in named))
     return known if known is not None else search.refit(tuple(named))
 
 
-def _effect(search: Search, node: Node, index: int, held: HeldOutResult) -> dict[str, Any]:
+def _effect(
+    search: Search, candidate: Candidate, index: int, held: HeldOutResult
+) -> dict[str, Any]:
     """Entry of one accepted effect."""
-    fitted = node.fit
+    fitted = candidate.fit
     term = fitted.terms[index]
     effect = term.effect
     assert effect is not None
-    shape = size_of(node, index)
+    shape = size_of(fitted, index)
     size = float(np.max(np.abs(shape), initial=0.0))
-    strength = _strength(search, node, index)
-    if term.slips or isinstance(fitted, ForecastFit):
-        # Friction moves the path it is solved on: its size is what it is seen by.
+    strength = _strength(search, candidate, index)
+    if fitted.follows_path(index):
         spread = size / max(strength, 1e-9)
     else:
-        spread = spread_of_size(node, index)
-    parent = search.nodes.get(node.names - {term.name})
-    if parent is None and len(node.fit.terms) == 1:
-        parent = search.root
+        spread = spread_of_size(fitted, index)
+    parent = search.visited.get(candidate.names - {term.name})
+    if parent is None and len(candidate.fit.terms) == 1:
+        parent = search.baseline
     p = 1.0 / (DRAWS + 1)
     if parent is not None:
         p = search.alarm.p_value(parent.excesses.get(term.name, 0.0))
@@ -375,14 +373,13 @@ def _effect(search: Search, node: Node, index: int, held: HeldOutResult) -> dict
     }
 
 
-def _strength(search: Search, node: Node, index: int) -> float:
+def _strength(search: Search, candidate: Candidate, index: int) -> float:
     """Projected signal-to-noise of a term, the other terms and the calibration taken out."""
     use = search.problem.fitted
-    fitted = node.fit
+    fitted = candidate.fit
     _, weight = search.noise.residual(search.problem.angle_deg[use], fitted.mean_deg[use])
     signal = search.noise.design(fitted.contribution(index)[use], weight)
-    first = 2 if search.problem.one_sided else 3
-    keep = list(range(first))
+    keep = list(range(search.problem.line_columns))
     for k, term in enumerate(fitted.terms):
         if k != index and not term.slips:
             keep += fitted.amplitude_places(k)
@@ -391,14 +388,10 @@ def _strength(search: Search, node: Node, index: int) -> float:
             keep.append(len(fitted.beta) + k)
     rest = orthonormal(fitted.sensitivity[:, keep], 1e-8)
     left = signal - rest @ (rest.T @ signal)
-    strength = float(np.linalg.norm(left))
-    if isinstance(fitted, ForecastFit):
-        # The residual repeats itself along the loop and tells far less than its rows.
-        strength *= np.sqrt(min(PIECES / max(len(left), 1), 1.0))
-    return strength
+    return float(np.linalg.norm(left)) * float(np.sqrt(fitted.independent_share))
 
 
-def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
+def _parameters(fitted: FittedStructure, index: int) -> dict[str, dict[str, Any]]:
     """Amplitudes and shape parameters of a term with standard errors."""
     term = fitted.terms[index]
     assert term.effect is not None
@@ -433,11 +426,9 @@ def _parameters(fitted: Fit, index: int) -> dict[str, dict[str, Any]]:
     return out
 
 
-def parameters_of(fitted: Fit, problem: Problem) -> dict[str, dict[str, Any]]:
+def parameters_of(fitted: FittedStructure, problem: Problem) -> dict[str, dict[str, Any]]:
     """Baseline parameters of a fit against nominal."""
-    spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
-    if fitted.noise.structured and not isinstance(fitted, ForecastFit):
-        spread = spread * np.sqrt(max(problem.count / PIECES, 1.0))
+    spread = fitted.line_errors
     nominal = problem.nominal_compliance
     compliance = float(fitted.beta[1])
     out: dict[str, dict[str, Any]] = {
@@ -466,48 +457,25 @@ def parameters_of(fitted: Fit, problem: Problem) -> dict[str, dict[str, Any]]:
             "unit": "deg",
         },
     }
-    if isinstance(fitted, ForecastFit) and fitted.forecast.has_zero:
-        zero = next(k for k, each in enumerate(fitted.forecast.parameters) if each.kind == "zero")
+    zero = fitted.torque_zero
+    if zero is not None:
         out["torque_zero_nm"] = {
             "nominal": 0.0,
-            "estimate": fitted.forecast.model.torque_zero_nm,
-            "std_error": float(np.sqrt(max(fitted.forecast.covariance[zero, zero], 0.0))),
+            "estimate": zero.value_nm,
+            "std_error": zero.std_error_nm,
             "unit": "N m",
         }
     return out
 
 
-def _model(fitted: Fit, drive: Drive) -> Model:
-    if isinstance(fitted, ForecastFit):
-        return replace(fitted.forecast.model, drive=drive.name)
-    history = fitted.history
-    values = []
-    for index, term in enumerate(fitted.terms):
-        shape = term.shape
-        amplitudes: Sequence[float] = (term.amplitude,)
-        if not term.slips:
-            assert term.effect is not None
-            found = fitted.beta[fitted.column_range(index)]
-            shape, amplitudes = term.effect.portable(history, shape, found)
-        plain = {name: float(value) for name, value in shape.items()}
-        values.append(EffectValue(term.name, plain, tuple(map(float, amplitudes))))
-    return Model(
-        compliance_deg_per_nm=float(fitted.beta[1]),
-        free_play_deg=history.free_play_deg,
-        datum_deg=history.datum_deg,
-        side=fitted.problem.recording.side,
-        effects=tuple(values),
-        output_pin_count=history.output_pin_count,
-        drive=drive.name,
-    )
-
-
-def _explanation(node: Node, probability: float) -> dict[str, Any]:
+def _explanation(candidate: Candidate, probability: float) -> dict[str, Any]:
     return {
-        "effects": [t.name for t, own in zip(node.fit.terms, node.carries, strict=True) if own],
+        "effects": [
+            t.name for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own
+        ],
         "without_name": [
             t.name if t.effect is None else t.effect.family
-            for t, own in zip(node.fit.terms, node.carries, strict=True)
+            for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True)
             if not own
         ],
         "probability": probability,
@@ -515,44 +483,44 @@ def _explanation(node: Node, probability: float) -> dict[str, Any]:
 
 
 def _unknown(
-    search: Search, decision: Decision, accepted: Node, regions: list[Region]
+    search: Search, decision: Decision, accepted: Candidate, regions: list[Region]
 ) -> dict[str, Any]:
     """Shape, place and size of what has no name."""
-    node = decision.best
-    assert node is not None
-    forms = [(k, t) for k, t in enumerate(node.fit.terms) if t.free is not None]
+    candidate = decision.best
+    assert candidate is not None
+    forms = [(k, t) for k, t in enumerate(candidate.fit.terms) if t.free is not None]
     if forms:
         index, term = forms[0]
         assert term.free is not None
-        shape = size_of(node, index)
+        shape = size_of(candidate.fit, index)
         return {
             "shape": term.free.family,
             "place": term.free.place,
             "size_deg": float(np.max(np.abs(shape))),
         }
-    lost = [k for k, own in enumerate(node.carries) if not own]
+    lost = [k for k, own in enumerate(candidate.recognised) if not own]
     if lost:
-        effect = node.fit.terms[lost[0]].effect
+        effect = candidate.fit.terms[lost[0]].effect
         assert effect is not None
-        largest = float(np.max(np.abs(size_of(node, lost[0]))))
+        largest = float(np.max(np.abs(size_of(candidate.fit, lost[0]))))
         return {"shape": effect.family, "place": "all along", "size_deg": largest}
-    values = node.excesses
-    wave = node.rest_hum[1]
+    values = candidate.excesses
+    wave = candidate.sinusoid_left[1]
     name = max(values, key=lambda key: values[key])
     place = wave.place if wave is not None and wave.family == name else ""
-    if name in node.rest.groups:
-        block = node.rest.library.blocks[node.rest.best_block(name)]
-        place = block.free.place if block.free is not None else "all along"
+    if name in candidate.rest.groups:
+        found = candidate.rest.library.signatures[candidate.rest.best_signature(name)]
+        place = found.free.place if found.free is not None else "all along"
     size = max((abs(r.mean_residual_deg) for r in regions), default=accepted.fit.rmse_deg)
     return {"shape": name, "place": place, "size_deg": size}
 
 
-def _staircase(node: Node, repeats: structured.Repetition) -> dict[str, Any]:
+def _staircase(candidate: Candidate, repeats: run_comparison.Repetition) -> dict[str, Any]:
     """Describe a residual that repeats from run to run, as steps tied to the mesh do."""
-    left = (node.fit.problem.angle_deg - node.fit.mean_deg)[node.fit.problem.fitted]
-    wave = node.rest_hum[1]
+    left = (candidate.fit.problem.angle_deg - candidate.fit.mean_deg)[candidate.fit.problem.fitted]
+    wave = candidate.sinusoid_left[1]
     place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
-    if wave is not None and node.rest_hum[0] > 5.0:
+    if wave is not None and candidate.sinusoid_left[0] > 5.0:
         place += f", strongest {wave.place}"
     return {
         "shape": "staircase tied to the position of the mesh",
@@ -564,7 +532,7 @@ def _staircase(node: Node, repeats: structured.Repetition) -> dict[str, Any]:
 def _experiment(
     search: Search, decision: Decision, bounds: list[Testability], tolerance: float
 ) -> dict[str, object]:
-    rivals = [node for node, _ in decision.explanations]
+    rivals = [candidate for candidate, _ in decision.explanations]
     if decision.verdict not in ("AMBIGUOUS", "IDENTIFIED"):
         rivals = []
     weakest = None
@@ -582,7 +550,7 @@ def _statement(
     regions: list[Region],
     bounds: list[Testability],
     tolerance: float,
-    drift: structured.Steadiness | None,
+    drift: run_comparison.Steadiness | None,
 ) -> str:
     unknown = content.get("unknown")
     remains = ""
@@ -617,24 +585,12 @@ def _statement(
     )
 
 
-def _has_zero(fitted: Fit) -> bool:
-    return isinstance(fitted, ForecastFit) and fitted.forecast.has_zero
-
-
-def _error_of(fitted: Fit, *, before: bool = False) -> float | None:
-    """Error of a forecast on the fitted runs; None where the fit is told the flank [deg]."""
-    if not isinstance(fitted, ForecastFit):
-        return None
-    return (fitted.before if before else fitted.forecast).error_deg
-
-
-def _at_samples(problem: Problem, fitted: Fit, angle_deg: np.ndarray | None = None) -> np.ndarray:
-    """Twist by a fit (or given by rows), a value for every sample of the recording."""
+def _at_samples(problem: Problem, angle_deg: np.ndarray, history: History) -> np.ndarray:
+    """Twist given by rows, a value for every sample of the recording [deg]."""
     row = problem.rows
-    mean = (fitted.mean_deg if angle_deg is None else angle_deg)[row]
     # Within an averaged row the line's own slope carries the torque's deviation from its mean.
     torque = problem.recording.torque_nm - problem.history.applied_nm[row]
-    return np.asarray(mean + fitted.history.compliance_deg_per_nm * torque)
+    return np.asarray(angle_deg[row] + history.compliance_deg_per_nm * torque)
 
 
 def _hypotheses(

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.freeform import clock_of
-from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.diagnosis.prepare.split import recorded_runs
 from cyclosweep.simulation.effects.history import Flags
 
@@ -49,22 +49,22 @@ class _Cell:
     crank: tuple[float, float] | None = None
 
 
-def find_regions(search: Search, node: Node, draws: int = 500) -> list[Region]:
+def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list[Region]:
     """Regions with error control, strongest first, each after the ones before are taken out.
 
     The statistic is the largest standardised cell mean of the projected residual; its distribution
-    is simulated under the model of the node.
+    is simulated under the model of the candidate.
     """
     problem, noise = search.problem, search.noise
     use = problem.fitted
     cells = _cells(search)
     if not cells:
         return []
-    _, weight = noise.residual(problem.angle_deg[use], node.fit.mean_deg[use])
+    _, weight = noise.residual(problem.angle_deg[use], candidate.fit.mean_deg[use])
     columns = np.column_stack([cell.rows[use].astype(np.float64) for cell in cells])
     white = noise.design(columns, weight)
-    residual = node.fit.residual
-    tangent = node.fit.tangent
+    residual = candidate.fit.residual
+    tangent = candidate.fit.tangent
     white = white - tangent @ (tangent.T @ white)
     gram = white.T @ white
     score = white.T @ residual
@@ -76,8 +76,8 @@ def find_regions(search: Search, node: Node, draws: int = 500) -> list[Region]:
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     null = np.abs(root @ rng.standard_normal((len(values), draws))) / size[:, None]
     maxima = np.sort(null.max(axis=0))
-    excess = max(node.fit.chi2 - search.noise.freedom, 1e-9)
-    raw = (problem.angle_deg - node.fit.mean_deg)[use]
+    excess = max(candidate.fit.chi2 - search.noise.freedom, 1e-9)
+    raw = (problem.angle_deg - candidate.fit.mean_deg)[use]
     found: list[Region] = []
     for _ in range(MOST_REGIONS):
         z = np.abs(score) / size

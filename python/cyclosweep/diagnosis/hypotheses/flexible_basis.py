@@ -4,7 +4,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.prepare.noise import orthonormal
-from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.history import Floats
 
 SMOOTH = (
@@ -19,7 +19,7 @@ SMOOTH = (
 """Families of free forms that join the named effects in the rich model."""
 
 
-def rich_basis(problem: Problem, library: Library, extra: Floats | None = None) -> Floats:
+def flexible_basis(problem: Problem, library: Library, extra: Floats | None = None) -> Floats:
     """Orthonormal columns: the baseline exactly, then what else there is to see, strongest first.
 
     Parameters
@@ -29,12 +29,10 @@ def rich_basis(problem: Problem, library: Library, extra: Floats | None = None) 
     """
     use = problem.fitted
     history = problem.history
-    parts = [np.ones(int(use.sum())), history.applied_nm[use]]
-    if not problem.one_sided:
-        parts.append(history.side[use])
-    certain = np.column_stack(parts if extra is None else [*parts, extra])
+    line = line_design(history, history.applied_nm, one_sided=problem.one_sided)[use]
+    certain = line if extra is None else np.column_stack([line, extra])
     inner = orthonormal(certain, 1e-10)
-    wanted = [b for b in library.blocks if b.named or b.hypothesis in SMOOTH]
+    wanted = [b for b in library.signatures if b.named or b.hypothesis in SMOOTH]
     if not wanted:
         return inner
     index = np.concatenate([np.arange(b.first, b.stop) for b in wanted])

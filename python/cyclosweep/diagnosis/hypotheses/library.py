@@ -1,4 +1,4 @@
-"""All hypotheses of one recording as blocks of columns: named effects and shapes without a name."""
+"""All hypotheses of one recording, each by columns: named effects and unnamed shapes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class Signature:
     """One shape of one hypothesis: its columns among all of the library's.
 
     Attributes
@@ -25,7 +25,7 @@ class Block:
     free : FreeForm or None
         The shape without a name.
     first, stop : int
-        Columns of the block.
+        Columns of the signature.
     signs : ndarray
         +1 where the amplitude cannot be negative, else 0.
     scale : ndarray
@@ -43,7 +43,7 @@ class Block:
 
     @property
     def named(self) -> bool:
-        """Whether the block belongs to a named effect."""
+        """Whether the signature belongs to a named effect."""
         return self.effect is not None
 
 
@@ -51,20 +51,20 @@ class Block:
 class Library:
     """Blocks and their columns on the fitted rows [deg]."""
 
-    blocks: tuple[Block, ...]
+    signatures: tuple[Signature, ...]
     columns: Floats
     untestable: dict[str, str] = field(default_factory=dict)
 
-    def of(self, block: Block) -> Floats:
-        """Columns of one block."""
-        return self.columns[:, block.first : block.stop]
+    def of(self, signature: Signature) -> Floats:
+        """Columns of one signature."""
+        return self.columns[:, signature.first : signature.stop]
 
 
 def build_library(
     history: History, fitted: Flags, effects: Sequence[Effect], *, with_freeforms: bool = True
 ) -> Library:
     """Columns of every shape of every effect that the recording can show, and of the free forms."""
-    blocks: list[Block] = []
+    signatures: list[Signature] = []
     parts: list[Floats] = []
     untestable: dict[str, str] = {}
     first = 0
@@ -85,7 +85,7 @@ def build_library(
         scale = np.sqrt(np.mean(kept**2, axis=0))
         parts.append(np.divide(kept, scale, out=np.zeros_like(kept), where=scale > 0))
         stop = first + kept.shape[1]
-        blocks.append(Block(name, effect, dict(shape), free, first, stop, signs, scale))
+        signatures.append(Signature(name, effect, dict(shape), free, first, stop, signs, scale))
         first = stop
 
     for effect in effects:
@@ -99,4 +99,4 @@ def build_library(
         for free in freeforms(history, fitted):
             add(free.family, None, {}, free, free.make(history))
     columns = np.column_stack(parts) if parts else np.zeros((int(fitted.sum()), 0))
-    return Library(tuple(blocks), columns, untestable)
+    return Library(tuple(signatures), columns, untestable)

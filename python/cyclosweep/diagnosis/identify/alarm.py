@@ -95,4 +95,4 @@ def tail_quantile(values: Floats, level: float) -> float:
 
 
 def _named(rest: Scan, name: str) -> bool:
-    return bool(rest.library.blocks[rest.groups[name][0]].named)
+    return bool(rest.library.signatures[rest.groups[name][0]].named)

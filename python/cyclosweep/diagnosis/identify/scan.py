@@ -1,12 +1,11 @@
 """Projected library scan: the evidence of every hypothesis after the model at hand is taken out."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.library import Block, Library
+from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.simulation.effects.history import Floats
 
 SEEN = 1e-4
@@ -14,7 +13,7 @@ SEEN = 1e-4
 
 
 def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
-    """Log evidence of a gain by a block of this projected rank, under an empirical-Bayes prior.
+    """Log evidence of a gain by a signature of this projected rank, under an empirical-Bayes prior.
 
     ``chi2/2 - k/2 - (k/2) ln(chi2/k)``, zero where the gain is below its expectation: the
     likelihood ratio averaged over amplitudes of the best-fitting size.
@@ -99,37 +98,42 @@ class Scan:
 
     @cached_property
     def transforms(self) -> list[Floats]:
-        """Orthonormal coordinates of each block, shape (columns, rank)."""
+        """Orthonormal coordinates of each signature, shape (columns, rank)."""
         out = []
-        for block in self.library.blocks:
-            part = slice(block.first, block.stop)
+        for signature in self.library.signatures:
+            part = slice(signature.first, signature.stop)
             inner = self.gram[part, part]
             out.append(_whitener(inner, self.energy[part]))
         return out
 
     @cached_property
     def ranks(self) -> Floats:
-        """Projected rank of each block."""
+        """Projected rank of each signature."""
         return np.array([t.shape[1] for t in self.transforms], dtype=np.float64)
 
     def gains(self, score: Floats) -> Floats:
-        """Chi-squared that each block takes away, shape (blocks,) or (blocks, draws)."""
-        out = np.zeros((len(self.library.blocks), *score.shape[1:]))
+        """Chi-squared that each signature takes away.
+
+        Returns
+        -------
+        ndarray, shape (signatures,) or (signatures, draws)
+        """
+        out = np.zeros((len(self.library.signatures), *score.shape[1:]))
         alone = self._single
         if len(alone[0]):
             index, column, factor, sign = alone
             z = score[column] * factor.reshape((-1,) + (1,) * (score.ndim - 1))
             wrong = sign.reshape((-1,) + (1,) * (score.ndim - 1)) * z < 0
             out[index] = np.where(wrong, 0.0, z**2)
-        for k, block in enumerate(self.library.blocks):
+        for k, signature in enumerate(self.library.signatures):
             transform = self.transforms[k]
-            if transform.shape[1] == 0 or block.stop - block.first == 1:
+            if transform.shape[1] == 0 or signature.stop - signature.first == 1:
                 continue
-            part = score[block.first : block.stop]
+            part = score[signature.first : signature.stop]
             gain = np.sum((transform.T @ part) ** 2, axis=0)
-            if np.any(block.signs):
+            if np.any(signature.signs):
                 amplitude = transform @ (transform.T @ part)
-                signs = block.signs.reshape((-1,) + (1,) * (score.ndim - 1))
+                signs = signature.signs.reshape((-1,) + (1,) * (score.ndim - 1))
                 gain = np.where(np.any(signs * amplitude < 0, axis=0), 0.0, gain)
             out[k] = gain
         return out
@@ -137,18 +141,18 @@ class Scan:
     @cached_property
     def _single(self) -> tuple[np.ndarray, np.ndarray, Floats, Floats]:
         index, column, factor, sign = [], [], [], []
-        for k, block in enumerate(self.library.blocks):
-            if block.stop - block.first == 1 and self.transforms[k].shape[1] == 1:
+        for k, signature in enumerate(self.library.signatures):
+            if signature.stop - signature.first == 1 and self.transforms[k].shape[1] == 1:
                 index.append(k)
-                column.append(block.first)
+                column.append(signature.first)
                 factor.append(self.transforms[k][0, 0])
-                sign.append(block.signs[0])
+                sign.append(signature.signs[0])
         return np.array(index, int), np.array(column, int), np.array(factor), np.array(sign)
 
     @cached_property
     def groups(self) -> dict[str, np.ndarray]:
         """Blocks of each hypothesis that the recording can show."""
-        names = np.array([block.hypothesis for block in self.library.blocks])
+        names = np.array([signature.hypothesis for signature in self.library.signatures])
         found: dict[str, np.ndarray] = {}
         for name in dict.fromkeys(names.tolist()):
             members = np.flatnonzero((names == name) & (self.ranks > 0))
@@ -169,7 +173,7 @@ class Scan:
 
     @cached_property
     def observed(self) -> Floats:
-        """Gain of each block on the recording."""
+        """Gain of each signature on the recording."""
         return likelihood_gain(self.gains(self.score), self.excess, self.freedom)
 
     @cached_property
@@ -178,8 +182,8 @@ class Scan:
         values = self.evidences(self.observed)
         return dict(zip(self.groups, map(float, values), strict=True))
 
-    def best_block(self, hypothesis: str) -> int:
-        """Index of the block with the largest evidence within a hypothesis."""
+    def best_signature(self, hypothesis: str) -> int:
+        """Index of the signature with the largest evidence within a hypothesis."""
         members = self.groups[hypothesis]
         each = evidence(self.observed[members], self.ranks[members])
         return int(members[int(np.argmax(each))])
@@ -221,41 +225,9 @@ class Scan:
             left -= part
         return np.concatenate(parts, axis=1)
 
-    def restricted(self, keep: Sequence[bool]) -> "Scan":
-        """Same scan on some of the blocks only."""
-        blocks, columns, first = [], [], 0
-        for block, kept in zip(self.library.blocks, keep, strict=True):
-            if not kept:
-                continue
-            width = block.stop - block.first
-            columns.append(np.arange(block.first, block.stop))
-            blocks.append(
-                Block(
-                    block.hypothesis,
-                    block.effect,
-                    block.shape,
-                    block.free,
-                    first,
-                    first + width,
-                    block.signs,
-                    block.scale,
-                )
-            )
-            first += width
-        index = np.concatenate(columns) if columns else np.zeros(0, dtype=int)
-        library = Library(tuple(blocks), self.library.columns[:, index], self.library.untestable)
-        return Scan(
-            library,
-            self.score[index],
-            self.gram[np.ix_(index, index)],
-            self.energy[index],
-            self.freedom,
-            self.excess,
-        )
-
 
 def _whitener(inner: Floats, energy: Floats) -> Floats:
-    """Matrix that turns a block's scores into independent unit-variance ones."""
+    """Matrix that turns a signature's scores into independent unit-variance ones."""
     if len(energy) == 1:
         if energy[0] <= 0 or inner[0, 0] < SEEN * energy[0]:
             return np.zeros((1, 0))

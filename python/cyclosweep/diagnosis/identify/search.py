@@ -8,9 +8,10 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses import sinusoid
 from cyclosweep.diagnosis.hypotheses.freeform import CLASSES, FreeForm
-from cyclosweep.diagnosis.hypotheses.library import Block, Library
+from cyclosweep.diagnosis.hypotheses.library import Library, Signature
 from cyclosweep.diagnosis.identify.alarm import Alarm
-from cyclosweep.diagnosis.identify.fit import Fit, fit
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import (
     Scan,
     evidence,
@@ -52,29 +53,29 @@ MOST_TERMS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Node:
+class Candidate:
     """A structure with its joint fit and its evidence over the baseline.
 
     Attributes
     ----------
-    fit : Fit
+    fit : FittedStructure
     gain : float
         Log evidence over the baseline alone.
     prior : float
         Log prior odds of the structure.
     rest : Scan
         What the library finds in its residual.
-    rest_hum : tuple
+    sinusoid_left : tuple
         Evidence and columns of a sinusoid in its residual.
     alarm : Alarm
         Calibration of the global test.
     """
 
-    fit: Fit
+    fit: FittedStructure
     gain: float
     prior: float
     rest: Scan
-    rest_hum: tuple[float, FreeForm | None]
+    sinusoid_left: tuple[float, FreeForm | None]
     alarm: Alarm
 
     @property
@@ -88,7 +89,7 @@ class Node:
         return self.gain + self.prior
 
     @cached_property
-    def carries(self) -> tuple[bool, ...]:
+    def recognised(self) -> tuple[bool, ...]:
         """Which terms carry their name: a shape without one takes it from others of its class."""
         fitted = self.fit
         own, nameless = [], set[str]()
@@ -108,17 +109,17 @@ class Node:
         )
 
     @property
-    def named_only(self) -> bool:
+    def all_recognised(self) -> bool:
         """Whether every term has a name."""
-        return all(self.carries)
+        return all(self.recognised)
 
     @property
     def excesses(self) -> dict[str, float]:
         """How far each hypothesis, in its residual, is beyond what it reaches by chance."""
         found = {name: self.alarm.excess(name, v) for name, v in self.rest.by_hypothesis.items()}
-        wave = self.rest_hum[1]
+        wave = self.sinusoid_left[1]
         if wave is not None:
-            found[wave.family] = self.alarm.excess(wave.family, self.rest_hum[0])
+            found[wave.family] = self.alarm.excess(wave.family, self.sinusoid_left[0])
         return found
 
     @property
@@ -128,7 +129,7 @@ class Node:
 
 
 class Search:
-    """Everything that one recording's search shares: noise, whitened library, nodes visited."""
+    """Everything that one recording's search shares: noise, whitened library, visited visited."""
 
     def __init__(self, problem: Problem, noise: Noise, library: Library, seed: int) -> None:
         self.problem, self.noise, self.library = problem, noise, library
@@ -141,17 +142,17 @@ class Search:
         rng = np.random.default_rng([seed, 1])
         self.alarm = Alarm.calibrate(self._scan(base), rng)
         self.threshold = self.alarm.threshold
-        self.root = self._node(base, 0.0, 0.0)
-        self.nodes: dict[frozenset[str], Node] = {}
-        self.settled: Node | None = None
+        self.baseline = self._node(base, 0.0, 0.0)
+        self.visited: dict[frozenset[str], Candidate] = {}
+        self.chosen: Candidate | None = None
 
-    def null(self, node: Node) -> Floats:
-        """Largest excess that recordings show when this node is all there is."""
-        if node is self.root:
+    def null(self, candidate: Candidate) -> Floats:
+        """Largest excess that recordings show when this candidate is all there is."""
+        if candidate is self.baseline:
             return self.alarm.maxima
-        return self.alarm.null(node.rest, np.random.default_rng([self.seed, 1]))
+        return self.alarm.null(candidate.rest, np.random.default_rng([self.seed, 1]))
 
-    def _scan(self, fitted: Fit) -> Scan:
+    def _scan(self, fitted: FittedStructure) -> Scan:
         return scan(
             self.library,
             self.whitened,
@@ -162,44 +163,44 @@ class Search:
             self._excess(fitted),
         )
 
-    def _node(self, fitted: Fit, gain: float, prior: float) -> Node:
+    def _node(self, fitted: FittedStructure, gain: float, prior: float) -> Candidate:
         found = sinusoid.find_wave(fitted.history, self.problem.fitted, fitted.residual)
-        return Node(fitted, gain, prior, self._scan(fitted), found, self.alarm)
+        return Candidate(fitted, gain, prior, self._scan(fitted), found, self.alarm)
 
-    def suffices(self, node: Node) -> bool:
+    def suffices(self, candidate: Candidate) -> bool:
         """Whether a structure leaves nothing but noise, or what its own inexactness explains."""
-        return node.left < self._slack(node)
+        return candidate.left < self._slack(candidate)
 
-    def _slack(self, node: Node) -> float:
+    def _slack(self, candidate: Candidate) -> float:
         """Evidence that a sufficient structure may leave in its residual."""
-        explained = max(self.root.fit.chi2 - node.fit.chi2, 0.0)
+        explained = max(self.baseline.fit.chi2 - candidate.fit.chi2, 0.0)
         return max(self.threshold, min(0.5 * SHAPE_ERROR**2 * explained, MOST_FORGIVEN))
 
-    def _enriched(self, node: Node) -> Node | None:
+    def _enriched(self, candidate: Candidate) -> Candidate | None:
         """Give a term more freedom of shape where the residual asks for more of the same effect."""
-        for k, term in enumerate(node.fit.terms):
+        for k, term in enumerate(candidate.fit.terms):
             if term.effect is None or term.slips:
                 continue
-            if node.excesses.get(term.name, 0.0) <= self.threshold:
+            if candidate.excesses.get(term.name, 0.0) <= self.threshold:
                 continue
-            members = node.rest.groups[term.name]
-            each = evidence(node.rest.observed[members], node.rest.ranks[members])
+            members = candidate.rest.groups[term.name]
+            each = evidence(candidate.rest.observed[members], candidate.rest.ranks[members])
             for index in members[np.argsort(-each)][:3]:
-                shape = term.effect.richer(term.shape, self.library.blocks[index].shape)
+                shape = term.effect.richer(term.shape, self.library.signatures[index].shape)
                 if shape is None:
                     continue
-                terms = list(node.fit.terms)
+                terms = list(candidate.fit.terms)
                 terms[k] = replace(term, shape=shape)
-                joint = self._pruned(fit(self.problem, self.noise, terms, node.fit))
+                joint = self._pruned(fit(self.problem, self.noise, terms, candidate.fit))
                 if joint is None:
                     continue
                 rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
-                added = float(evidence(self._gain(node.fit, joint), max(rank, 1)))
+                added = float(evidence(self._gain(candidate.fit, joint), max(rank, 1)))
                 if added > 1.0:
-                    return self._node(joint, node.gain + added, node.prior)
+                    return self._node(joint, candidate.gain + added, candidate.prior)
         return None
 
-    def _pruned(self, joint: Fit) -> Fit | None:
+    def _pruned(self, joint: FittedStructure) -> FittedStructure | None:
         """Leave out parts of effects that came out with the wrong sign; None where that fails."""
         for _ in range(PRUNED):
             if joint.valid:
@@ -216,41 +217,45 @@ class Search:
             joint = fit(self.problem, self.noise, terms, joint)
         return joint if joint.valid else None
 
-    def extend(self, node: Node, hypothesis: str) -> Node | None:
+    def extend(self, candidate: Candidate, hypothesis: str) -> Candidate | None:
         """Add one hypothesis to a structure and refit; None where no physical fit is better."""
-        best: Node | None = None
-        for term, rank, cost in self._starts(node, hypothesis):
-            joint = self._pruned(fit(self.problem, self.noise, (*node.fit.terms, term), node.fit))
+        best: Candidate | None = None
+        for term, rank, cost in self._starts(candidate, hypothesis):
+            joint = self._pruned(
+                fit(self.problem, self.noise, (*candidate.fit.terms, term), candidate.fit)
+            )
             if joint is None:
                 continue
-            added = self._added(node, joint, rank, cost)
-            prior = node.prior - (EXTRA_TERM if node.fit.terms else 0.0)
+            added = self._added(candidate, joint, rank, cost)
+            prior = candidate.prior - (EXTRA_TERM if candidate.fit.terms else 0.0)
             prior -= _caution(term.name, term.effect, term.shape)
-            if best is None or node.gain + added > best.gain:
-                best = self._node(joint, node.gain + added, prior)
+            if best is None or candidate.gain + added > best.gain:
+                best = self._node(joint, candidate.gain + added, prior)
         for _ in range(ENRICHED):
             richer = None if best is None else self._enriched(best)
             if richer is None:
                 break
             best = richer
         if best is not None:
-            known = self.nodes.get(best.names)
+            known = self.visited.get(best.names)
             if known is None or best.score > known.score:
-                self.nodes[best.names] = best
+                self.visited[best.names] = best
         return best
 
-    def _added(self, node: Node, joint: Fit, rank: float, cost: float) -> float:
+    def _added(
+        self, candidate: Candidate, joint: FittedStructure, rank: float, cost: float
+    ) -> float:
         """Log evidence that the last term of a joint fit adds to a structure."""
-        gain = self._gain(node.fit, joint)
+        gain = self._gain(candidate.fit, joint)
         effect = joint.terms[-1].effect
         if effect is not None and effect.vector:
             places = joint.amplitude_places(len(joint.terms) - 1)
             return 0.5 * gain - price_of_vector(joint.beta[places], joint.information(places))
         if effect is None or not effect.dense:
-            cost = max(cost, self._price_of_shape(joint, node.rest))
+            cost = max(cost, self._price_of_shape(joint, candidate.rest))
         return float(evidence(gain, rank)) - cost
 
-    def _price_of_shape(self, joint: Fit, rest: Scan) -> float:
+    def _price_of_shape(self, joint: FittedStructure, rest: Scan) -> float:
         """Log of how many of its library's shapes of the last term a recording tells apart."""
         last = len(joint.terms) - 1
         places, ranges = [], []
@@ -258,94 +263,98 @@ class Search:
             if nonlinear.term != last or nonlinear.name == "amplitude":
                 continue
             each = [
-                nonlinear.to_scale(rest.library.blocks[m].shape[nonlinear.name])
+                nonlinear.to_scale(rest.library.signatures[m].shape[nonlinear.name])
                 for m in rest.groups.get(joint.terms[last].name, ())
-                if nonlinear.name in rest.library.blocks[m].shape
+                if nonlinear.name in rest.library.signatures[m].shape
             ]
             if len(each) and max(each) > min(each):
                 places.append(len(joint.beta) + k)
                 ranges.append(max(each) - min(each))
         return price_of_choice(joint.information(places), np.array(ranges)) if places else 0.0
 
-    def _excess(self, fitted: Fit) -> float:
+    def _excess(self, fitted: FittedStructure) -> float:
         return max(fitted.chi2 - self.noise.freedom, 0.0)
 
-    def _gain(self, before: Fit, after: Fit) -> float:
+    def _gain(self, before: FittedStructure, after: FittedStructure) -> float:
         """Twice the log-likelihood gained from one fit to the next."""
         drop = before.chi2 - after.chi2
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
-    def adopt(self, fitted: Fit, gain: float) -> Node:
-        """Take in a structure that was fitted elsewhere."""
-        node = self._node(fitted, gain, 0.0)
-        self.nodes[node.names] = node
-        return node
+    def add(self, fitted: FittedStructure, gain: float) -> Candidate:
+        """Add a structure that was fitted elsewhere to those visited."""
+        candidate = self._node(fitted, gain, 0.0)
+        self.visited[candidate.names] = candidate
+        return candidate
 
-    def refit(self, terms: tuple[Term, ...]) -> Node:
-        """Fit a structure that was not visited on its own."""
-        return self._node(fit(self.problem, self.noise, terms, self.root.fit), 0.0, 0.0)
+    def refit(self, terms: tuple[Term, ...]) -> Candidate:
+        """FittedStructure a structure that was not visited on its own."""
+        return self._node(fit(self.problem, self.noise, terms, self.baseline.fit), 0.0, 0.0)
 
-    def _starts(self, node: Node, hypothesis: str) -> Iterable[tuple[Term, float, float]]:
+    def _starts(self, candidate: Candidate, hypothesis: str) -> Iterable[tuple[Term, float, float]]:
         """Terms to start from, with projected rank and the price of the choice of shape."""
         if hypothesis in sinusoid.FAMILIES:
-            form = node.rest_hum[1]
+            form = candidate.sinusoid_left[1]
             assert form is not None
-            gain = self._wave_gain(node)
-            yield Term(None, {}, form), 2.0, max(gain - node.rest_hum[0], 0.0)
+            gain = self._wave_gain(candidate)
+            yield Term(None, {}, form), 2.0, max(gain - candidate.sinusoid_left[0], 0.0)
             return
-        rest = node.rest
+        rest = candidate.rest
         members = rest.groups[hypothesis]
         each = evidence(rest.observed[members], rest.ranks[members])
         average = rest.by_hypothesis[hypothesis]
-        blocks = [rest.library.blocks[index] for index in members]
-        caution = np.array([_caution(hypothesis, b.effect, b.shape) for b in blocks])
+        signatures = [rest.library.signatures[index] for index in members]
+        caution = np.array([_caution(hypothesis, b.effect, b.shape) for b in signatures])
         rank = np.argsort(caution - each)
         order = members[rank]
-        first = rest.library.blocks[order[0]]
+        first = rest.library.signatures[order[0]]
         dense = first.effect.dense if first.effect is not None else hypothesis in DENSE
         most = np.inf if dense else MOST_FOR_CHOICE
         price = float(np.clip(each[rank[0]] - average, 0.0, most))
         slips = first.effect is not None and first.effect.slips
         tried = 0
         for index in order:
-            block = rest.library.blocks[index]
-            if tried and not (slips and _differs(block, first)):
+            signature = rest.library.signatures[index]
+            if tried and not (slips and _differs(signature, first)):
                 continue
-            amplitude = self._amplitude(rest, int(index), block) if slips else 0.0
-            shapes: Sequence[Shape] = [block.shape]
-            if block.effect is not None and not tried:
-                shapes = block.effect.variants(node.fit.history, block.shape)
+            amplitude = self._amplitude(rest, int(index), signature) if slips else 0.0
+            shapes: Sequence[Shape] = [signature.shape]
+            if signature.effect is not None and not tried:
+                shapes = signature.effect.variants(candidate.fit.history, signature.shape)
             for shape in shapes:
-                term = Term(block.effect, shape, block.free, amplitude)
+                term = Term(signature.effect, shape, signature.free, amplitude)
                 yield term, float(rest.ranks[index]), price
             tried += 1
             if tried >= (2 if slips else 1):
                 return
 
-    def _wave_gain(self, node: Node) -> float:
+    def _wave_gain(self, candidate: Candidate) -> float:
         """Evidence of the wave found in a residual before the price of its search."""
-        form = node.rest_hum[1]
+        form = candidate.sinusoid_left[1]
         assert form is not None
         use = self.problem.fitted
-        angle, mean = self.problem.angle_deg[use], node.fit.mean_deg[use]
+        angle, mean = self.problem.angle_deg[use], candidate.fit.mean_deg[use]
         white = self.noise.design(
-            form.make(node.fit.history)[use], self.noise.residual(angle, mean)[1]
+            form.make(candidate.fit.history)[use], self.noise.residual(angle, mean)[1]
         )
         basis = orthonormal(white)
-        return float(evidence(np.sum((basis.T @ node.fit.residual) ** 2), 2.0))
+        return float(evidence(np.sum((basis.T @ candidate.fit.residual) ** 2), 2.0))
 
-    def _amplitude(self, rest: Scan, index: int, block: Block) -> float:
-        inner = rest.gram[block.first, block.first]
-        return float(max(rest.score[block.first] / inner / block.scale[0], 1e-6))
+    def _amplitude(self, rest: Scan, index: int, signature: Signature) -> float:
+        inner = rest.gram[signature.first, signature.first]
+        return float(max(rest.score[signature.first] / inner / signature.scale[0], 1e-6))
 
-    def candidates(self, node: Node, most: int, least_named: int = 2) -> list[str]:
+    def hypotheses_to_add(self, candidate: Candidate, most: int, least_named: int = 2) -> list[str]:
         """Hypotheses worth adding to a structure, strongest first."""
-        values = node.excesses
+        values = candidate.excesses
         good = sorted(
-            (name for name, v in values.items() if v > self.threshold and name not in node.names),
+            (
+                name
+                for name, v in values.items()
+                if v > self.threshold and name not in candidate.names
+            ),
             key=lambda name: -values[name],
         )
-        named = {block.hypothesis for block in self.library.blocks if block.named}
+        named = {signature.hypothesis for signature in self.library.signatures if signature.named}
         chosen = good[:most]
         chosen += [name for name in good if name in named and name not in chosen][
             : max(0, least_named - sum(name in named for name in chosen))
@@ -354,24 +363,24 @@ class Search:
 
     def run(self, progress: Callable[[str], None] = lambda text: None) -> None:
         """Visit structures: in breadth up to three terms, then along the best one."""
-        if self.root.left < self.threshold:
+        if self.baseline.left < self.threshold:
             return
-        front = [self.root]
+        front = [self.baseline]
         for depth in range(MOST_TERMS):
-            found: list[Node] = []
-            for node in front:
-                for name in self.candidates(node, 6 if depth == 0 else 3, 3 - depth):
-                    if node.names | {name} in self.nodes and depth:
+            found: list[Candidate] = []
+            for candidate in front:
+                for name in self.hypotheses_to_add(candidate, 6 if depth == 0 else 3, 3 - depth):
+                    if candidate.names | {name} in self.visited and depth:
                         continue
-                    progress(f"fitting {' + '.join([*node.fit.names, name])}")
-                    child = self.extend(node, name)
+                    progress(f"fitting {' + '.join([*candidate.fit.names, name])}")
+                    child = self.extend(candidate, name)
                     if child is not None:
                         found.append(child)
             if not found:
                 break
             found = list({n.names: n for n in sorted(found, key=lambda n: n.score)}.values())
             found.sort(key=lambda n: -n.score)
-            named = [n for n in found if n.named_only]
+            named = [n for n in found if n.all_recognised]
             front = found[: 3 - (depth > 0)]
             front += [n for n in named[: 3 - depth] if all(n is not f for f in front)]
         self._drop()
@@ -379,17 +388,17 @@ class Search:
 
     def _drop(self) -> None:
         """Leave each term out of the best structures: the rest may explain it all."""
-        for node in sorted(self.nodes.values(), key=lambda n: -n.score)[:4]:
-            self._visit_subsets(node)
+        for candidate in sorted(self.visited.values(), key=lambda n: -n.score)[:4]:
+            self._visit_subsets(candidate)
 
-    def _visit_subsets(self, node: Node) -> None:
-        if len(node.fit.terms) < 2:
+    def _visit_subsets(self, candidate: Candidate) -> None:
+        if len(candidate.fit.terms) < 2:
             return
-        for k in range(len(node.fit.terms)):
-            kept = [t for j, t in enumerate(node.fit.terms) if j != k]
-            if frozenset(t.name for t in kept) in self.nodes:
+        for k in range(len(candidate.fit.terms)):
+            kept = [t for j, t in enumerate(candidate.fit.terms) if j != k]
+            if frozenset(t.name for t in kept) in self.visited:
                 continue
-            parent = self.root
+            parent = self.baseline
             for term in kept:
                 if term.name not in parent.rest.groups:
                     break
@@ -400,28 +409,32 @@ class Search:
 
     def _follow(self, progress: Callable[[str], None]) -> None:
         """Add further terms to the best structure as long as the residual asks for them."""
-        node = self.best()
-        while node is not None and len(node.fit.terms) < 7 and node.left > self.threshold:
+        candidate = self.best()
+        while (
+            candidate is not None
+            and len(candidate.fit.terms) < 7
+            and candidate.left > self.threshold
+        ):
             children = []
-            for name in self.candidates(node, 2, 1):
-                progress(f"fitting {' + '.join([*node.fit.names, name])}")
-                child = self.extend(node, name)
-                if child is not None and child.score > node.score:
+            for name in self.hypotheses_to_add(candidate, 2, 1):
+                progress(f"fitting {' + '.join([*candidate.fit.names, name])}")
+                child = self.extend(candidate, name)
+                if child is not None and child.score > candidate.score:
                     children.append(child)
             if not children:
                 return
-            node = max(children, key=lambda n: n.score)
+            candidate = max(children, key=lambda n: n.score)
 
-    def best(self) -> Node | None:
+    def best(self) -> Candidate | None:
         """Structure with the largest posterior odds."""
         return max(self.explanations(), key=lambda n: n.score, default=None)
 
-    def explanations(self) -> list[Node]:
+    def explanations(self) -> list[Candidate]:
         """Structures worth considering: those that contain a sufficient smaller one are not."""
-        enough = [n for n in self.nodes.values() if self.suffices(n)]
+        enough = [n for n in self.visited.values() if self.suffices(n)]
         kept = [
             n
-            for n in self.nodes.values()
+            for n in self.visited.values()
             if not any(e.names < n.names and n.score < e.score + self._slack(e) for e in enough)
         ]
         return sorted(kept, key=lambda n: -n.score)
@@ -432,7 +445,7 @@ def _caution(name: str, effect: Effect | None, shape: Shape) -> float:
     return CAUTION.get(name, WITHOUT_NAME) if effect is None else effect.caution(shape)
 
 
-def _differs(block: Block, other: Block) -> bool:
+def _differs(signature: Signature, other: Signature) -> bool:
     """Whether two slip shapes are far enough apart to be worth a second start."""
-    ratio = float(block.shape["slip_deg"]) / float(other.shape["slip_deg"])
-    return not 0.5 < ratio < 2.0 or block.shape.get("slack") != other.shape.get("slack")
+    ratio = float(signature.shape["slip_deg"]) / float(other.shape["slip_deg"])
+    return not 0.5 < ratio < 2.0 or signature.shape.get("slack") != other.shape.get("slack")

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fit import Fit
-from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.prepare.problem import line_design
 from cyclosweep.simulation.effects.history import Floats
 
 HIDDEN = 0.9999
@@ -61,27 +62,29 @@ ALWAYS_HIDDEN = (
 """Exact aliases of the calibration: name, reason, what would show them."""
 
 
-def testability(search: Search, node: Node, p_of: "dict[str, float]") -> list[Testability]:
-    """Judge every testable named effect against the residual of a node."""
-    fitted = node.fit
-    raw = _recalibration(node)(search.library.columns)
-    rest = node.rest
+def testability(
+    search: Search, candidate: Candidate, p_of: "dict[str, float]"
+) -> list[Testability]:
+    """Judge every testable named effect against the residual of a candidate."""
+    fitted = candidate.fit
+    raw = _recalibration(fitted)(search.library.columns)
+    rest = candidate.rest
     out: list[Testability] = []
     accepted = set(fitted.names)
     for name, members in rest.groups.items():
-        if rest.library.blocks[members[0]].effect is None or name in accepted:
+        if rest.library.signatures[members[0]].effect is None or name in accepted:
             continue
         upper, estimate, detect, absorbed = 0.0, 0.0, np.inf, 1.0
         best_gain = -1.0
         for index in members:
-            block = rest.library.blocks[index]
-            part = slice(block.first, block.stop)
+            signature = rest.library.signatures[index]
+            part = slice(signature.first, signature.stop)
             transform = rest.transforms[index]
             z = transform.T @ rest.score[part]
             rows = raw[:, part] @ transform
             spreads = np.sqrt(np.sum(rows**2, axis=1))
             shape = rows @ z
-            if np.any(block.signs * (transform @ z) < 0):
+            if np.any(signature.signs * (transform @ z) < 0):
                 z, shape = 0.0 * z, 0.0 * shape
             peak = float(np.max(np.abs(shape)))
             upper = max(upper, float(np.max(np.abs(shape) + 1.645 * spreads)))
@@ -101,24 +104,23 @@ def testability(search: Search, node: Node, p_of: "dict[str, float]") -> list[Te
     return out
 
 
-def size_of(node: Node, index: int) -> Floats:
+def size_of(fitted: FittedStructure, index: int) -> Floats:
     """Twist of a term after re-calibration, on the fitted rows [deg]."""
-    return _recalibration(node)(node.fit.contribution(index)[node.fit.problem.fitted])
+    return _recalibration(fitted)(fitted.contribution(index)[fitted.problem.fitted])
 
 
-def spread_of_size(node: Node, index: int) -> float:
+def spread_of_size(fitted: FittedStructure, index: int) -> float:
     """Standard error of the largest twist of a term: of its amplitudes and its shape [deg]."""
-    fitted = node.fit
     use = fitted.problem.fitted
-    recalibrated = _recalibration(node)
+    recalibrated = _recalibration(fitted)
 
-    def twist(changed: Fit) -> Floats:
+    def twist(changed: FittedStructure) -> Floats:
         return recalibrated(changed.contribution(index)[use])
 
     here = twist(fitted)
     place = int(np.argmax(np.abs(here)))
     spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
-    chosen = fitted.places_of(index)
+    chosen = [*fitted.amplitude_places(index), *fitted.nonlinear_places(index)]
     slope = np.zeros(len(chosen))
     for j, k in enumerate(chosen):
         step = 0.1 * spread[k]
@@ -128,21 +130,12 @@ def spread_of_size(node: Node, index: int) -> float:
     return float(np.sqrt(max(variance, 0.0)))
 
 
-def _recalibration(node: Node) -> Callable[[Floats], Floats]:
+def _recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
     """What takes out of signatures on the fitted rows all that a calibration takes up."""
-    basis = orthonormal(_raw_base(node))
+    problem, history = fitted.problem, fitted.history
+    line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
+    basis = orthonormal(line[problem.fitted])
     return lambda part: np.asarray(part - basis @ (basis.T @ part))
-
-
-def _raw_base(node: Node) -> Floats:
-    """Columns of the baseline on the fitted rows."""
-    problem = node.fit.problem
-    use = problem.fitted
-    history = node.fit.history
-    parts = [np.ones(int(use.sum())), history.applied_nm[use]]
-    if not problem.one_sided:
-        parts.append(history.side[use])
-    return np.column_stack(parts)
 
 
 def hidden_effects(search: Search) -> list[dict[str, str]]:
@@ -150,8 +143,8 @@ def hidden_effects(search: Search) -> list[dict[str, str]]:
     out = [{"name": n, "reason": r, "needs": w} for n, r, w in ALWAYS_HIDDEN]
     for name, reason in search.library.untestable.items():
         out.append({"name": name, "reason": reason, "needs": NEEDS.get(name, "another programme")})
-    shown = set(search.root.rest.groups)
-    for name in {b.hypothesis for b in search.library.blocks if b.named} - shown:
+    shown = set(search.baseline.rest.groups)
+    for name in {b.hypothesis for b in search.library.signatures if b.named} - shown:
         out.append(
             {
                 "name": name,

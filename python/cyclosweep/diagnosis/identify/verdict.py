@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.diagnosis.identify.testability import Testability
 
 Verdict = Literal[
@@ -31,17 +31,17 @@ class Decision:
     Attributes
     ----------
     verdict : str
-    best : Node or None
+    best : Candidate or None
         Structure on which effects, repair and sizes rest.
-    explanations : list of (Node, probability)
+    explanations : list of (Candidate, probability)
         Most probable first, together at least 95 % where anything was found.
     unexplained : bool
         Something without a name remains or is the better explanation.
     """
 
     verdict: Verdict
-    best: Node | None
-    explanations: list[tuple[Node, float]]
+    best: Candidate | None
+    explanations: list[tuple[Candidate, float]]
     unexplained: bool
 
 
@@ -50,40 +50,45 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
 
     ``bounds`` are the testable effects at the baseline, for the case that nothing is found.
     """
-    if search.root.left < search.threshold:
+    if search.baseline.left < search.threshold:
         clear = bool(bounds) and all(b.upper95_deg < tolerance_deg for b in bounds)
         return Decision("NOTHING_MISSING" if clear else "INSUFFICIENT_DATA", None, [], False)
     structures = search.explanations()
     if not structures:
         return Decision("UNKNOWN_PHYSICS", None, [], True)
-    enough = [node for node in structures if search.suffices(node)]
+    enough = [candidate for candidate in structures if search.suffices(candidate)]
     if not enough:
         best = structures[0]
         return Decision("UNKNOWN_PHYSICS", best, [(best, 1.0)], True)
-    score = np.array([node.score for node in enough])
+    score = np.array([candidate.score for candidate in enough])
     probability = np.exp(score - score.max())
     probability /= probability.sum()
     held = int(np.searchsorted(np.cumsum(probability), COVERAGE)) + 1
     explained = [(n, float(p)) for n, p in zip(enough[:held], probability[:held], strict=True)]
-    nameless = float(sum(p for n, p in zip(enough, probability, strict=True) if not n.named_only))
-    if nameless > 0.5:
-        best = next(n for n in enough if not n.named_only)
+    unnamed = [n for n in enough if not n.all_recognised]
+    of_unnamed = float(sum(p for n, p in zip(enough, probability, strict=True) if n in unnamed))
+    if of_unnamed > 0.5:
+        best = unnamed[0]
         return Decision("UNKNOWN_PHYSICS", best, explained, True)
-    best = next(n for n in enough if n.named_only)
+    best = next(n for n in enough if n.all_recognised)
     sure = probability[enough.index(best)] >= SURE
     return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explained, False)
 
 
-def decide_structured(search: Search, repeats: bool) -> Decision:
+def decide_whole_loop(chosen: Candidate | None, *, repeats: bool) -> Decision:
     """Verdict where the residual is error of the model: only what repeats counts as physics left.
 
-    Effects that paid for themselves are named; whether they are all is told by the replicates.
+    Parameters
+    ----------
+    chosen : Candidate or None
+        Structure fitted to whole loops.
+    repeats : bool
+        Whether its residual repeats from run to run.
     """
-    best = search.settled
-    if best is None or not best.fit.terms:
+    if chosen is None or not chosen.fit.terms:
         return Decision("INSUFFICIENT_DATA", None, [], False)
     verdict: Verdict = "UNKNOWN_PHYSICS" if repeats else "IDENTIFIED"
-    return Decision(verdict, best, [(best, 1.0)], repeats)
+    return Decision(verdict, chosen, [(chosen, 1.0)], repeats)
 
 
 def unit_slip(ratio: float, gear_ratio: float) -> str | None:

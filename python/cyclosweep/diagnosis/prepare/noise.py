@@ -10,6 +10,9 @@ from cyclosweep.simulation.effects.history import Floats
 MODEL_ERROR = 0.945
 """An autocorrelation above this is taken for structured error of the model, not for noise."""
 
+INDEPENDENT_PIECES = 40.0
+"""Rough number of independent pieces of a residual that is error of the model."""
+
 COARSE_STEP = 3.5
 """Resolution steps above this many standard deviations need the interval likelihood."""
 

@@ -71,6 +71,47 @@ class Problem:
         """Number of fitted rows."""
         return int(self.fitted.sum())
 
+    @property
+    def line_columns(self) -> int:
+        """Number of linear parameters of the baseline: datum, compliance, maybe free play."""
+        return 2 if self.one_sided else 3
+
+    def rms_error(self, angle_deg: Floats, rows: Flags) -> float:
+        """Root mean square of measured less modelled twist; NaN without rows [deg].
+
+        Parameters
+        ----------
+        angle_deg : ndarray, shape (n,)
+            Modelled twist of all rows [deg].
+        rows : ndarray of bool, shape (n,)
+            Rows that count, each with the samples averaged in it.
+        """
+        difference = (self.angle_deg - angle_deg)[rows]
+        if not len(difference):
+            return float("nan")
+        return float(np.sqrt(np.average(difference**2, weights=self.weight[rows])))
+
+
+def line_design(history: History, torque_nm: Floats, *, one_sided: bool) -> Floats:
+    """Columns of the baseline's linear parameters: datum, compliance and free play.
+
+    Parameters
+    ----------
+    history : History
+    torque_nm : ndarray, shape (n,)
+        Torque that twists the drive [N m].
+    one_sided : bool
+        Only one flank was loaded: free play has no column.
+
+    Returns
+    -------
+    ndarray, shape (n, 2 or 3)
+    """
+    parts = [np.ones(len(history)), torque_nm]
+    if not one_sided:
+        parts.append(history.side)
+    return np.column_stack(parts)
+
 
 def prepare(
     recording: Recording, line: NominalLine, output_pin_count: int, most_rows: int = MOST_ROWS

@@ -9,6 +9,9 @@ from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.simulation.effects.history import Flags
 
 FOLDS = 4
+"""Blocks that are left out in turn."""
+KEPT_RUNS = "the runs kept for it"
+"""Label of runs that were never fitted, because they are kept for the verdict."""
 
 
 def restrict(problem: Problem, noise: Noise, rows: Flags) -> tuple[Problem, Noise]:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats, History
@@ -96,7 +96,7 @@ MENU: tuple[Plan, ...] = (
 
 
 def next_experiment(
-    search: Search, rivals: list[Node], weakest: str | None, tolerance_deg: float
+    search: Search, rivals: list[Candidate], weakest: str | None, tolerance_deg: float
 ) -> dict[str, object]:
     """Choose the programme that separates the best two explanations, or shows the weakest effect.
 
@@ -135,21 +135,21 @@ def next_experiment(
     }
 
 
-def _contested(rivals: list[Node]) -> list[tuple[str, list[Term], Node]]:
+def _contested(rivals: list[Candidate]) -> list[tuple[str, list[Term], Candidate]]:
     """Terms in which the two best explanations differ."""
     if len(rivals) < 2:
         return []
     out = []
-    for node, other in ((rivals[0], rivals[1]), (rivals[1], rivals[0])):
-        own = [t for t in node.fit.terms if t.name not in other.names]
+    for candidate, other in ((rivals[0], rivals[1]), (rivals[1], rivals[0])):
+        own = [t for t in candidate.fit.terms if t.name not in other.names]
         if any(t.effect is None for t in own):
             return []
-        out.append(("+".join(t.name for t in own) or "nothing more", own, node))
+        out.append(("+".join(t.name for t in own) or "nothing more", own, candidate))
     return out
 
 
 def _history(search: Search, plan: Plan) -> History:
-    base = search.root.fit.history
+    base = search.baseline.fit.history
     torque, run, crank, warm = plan.make(base.largest_torque_nm)
     side = np.where(torque < 0, -1.0, 1.0)
     angle = base.datum_deg + side * base.free_play_deg + base.compliance_deg_per_nm * torque
@@ -171,7 +171,7 @@ def _history(search: Search, plan: Plan) -> History:
 def _detectability(
     search: Search,
     history: History,
-    terms: list[tuple[str, list[Term], Node]],
+    terms: list[tuple[str, list[Term], Candidate]],
     weakest: str | None,
     tolerance_deg: float,
 ) -> float:
@@ -201,12 +201,12 @@ def _detectability(
     return float(np.median(values)) if values else -np.inf
 
 
-def _twist(node: Node, term: Term, history: History) -> Floats:
+def _twist(candidate: Candidate, term: Term, history: History) -> Floats:
     """Twist of a fitted term on another history."""
     columns = term.columns(history)
     if term.slips:
         return np.asarray(columns[:, 0] * term.amplitude)
-    index = next(k for k, t in enumerate(node.fit.terms) if t.name == term.name)
-    beta = node.fit.beta[node.fit.column_range(index)]
+    index = next(k for k, t in enumerate(candidate.fit.terms) if t.name == term.name)
+    beta = candidate.fit.beta[candidate.fit.column_range(index)]
     width = min(columns.shape[1], len(beta))
     return np.asarray(columns[:, :width] @ beta[:width])

@@ -3,13 +3,15 @@
 import numpy as np
 
 from cyclosweep.diagnosis.identify.scan import likelihood_gain
-from cyclosweep.diagnosis.identify.search import Node, Search
+from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.simulation.effects.history import Floats
 
 TWINS = 300
 
 
-def self_check(search: Search, best: Node | None, rivals: list[Node]) -> dict[str, object]:
+def self_check(
+    search: Search, best: Candidate | None, rivals: list[Candidate]
+) -> dict[str, object]:
     """False-alarm rate, power and confusion on twins of the recording.
 
     Twins have this recording's programme and noise, and nothing, the found effect, or a rival
@@ -21,7 +23,7 @@ def self_check(search: Search, best: Node | None, rivals: list[Node]) -> dict[st
         ``false_alarm``, ``power`` and ``confusion`` (true name -> named -> share).
     """
     rng = np.random.default_rng([search.seed, 3])
-    nothing = search.alarm.null(search.root.rest, rng, 2 * TWINS)
+    nothing = search.alarm.null(search.baseline.rest, rng, 2 * TWINS)
     out: dict[str, object] = {
         "false_alarm": float(np.mean(nothing > search.threshold)),
         "power": None,
@@ -32,14 +34,14 @@ def self_check(search: Search, best: Node | None, rivals: list[Node]) -> dict[st
         return out
     confusion: dict[str, dict[str, float]] = {}
     powers = []
-    for number, node in enumerate([best, *rivals]):
-        for index, term in enumerate(node.fit.terms):
-            parent = search.nodes.get(node.names - {term.name}, search.root)
-            if len(node.names) > 1 and parent is search.root:
+    for number, candidate in enumerate([best, *rivals]):
+        for index, term in enumerate(candidate.fit.terms):
+            parent = search.visited.get(candidate.names - {term.name}, search.baseline)
+            if len(candidate.names) > 1 and parent is search.baseline:
                 continue
             if term.name in confusion:
                 continue
-            power, row = _twins(search, parent, node, index, rng)
+            power, row = _twins(search, parent, candidate, index, rng)
             confusion[term.name] = row
             if number == 0:
                 powers.append(power)
@@ -49,10 +51,10 @@ def self_check(search: Search, best: Node | None, rivals: list[Node]) -> dict[st
 
 
 def _twins(
-    search: Search, parent: Node, node: Node, index: int, rng: np.random.Generator
+    search: Search, parent: Candidate, candidate: Candidate, index: int, rng: np.random.Generator
 ) -> tuple[float, dict[str, float]]:
     """Power, and the share of twins in which each hypothesis comes out on top."""
-    signal = _whitened_signal(search, parent, node, index)
+    signal = _whitened_signal(search, parent, candidate, index)
     tangent = parent.fit.tangent
     left = signal - tangent @ (tangent.T @ signal)
     rest = parent.rest
@@ -69,9 +71,9 @@ def _twins(
     return float(np.mean(found)), dict(sorted(row.items(), key=lambda item: -item[1]))
 
 
-def _whitened_signal(search: Search, parent: Node, node: Node, index: int) -> Floats:
+def _whitened_signal(search: Search, parent: Candidate, candidate: Candidate, index: int) -> Floats:
     """Whitened twist of one term, on the fitted rows."""
     use = search.problem.fitted
-    part = node.fit.contribution(index)[use]
-    _, weight = search.noise.residual(search.problem.angle_deg[use], node.fit.mean_deg[use])
+    part = candidate.fit.contribution(index)[use]
+    _, weight = search.noise.residual(search.problem.angle_deg[use], candidate.fit.mean_deg[use])
     return search.noise.design(part, weight)

@@ -3,9 +3,8 @@
 import numpy as np
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.identify.fit import Fit
 from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.diagnosis.whole_loop.known_flank import ForecastFit
+from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import elastic_law
 
@@ -19,26 +18,33 @@ LEAST_REPEAT = 0.3
 """Correlation between runs from which a residual is worth naming as a staircase."""
 
 
-def findings(
-    problem: Problem, fitted: Fit, repeats: float | None, *, unsteady: bool
-) -> list[dict[str, str]]:
-    """Topics and sentences, in the order in which a loop is read; empty without a forecast."""
-    if not isinstance(fitted, ForecastFit):
-        return []
-    known = {t.name for t in fitted.terms}
-    rows = [_play(problem, fitted)]
+def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+    """Topics and sentences, in the order in which a loop is read.
+
+    Parameters
+    ----------
+    forecast : Forecast
+        The simulation fitted to the loops.
+    repeats : float, optional
+        Correlation of the residual between runs.
+    unsteady : bool
+        Whether the loops drift from run to run.
+    """
+    problem = forecast.problem
+    known = forecast.names
+    rows = [_play(problem, forecast)]
     if "friction_hysteresis" in known:
-        rows.append(_friction(fitted))
+        rows.append(_friction(forecast))
     if "load_dependent_friction" in known:
-        rows.append(_load_friction(fitted))
-    if censored(problem, fitted) is None:
+        rows.append(_load_friction(forecast))
+    if censored(problem, forecast) is None:
         if known & {"contact_stiffening", "clearance_takeup"}:
-            rows.append(_stiffening(problem, fitted))
+            rows.append(_stiffening(problem, forecast))
         rows.append(_stiffness(problem, unsteady=unsteady))
     else:
         rows.append(("stiffness", "Not reported, for the same reason as the play."))
     if repeats is not None and repeats > LEAST_REPEAT and not unsteady:
-        rows.append(_staircase(problem, fitted, repeats))
+        rows.append(_staircase(problem, forecast, repeats))
     return [{"topic": topic, "text": text} for topic, text in rows]
 
 
@@ -88,13 +94,13 @@ def limits_of(problem: Problem, drive: Drive) -> list[dict[str, str]]:
     return out
 
 
-def censored(problem: Problem, fitted: ForecastFit) -> str | None:
+def censored(problem: Problem, forecast: Forecast) -> str | None:
     """Reason why play and stiffness cannot be read: friction hardly let the shaft go."""
     rows = problem.whole_fitted | problem.whole_held_out
     moved = float(np.ptp(problem.angle_deg[rows]))
     nominal = 2.0 * problem.nominal_free_play
     top = float(np.abs(problem.history.applied_nm[rows]).max())
-    limit = sum(t.amplitude for t in fitted.terms if t.name == "friction_hysteresis")
+    limit = sum(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
     if limit > STUCK * top:
         sign = f"Coulomb friction of {limit:.3g} N m takes {100 * limit / top:.0f} % of"
     elif moved < CENSORED * nominal:
@@ -115,12 +121,11 @@ def _angle(value_deg: float) -> str:
     return f"{value_deg:.3g} deg ({60 * value_deg:.3g} arcmin)"
 
 
-def _spread(fitted: ForecastFit, kind: str, name: str = "") -> float:
+def _spread(forecast: Forecast, kind: str, name: str = "") -> float:
     """Half width of the 95 % interval of a parameter, in its own unit."""
-    forecast = fitted.forecast
     for k, parameter in enumerate(forecast.parameters):
         if parameter.kind == kind and (
-            not name or (parameter.term >= 0 and _name(fitted, k) == name)
+            not name or (parameter.term >= 0 and _name(forecast, k) == name)
         ):
             error = float(np.sqrt(max(forecast.covariance[k, k], 0.0)))
             value = float(np.exp(forecast.values[k])) if parameter.logarithmic else 1.0
@@ -128,21 +133,21 @@ def _spread(fitted: ForecastFit, kind: str, name: str = "") -> float:
     return float("nan")
 
 
-def _name(fitted: ForecastFit, parameter: int) -> str:
-    known = fitted.forecast.parameters[parameter]
-    return fitted.terms[known.term].name if known.name == "amplitude" else ""
+def _name(forecast: Forecast, parameter: int) -> str:
+    known = forecast.parameters[parameter]
+    return forecast.terms[known.term].name if known.name == "amplitude" else ""
 
 
-def _play(problem: Problem, fitted: ForecastFit) -> tuple[str, str]:
-    reason = censored(problem, fitted)
+def _play(problem: Problem, forecast: Forecast) -> tuple[str, str]:
+    reason = censored(problem, forecast)
     if reason is not None:
         return "play", f"Not reported, friction-censored: {reason}."
-    model = fitted.forecast.model
+    model = forecast.model
     dead = 2.0 * model.free_play_deg
     if problem.one_sided:
         return "play", "Not reported: only one flank was loaded."
     law = elastic_law(model, problem.history.largest_torque_nm)
-    text = f"Dead zone of {_angle(dead)} ± {2 * _spread(fitted, 'play'):.2g} deg in all."
+    text = f"Dead zone of {_angle(dead)} ± {2 * _spread(forecast, 'play'):.2g} deg in all."
     if law is not None:
         level = 0.03 * problem.history.largest_torque_nm
         soft = float(np.interp(level, law.torque_nm, law.twist_deg))
@@ -154,9 +159,9 @@ def _play(problem: Problem, fitted: ForecastFit) -> tuple[str, str]:
     return "play", text
 
 
-def _friction(fitted: ForecastFit) -> tuple[str, str]:
-    limit = next(t.amplitude for t in fitted.terms if t.name == "friction_hysteresis")
-    half = _spread(fitted, "nonlinear", "friction_hysteresis")
+def _friction(forecast: Forecast) -> tuple[str, str]:
+    limit = next(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
+    half = _spread(forecast, "nonlinear", "friction_hysteresis")
     return (
         "friction hysteresis",
         f"Coulomb friction of {limit:.3g} ± {half:.2g} N m at the measured shaft: the "
@@ -164,9 +169,9 @@ def _friction(fitted: ForecastFit) -> tuple[str, str]:
     )
 
 
-def _load_friction(fitted: ForecastFit) -> tuple[str, str]:
-    share = next(t.amplitude for t in fitted.terms if t.name == "load_dependent_friction")
-    half = _spread(fitted, "nonlinear", "load_dependent_friction")
+def _load_friction(forecast: Forecast) -> tuple[str, str]:
+    share = next(t.amplitude for t in forecast.terms if t.name == "load_dependent_friction")
+    half = _spread(forecast, "nonlinear", "load_dependent_friction")
     return (
         "friction that grows with load",
         f"{100 * share:.0f} ± {100 * half:.0f} % of the transmitted torque on top of it: the loop "
@@ -174,8 +179,8 @@ def _load_friction(fitted: ForecastFit) -> tuple[str, str]:
     )
 
 
-def _stiffening(problem: Problem, fitted: ForecastFit) -> tuple[str, str]:
-    model = fitted.forecast.model
+def _stiffening(problem: Problem, forecast: Forecast) -> tuple[str, str]:
+    model = forecast.model
     top = float(np.abs(problem.history.applied_nm[problem.fitted]).max())
     law = elastic_law(model, top)
     assert law is not None
@@ -244,9 +249,9 @@ def _student(count: int) -> float:
     return float(t.ppf(0.975, count - 1))
 
 
-def _staircase(problem: Problem, fitted: ForecastFit, repeats: float) -> tuple[str, str]:
+def _staircase(problem: Problem, forecast: Forecast, repeats: float) -> tuple[str, str]:
     rows = problem.whole_fitted
-    left = (problem.angle_deg - fitted.forecast.angle_deg)[rows]
+    left = (problem.angle_deg - forecast.angle_deg)[rows]
     period = step_period(problem.angle_deg[rows], left)
     spaced = "" if period is None else f", spaced about {_angle(period)} at the measured shaft"
     return (

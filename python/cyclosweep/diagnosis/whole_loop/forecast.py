@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.model_parameters import (
     ModelParameter,
@@ -32,8 +33,6 @@ STEP = 0.02
 """Step of a difference quotient in units of a parameter's scale: over several rows of a crossing,
 which a smaller step would see either jump or stand."""
 LEAST = 1e-6
-PIECES = 40.0
-"""Rough number of independent pieces of a structured residual, by which parameters are charged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +71,7 @@ class Forecast:
     @cached_property
     def error_deg(self) -> float:
         """Root mean square on the fitted rows [deg]."""
-        return rms(self.problem, self.angle_deg, self.rows)
+        return self.problem.rms_error(self.angle_deg, self.rows)
 
     @cached_property
     def covariance(self) -> Floats:
@@ -84,7 +83,7 @@ class Forecast:
         scale = np.where(scale > 0, scale, 1.0)
         gram = (self.jacobian / scale).T @ (self.jacobian / scale)
         inner = np.linalg.pinv(gram, rcond=1e-8, hermitian=True) / np.outer(scale, scale)
-        repeated = max(len(self.jacobian) / PIECES, 1.0)
+        repeated = max(len(self.jacobian) / INDEPENDENT_PIECES, 1.0)
         return np.asarray(inner * self.error_deg**2 * repeated)
 
     def slope(self, parameter: int, path: Callable[[Problem, Model], History]) -> Floats:
@@ -107,14 +106,6 @@ class Forecast:
     def names(self) -> frozenset[str]:
         """Names of the effects."""
         return frozenset(term.name for term in self.terms)
-
-
-def rms(problem: Problem, angle_deg: Floats, rows: Flags) -> float:
-    """Root mean square of measured less predicted [deg]."""
-    difference = (problem.angle_deg - angle_deg)[rows]
-    if not len(difference):
-        return float("nan")
-    return float(np.sqrt(np.average(difference**2, weights=problem.weight[rows])))
 
 
 def model_of(

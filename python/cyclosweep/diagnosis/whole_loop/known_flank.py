@@ -1,26 +1,36 @@
-"""A fitted simulation seen as a structure of the search: the same model, told the flank.
+"""A simulation fitted to whole loops, offered to the diagnosis as a fitted structure.
 
 The tables of a diagnosis (sizes, bounds, places) rest on rows in contact and on the flank that the
 recording shows. This evaluates the model of a `Forecast` there, without fitting anything anew.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fit import Fit
 from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
-from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
-from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start
+from cyclosweep.diagnosis.identify.fitted_structure import (
+    FittedStructure,
+    KnownFlankPrediction,
+    LeftOutPrediction,
+    Prediction,
+    TorqueZero,
+)
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
+from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
+from cyclosweep.diagnosis.whole_loop.findings import findings
+from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, refit
+from cyclosweep.diagnosis.whole_loop.run_comparison import steadiness
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.simulate import Model, settle
 
 
 @dataclass(frozen=True, eq=False)
-class ForecastFit(Fit):
-    """A `Fit` whose parameters are those of a simulation fitted to all rows.
+class WholeLoopFit(FittedStructure):
+    """A structure whose parameters are those of a simulation fitted to all rows.
 
     Attributes
     ----------
@@ -31,6 +41,89 @@ class ForecastFit(Fit):
     forecast: Forecast
     before: Forecast
 
+    @property
+    def prediction(self) -> Prediction:
+        """Twist of all rows, crossings of the dead zone included."""
+        return Prediction(self.forecast.angle_deg, self.forecast.error_deg)
+
+    def baseline_prediction(self, baseline: FittedStructure) -> Prediction:
+        """Twist of all rows by the published model calibrated on whole loops.
+
+        The ``baseline`` fitted to rows in contact is not needed.
+        """
+        return Prediction(self.before.angle_deg, self.before.error_deg)
+
+    @property
+    def independent_share(self) -> float:
+        """Few rows count, because the residual repeats itself along the loop."""
+        return min(INDEPENDENT_PIECES / max(self.problem.count, 1), 1.0)
+
+    @property
+    def line_errors(self) -> Floats:
+        """Standard errors of datum [deg], compliance [deg/(N m)] and free play [deg]."""
+        spread = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        return np.asarray(spread[: self.problem.line_columns])
+
+    @property
+    def torque_zero(self) -> TorqueZero | None:
+        """Torque read without load, told by where the dead zone is crossed."""
+        if not self.forecast.has_zero:
+            return None
+        parameters = self.forecast.parameters
+        zero = next(k for k, each in enumerate(parameters) if each.kind == "zero")
+        variance = self.forecast.covariance[zero, zero]
+        return TorqueZero(self.forecast.model.torque_zero_nm, float(np.sqrt(max(variance, 0.0))))
+
+    def follows_path(self, index: int) -> bool:
+        """All terms: the flank in contact itself follows from the path of the shaft."""
+        return True
+
+    def model(self, drive: str) -> Model:
+        """Return the simulation that was fitted, for a drive of this name."""
+        return replace(self.forecast.model, drive=drive)
+
+    def predict_left_out(self) -> list[LeftOutPrediction]:
+        """Predict the runs kept for it, or stretches of the fitted ones left out in turn."""
+        problem = self.problem
+        kept_runs = bool(np.any(problem.whole_held_out))
+        parts = [(KEPT_RUNS, problem.whole_held_out)] if kept_runs else whole_stretches(problem)
+        found = []
+        for label, rows in parts:
+            before, after = self.before, self.forecast
+            if not kept_runs:
+                others = problem.whole_fitted & ~rows
+                before = refit(before, rows=others, most=6)
+                after = refit(after, rows=others, most=6)
+            known = KnownFlankPrediction(
+                rows & (problem.held_out if kept_runs else problem.fitted),
+                known_flank_path(problem, before.model).angle_deg,
+                known_flank_path(problem, after.model).angle_deg,
+            )
+            found.append(
+                LeftOutPrediction(
+                    label, rows, kept_runs, before.angle_deg, after.angle_deg, np.nan, known
+                )
+            )
+        return found
+
+    def left_out_evidence(
+        self, predictions: Sequence[LeftOutPrediction], baseline_deg: float, structure_deg: float
+    ) -> float:
+        """Likelihood ratio of as many independent errors as such a residual has pieces.
+
+        The single ``predictions`` are not needed.
+        """
+        ratio = float(np.log(baseline_deg / max(structure_deg, 1e-12)))
+        return float(np.exp(min(INDEPENDENT_PIECES * ratio, 200.0)))
+
+    def run_to_run_errors(self) -> list[tuple[float, float]]:
+        """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
+        return [(each.own_deg, each.other_deg) for each in steadiness(self.forecast)]
+
+    def findings(self, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+        """Return topics and sentences on the measured loop."""
+        return findings(self.forecast, repeats, unsteady=unsteady)
+
     @cached_property
     def covariance(self) -> Floats:
         """Covariance of all parameters, from the whole loop; few pieces of it are independent."""
@@ -38,7 +131,7 @@ class ForecastFit(Fit):
         spread = self.forecast.covariance
         order: list[int] = []
         kinds = ["datum", "compliance", "play"]
-        for kind in kinds[: 2 if self.problem.one_sided else 3]:
+        for kind in kinds[: self.problem.line_columns]:
             order.append(next(k for k, each in enumerate(parameters) if each.kind == kind))
         order += [k for k, each in enumerate(parameters) if each.kind == "amplitude"]
         order += [k for k, each in enumerate(parameters) if each.kind == "nonlinear"]
@@ -65,25 +158,23 @@ class ForecastFit(Fit):
         return np.asarray(-history.compliance_deg_per_nm * share * friction)
 
 
-def told_path(problem: Problem, model: Model) -> History:
+def known_flank_path(problem: Problem, model: Model) -> History:
     """Path by a model on all rows when the flank is told by the recording."""
     side = problem.history.side
     return settle(model, at_start(problem.history, model, side), told_side=side)
 
 
-def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:
+def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeLoopFit:
     """Turn a forecast, and the one of the baseline, into a structure of the search."""
     problem = forecast.problem
-    history = told_path(problem, forecast.model)
+    history = known_flank_path(problem, forecast.model)
     use = problem.fitted
     _, weight = noise.residual(problem.angle_deg[use], history.angle_deg[use])
-    parts = [np.ones((len(history), 1)), history.elastic_nm[:, None]]
-    if not problem.one_sided:
-        parts.append(history.side[:, None])
+    parts = [line_design(history, history.elastic_nm, one_sided=problem.one_sided)]
     parts += [term.columns(history) for term in forecast.terms if not term.slips]
     design = noise.design(np.column_stack(parts)[use], weight)
     kept = [k for k, each in enumerate(forecast.parameters) if each.kind == "nonlinear"]
-    slopes = [noise.design(forecast.slope(k, told_path)[use], weight)[:, None] for k in kept]
+    slopes = [noise.design(forecast.slope(k, known_flank_path)[use], weight)[:, None] for k in kept]
     sensitivity = np.hstack([design, *slopes]) if slopes else design
     tangent = orthonormal(sensitivity, 1e-6)
     target = noise.residual(problem.angle_deg[use], history.angle_deg[use])[0]
@@ -95,7 +186,7 @@ def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:
         beta.append(model.free_play_deg)
     for term, value in zip(forecast.terms, model.effects, strict=True):
         beta += [] if term.slips else list(value.amplitudes)
-    return ForecastFit(
+    return WholeLoopFit(
         problem=problem,
         noise=noise,
         terms=forecast.terms,
@@ -106,7 +197,6 @@ def told_fit(forecast: Forecast, before: Forecast, noise: Noise) -> ForecastFit:
         chi2=float(target @ target),
         tangent=tangent,
         sensitivity=sensitivity,
-        shape_values=forecast.values[kept],
         fit_parameters=fit_parameters_of(forecast.terms, problem),
         forecast=forecast,
         before=before,

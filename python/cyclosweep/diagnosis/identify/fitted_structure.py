@@ -1,0 +1,320 @@
+"""What every fitted structure offers the diagnosis, however it was fitted.
+
+A structure is the calibrated published model with a set of terms. Two kinds are fitted:
+`cyclosweep.diagnosis.identify.fit.ContactFit` to the rows in contact, the flank of each row being
+read off the recording, and `cyclosweep.diagnosis.whole_loop.known_flank.WholeLoopFit` to all rows,
+the flank being predicted.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
+from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.simulate import Model
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Twist that a structure predicts, and how far it is from the recording.
+
+    Attributes
+    ----------
+    angle_deg : ndarray, shape (n,)
+        Twist of all rows [deg].
+    error_deg : float
+        Root mean square of the difference on the fitted rows [deg].
+    """
+
+    angle_deg: Floats
+    error_deg: float
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOutPrediction:
+    """Twist of rows that were not fitted, by the baseline and by a structure.
+
+    Attributes
+    ----------
+    label : str
+        What was left out.
+    rows : ndarray of bool, shape (n,)
+        The rows that were left out.
+    kept_runs : bool
+        Whether they are runs kept for this purpose, rather than left out in turn.
+    baseline_deg, structure_deg : ndarray, shape (n,)
+        Predicted twist of all rows [deg].
+    log_likelihood_ratio : float
+        Log likelihood of the rows under the structure over that under a baseline fitted to them;
+        NaN where the residual is error of the model and has no likelihood.
+    known_flank : KnownFlankPrediction or None
+        The same with the flank in contact read off the recording; None where it is so anyway.
+    """
+
+    label: str
+    rows: Flags
+    kept_runs: bool
+    baseline_deg: Floats
+    structure_deg: Floats
+    log_likelihood_ratio: float
+    known_flank: "KnownFlankPrediction | None" = None
+
+
+@dataclass(frozen=True, eq=False)
+class KnownFlankPrediction:
+    """Twist by baseline and structure where the flank in contact is read off the recording.
+
+    Attributes
+    ----------
+    rows : ndarray of bool, shape (n,)
+        Rows in contact that were left out.
+    baseline_deg, structure_deg : ndarray, shape (n,)
+        Predicted twist of all rows [deg].
+    """
+
+    rows: Flags
+    baseline_deg: Floats
+    structure_deg: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueZero:
+    """Torque that the sensor reads without load.
+
+    Attributes
+    ----------
+    value_nm, std_error_nm : float
+        Estimate and its standard error [N m].
+    """
+
+    value_nm: float
+    std_error_nm: float
+
+
+@dataclass(frozen=True, eq=False)
+class FittedStructure(ABC):
+    """A structure fitted jointly with the calibration, and its linearisation.
+
+    Attributes
+    ----------
+    problem : Problem
+        The recording it was fitted to.
+    noise : Noise
+        Noise by which residual and sensitivities are whitened.
+    terms : tuple of Term
+        With refined shapes; friction carries its amplitude.
+    beta : ndarray
+        Linear parameters: datum [deg], compliance [deg/(N m)], free play [deg] (where both flanks
+        were loaded), then the amplitudes of the linear terms in order.
+    history : History
+        All rows with the fitted path.
+    mean_deg : ndarray, shape (n,)
+        Modelled twist of all rows, with the flank read off the recording [deg].
+    residual : ndarray, shape (fitted,)
+        White residual of unit variance.
+    chi2 : float
+        Its sum of squares.
+    tangent : ndarray, shape (fitted, q)
+        Orthonormal basis of the tangent space in the whitened metric.
+    sensitivity : ndarray, shape (fitted, p)
+        Whitened derivative by every parameter: linear ones first, then nonlinear ones.
+    fit_parameters : tuple of FitParameter
+        The nonlinear parameters.
+    """
+
+    problem: Problem
+    noise: Noise
+    terms: tuple[Term, ...]
+    beta: Floats
+    history: History
+    mean_deg: Floats
+    residual: Floats
+    chi2: float
+    tangent: Floats
+    sensitivity: Floats
+    fit_parameters: tuple[FitParameter, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the terms."""
+        return tuple(term.name for term in self.terms)
+
+    @property
+    @abstractmethod
+    def prediction(self) -> Prediction:
+        """Twist of all rows as the structure is meant to predict it."""
+
+    @abstractmethod
+    def baseline_prediction(self, baseline: "FittedStructure") -> Prediction:
+        """Twist of all rows by the baseline, predicted in the same way as by the structure.
+
+        ``baseline`` is the calibrated published model fitted to the rows in contact.
+        """
+
+    @property
+    @abstractmethod
+    def independent_share(self) -> float:
+        """Share of the fitted rows that tell something of their own."""
+
+    @property
+    @abstractmethod
+    def line_errors(self) -> Floats:
+        """Standard errors of datum [deg], compliance [deg/(N m)] and free play [deg]."""
+
+    @property
+    @abstractmethod
+    def torque_zero(self) -> TorqueZero | None:
+        """Torque read without load; None where it is not fitted."""
+
+    @abstractmethod
+    def follows_path(self, index: int) -> bool:
+        """Whether the twist of a term is known only with the path of the shaft solved again.
+
+        Its size then has no derivative by single parameters.
+        """
+
+    @abstractmethod
+    def model(self, drive: str) -> Model:
+        """Return the structure as a simulation of a drive of this name."""
+
+    @abstractmethod
+    def predict_left_out(self) -> list[LeftOutPrediction]:
+        """Fit without some rows and predict them, for each block of rows to be left out."""
+
+    @abstractmethod
+    def left_out_evidence(
+        self, predictions: Sequence[LeftOutPrediction], baseline_deg: float, structure_deg: float
+    ) -> float:
+        """Return the e-value for the structure over the baseline, from rows not fitted.
+
+        Parameters
+        ----------
+        predictions : sequence of LeftOutPrediction
+        baseline_deg, structure_deg : float
+            Root mean square errors over all of them [deg].
+
+        Returns
+        -------
+        float
+            At least so many times likelier.
+        """
+
+    @abstractmethod
+    def run_to_run_errors(self) -> list[tuple[float, float]]:
+        """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
+
+    @abstractmethod
+    def findings(self, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+        """Return topics and sentences on the measured loop, where the structure predicts it.
+
+        Parameters
+        ----------
+        repeats : float, optional
+            Correlation of the residual between runs.
+        unsteady : bool
+            Whether the loops drift from run to run.
+        """
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """Covariance of all parameters, linear ones first."""
+        scale = np.linalg.norm(self.sensitivity, axis=0)
+        scale = np.where(scale > 0, scale, 1.0)
+        gram = (self.sensitivity / scale).T @ (self.sensitivity / scale)
+        return np.asarray(
+            np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale)
+        )
+
+    @property
+    def rmse_deg(self) -> float:
+        """Root mean square of the angle residual on the fitted rows in contact [deg]."""
+        return self.problem.rms_error(self.mean_deg, self.problem.fitted)
+
+    def column_range(self, index: int) -> slice:
+        """Place of a linear term's amplitudes within `beta`."""
+        first = self.problem.line_columns
+        for k, term in enumerate(self.terms):
+            width = 0 if term.slips else term.columns(self.history).shape[1]
+            if k == index:
+                return slice(first, first + width)
+            first += width
+        raise IndexError(index)
+
+    def wrong_signs(self, index: int) -> Flags:
+        """Amplitudes of a term that lie outside what physics allows."""
+        term = self.terms[index]
+        if term.slips:
+            return np.array([term.amplitude < 0])
+        values = self.beta[self.column_range(index)]
+        if term.effect is None:
+            assert term.free is not None
+            return (values < 0) & term.free.positive
+        bounds = term.effect.amplitudes(term.shape)[: len(values)]
+        lower = np.array([p.lower for p in bounds]) - 1e-12
+        upper = np.array([p.upper for p in bounds])
+        return (values[: len(bounds)] < lower) | (values[: len(bounds)] > upper)
+
+    @property
+    def valid(self) -> bool:
+        """Whether all amplitudes have their physical sign."""
+        return not any(self.wrong_signs(k).any() for k in range(len(self.terms)))
+
+    def contribution(self, index: int) -> Floats:
+        """Twist that a term adds on all rows [deg]."""
+        term = self.terms[index]
+        if term.slips:
+            column = term.columns(self.history)[:, 0]
+            return column * term.amplitude
+        part = self.column_range(index)
+        return term.columns(self.history) @ self.beta[part]
+
+    def information(self, places: Sequence[int]) -> Floats:
+        """Information on some parameters, all others known only by this recording.
+
+        What the recording does not determine has none, where `covariance` would have to be
+        without bound.
+        """
+        others = [k for k in range(self.sensitivity.shape[1]) if k not in places]
+        basis = orthonormal(self.sensitivity[:, others], 1e-8)
+        part = self.sensitivity[:, list(places)]
+        left = part - basis @ (basis.T @ part)
+        return np.asarray(left.T @ left)
+
+    def amplitude_places(self, index: int) -> list[int]:
+        """Places of a linear term's amplitudes among all parameters."""
+        part = self.column_range(index)
+        return list(range(part.start, part.stop))
+
+    def nonlinear_places(self, index: int) -> list[int]:
+        """Places of a term's nonlinear parameters among all parameters."""
+        first = len(self.beta)
+        return [first + k for k, each in enumerate(self.fit_parameters) if each.term == index]
+
+    def moved(self, place: int, step: float) -> Self:
+        """Return the same fit with one parameter moved and nothing else fitted again.
+
+        Parameters
+        ----------
+        place : int
+            Place of a parameter of a linear term among all parameters.
+        step : float
+            Change of it, in the fit's own scale.
+        """
+        if place < len(self.beta):
+            beta = self.beta.copy()
+            beta[place] += step
+            return replace(self, beta=beta)
+        known = self.fit_parameters[place - len(self.beta)]
+        terms = list(self.terms)
+        shape = terms[known.term].shape
+        value = known.to_physical(known.to_scale(float(shape[known.name])) + step)
+        terms[known.term] = replace(terms[known.term], shape={**shape, known.name: value})
+        return replace(self, terms=tuple(terms))

@@ -1,0 +1,242 @@
+"""One joint fit in progress: path of the shaft, linear parameters, residual and its slopes."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.friction_path import friction_path
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.simulation.effects.history import Floats, History
+
+INNER = 3
+"""Rounds in which the path of the shaft and the linear parameters are solved in turn."""
+
+
+def usual_change(parameter: FitParameter, value: float) -> float:
+    """Size of a usual change of a nonlinear parameter, in the fit's own scale.
+
+    Parameters
+    ----------
+    parameter : FitParameter
+    value : float
+        Its value in the fit's own scale.
+    """
+    quantity = parameter.quantity
+    if quantity.logarithmic:
+        return 0.5
+    room = quantity.upper - quantity.lower
+    if parameter.name == "amplitude":
+        return max(abs(value), 1e-3 * room, 1e-6)
+    return max(0.2 * abs(value), 0.02 * min(room, 1e3))
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """A structure at its solution, linearised.
+
+    Attributes
+    ----------
+    terms : tuple of Term
+        With their values.
+    beta : ndarray
+        Linear parameters.
+    target : ndarray, shape (fitted,)
+        White residual of unit variance, as it is.
+    sensitivity : ndarray, shape (fitted, p)
+        Whitened derivative by every parameter: linear ones first, then nonlinear ones.
+    """
+
+    terms: tuple[Term, ...]
+    beta: Floats
+    target: Floats
+    sensitivity: Floats
+
+
+class JointFit:
+    """Workspace of one fit: path of the shaft, linear solve, residual.
+
+    Parameters
+    ----------
+    problem : Problem
+    noise : Noise
+    terms : tuple of Term
+    parameters : tuple of FitParameter
+        The nonlinear parameters of the terms.
+    history : History
+        All rows with the path from which the iteration starts.
+    mean_deg : ndarray, shape (n,)
+        Modelled twist of all rows from which it starts [deg].
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        noise: Noise,
+        terms: tuple[Term, ...],
+        parameters: tuple[FitParameter, ...],
+        history: History,
+        mean_deg: Floats,
+    ) -> None:
+        self.problem, self.noise, self.terms = problem, noise, terms
+        self.fit_parameters = parameters
+        self.slides = any(term.slips for term in terms)
+        self.use = problem.fitted
+        self.angle = problem.angle_deg[self.use]
+        self.history = history
+        self.mean = mean_deg
+        self.beta = np.zeros(0)
+        self.target, self.weight = self._working(self.mean)
+
+    def _working(self, mean: Floats) -> tuple[Floats, Floats]:
+        """Working residual of the likelihood at a mean, and its row weights."""
+        residual, weight = self.noise.residual(self.angle, mean[self.use])
+        return residual, weight
+
+    def _terms_at(self, values: Floats) -> tuple[Term, ...]:
+        shapes = [dict(term.shape) for term in self.terms]
+        amplitudes = [term.amplitude for term in self.terms]
+        for parameter, value in zip(self.fit_parameters, values, strict=True):
+            if parameter.name == "amplitude":
+                amplitudes[parameter.term] = parameter.to_physical(value)
+            else:
+                shapes[parameter.term][parameter.name] = parameter.to_physical(value)
+        sliding = [k for k, term in enumerate(self.terms) if term.slips]
+        for k in sliding[1:]:
+            shapes[k] = dict(shapes[sliding[0]])
+        return tuple(
+            replace(term, shape=shape, amplitude=amplitude)
+            for term, shape, amplitude in zip(self.terms, shapes, amplitudes, strict=True)
+        )
+
+    def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats]:
+        """Columns of the linear parameters, and the precision with which each is known before."""
+        parts = [line_design(history, history.elastic_nm, one_sided=self.problem.one_sided)]
+        hold = [np.zeros(self.problem.line_columns)]
+        for term in terms:
+            if term.slips:
+                continue
+            columns = term.columns(history)
+            parts.append(columns)
+            size = None if term.effect is None else term.effect.expected(history, term.shape)
+            hold.append(np.zeros(columns.shape[1]) if size is None else 1.0 / size**2)
+        return np.column_stack(parts), np.concatenate(hold)
+
+    def _evaluate(self, values: Floats, inner: int) -> tuple[Floats, History, Floats, Floats]:
+        """Solve path and linear parameters at these values of the nonlinear ones.
+
+        Returns
+        -------
+        residual, history, mean, beta
+            Working residual, path of the shaft, modelled twist [deg], linear parameters.
+        """
+        terms = self._terms_at(values)
+        history, mean = self.history, self.mean
+        here = mean[self.use]
+        for _ in range(inner if self.slides else 1):
+            if self.slides:
+                history = friction_path(terms, history, mean)
+            design, hold = self._design(terms, history)
+            inside = design[self.use]
+            # The working data are fixed during one refinement: target = residual at self.mean.
+            white = self.noise.design(inside, self.weight)
+            shifted = self.target + self.noise.design(here, self.weight)
+            beta = _solve(white, shifted, hold)
+            mean = design @ beta
+            history = self._calibrated(history, beta, mean)
+        self._last = (terms, white, beta)
+        return shifted - white @ beta, history, mean, beta
+
+    def _calibrated(self, history: History, beta: Floats, mean: Floats) -> History:
+        play = history.free_play_deg if self.problem.one_sided else max(float(beta[2]), 0.0)
+        compliance = float(beta[1])
+        if compliance <= 0:
+            compliance = history.compliance_deg_per_nm
+        datum = float(beta[0])
+        if self.problem.one_sided:
+            datum -= float(history.side[self.use][0]) * play
+        state: dict[str, float | Floats] = {
+            "compliance_deg_per_nm": compliance,
+            "free_play_deg": play,
+            "datum_deg": datum,
+        }
+        if not self.slides:
+            state["angle_deg"] = mean
+        return history.with_state(**state)
+
+    def residual(self, values: Floats) -> Floats:
+        """Working residual, path and linear parameters solved for these nonlinear ones."""
+        return self._evaluate(values, 1)[0]
+
+    def expand_at(self, values: Floats) -> None:
+        """Move the point about which the likelihood is expanded to these nonlinear parameters."""
+        exact = self.noise
+        for level in _levels(exact):
+            self.noise = exact.with_sigma(level)
+            self.target, self.weight = self._working(self.mean)
+            for _ in range(6):
+                _, history, mean, beta = self._evaluate(values, INNER)
+                moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
+                self.history, self.mean, self.beta = history, mean, beta
+                self._follow_amplitudes(history, beta)
+                self.target, self.weight = self._working(mean)
+                if moved < 1e-3 * self.noise.sigma_deg:
+                    break
+
+    def _follow_amplitudes(self, history: History, beta: Floats) -> None:
+        """Let the shapes follow where they depend on the amplitudes."""
+        first, terms = self.problem.line_columns, []
+        for term in self.terms:
+            width = 0 if term.slips else term.columns(history).shape[1]
+            if term.effect is not None and width:
+                shape = term.effect.settled(history, term.shape, beta[first : first + width])
+                term = replace(term, shape=shape)
+            terms.append(term)
+            first += width
+        self.terms = tuple(terms)
+
+    def linearise(self, values: Floats) -> Linearisation:
+        """Slopes by all parameters, and the residual, at these nonlinear parameters."""
+        residual = self.residual(values)
+        terms, white, beta = self._last
+        slopes = []
+        for k in range(len(values)):
+            step = 1e-3 * max(abs(values[k]), usual_change(self.fit_parameters[k], values[k]))
+            ahead = values.copy()
+            ahead[k] += step
+            change = residual - self.residual(ahead)
+            # The linear parameters have followed; the derivative is at theirs held.
+            slopes.append((change - white @ (self._last[2] - beta)) / step)
+        sensitivity = np.column_stack([white, *slopes]) if slopes else white
+        return Linearisation(terms, beta, self.target, sensitivity)
+
+
+def _levels(noise: Noise) -> list[float]:
+    """Sizes of noise from wide to exact: a coarse dial's likelihood has to be approached."""
+    levels = [noise.sigma_deg]
+    while noise.step_deg > 0 and levels[-1] < 0.25 * noise.step_deg:
+        levels.append(1.8 * levels[-1])
+    return levels[::-1]
+
+
+def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
+    """Least squares by normal equations on scaled columns, a whisker of ridge for lost ranks.
+
+    `hold` is the precision with which each parameter is known beforehand to be near zero.
+    """
+    norm = np.sqrt(np.einsum("ij,ij->j", design, design))
+    norm = np.where(norm > 0, norm, 1.0)
+    scaled = design / norm
+    gram = scaled.T @ scaled + np.diag(hold / norm**2)
+    right = scaled.T @ target
+    for ridge in (0.0, 1e-9, 1e-6):
+        try:
+            factor = cho_factor(gram + ridge * np.eye(len(gram)), check_finite=False)
+        except np.linalg.LinAlgError:
+            continue
+        if ridge > 0 or np.min(np.abs(np.diag(factor[0]))) > 1e-5:
+            return np.asarray(cho_solve(factor, right, check_finite=False) / norm)
+    return np.asarray(np.linalg.lstsq(scaled, target, rcond=1e-10)[0] / norm)

@@ -1,0 +1,125 @@
+"""Whether runs of one recording agree: residuals that repeat, and loops that drift."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
+from cyclosweep.simulation.effects.history import Flags, Floats
+
+DRIFT_RATIO = 1.8
+"""Error on another run over that on its own beyond which the two are not the same drive."""
+DRIFT_OF_SPAN = 0.05
+"""The same as a share of the whole range of the angle."""
+SAME_RANGE = 0.2
+"""Share of the range of torque within which the ends of two replicates agree."""
+FEWEST_ROWS = 40
+"""Rows of a run from which it can be compared with another."""
+MOST_RUNS = 6
+"""Runs that are fitted alone to see whether they differ."""
+REPEATING = 0.5
+"""Correlation between runs above which a residual is a property of the drive."""
+
+
+@dataclass(frozen=True)
+class Repetition:
+    """How well the residual of one run predicts that of another."""
+
+    correlation: float
+    cells: int
+
+    @property
+    def is_physics(self) -> bool:
+        """Whether something remains that repeats."""
+        return self.cells >= 12 and self.correlation > REPEATING
+
+
+@dataclass(frozen=True)
+class Steadiness:
+    """How a model of one run fares on itself and on the replicate that it fits worst.
+
+    Attributes
+    ----------
+    own_deg, other_deg : float
+        Errors on the run it was fitted to, and on the other [deg].
+    """
+
+    own_deg: float
+    other_deg: float
+
+    def is_drift(self, span_deg: float) -> bool:
+        """Whether the model fails on the other run by far more than on its own."""
+        return (
+            self.other_deg > DRIFT_RATIO * self.own_deg
+            and self.other_deg > DRIFT_OF_SPAN * span_deg
+        )
+
+
+def steadiness(known: Forecast) -> list[Steadiness]:
+    """Fit runs alone and see how far each model errs on itself and on the run's replicates.
+
+    Runs over another range of torque are left out: a model of small loops does not hold for large
+    ones, nor the reverse, on the steadiest drive.
+    """
+    problem = known.problem
+    torque = problem.history.applied_nm
+    parts = _by_run(problem, problem.whole_fitted)
+    found = []
+    for rows in parts[:MOST_RUNS]:
+        replicates = [p for p in parts if p is not rows and _same_range(torque[p], torque[rows])]
+        if not replicates:
+            continue
+        alone = refit(known, rows=rows, most=4)
+        own = problem.rms_error(alone.angle_deg, rows)
+        found.append(
+            Steadiness(own, max(problem.rms_error(alone.angle_deg, p) for p in replicates))
+        )
+    return found
+
+
+def _by_run(problem: Problem, rows: Flags) -> list[Flags]:
+    """Rows of each run that has enough of them to be compared."""
+    run = problem.history.run
+    parts = [rows & (run == r) for r in np.unique(run[rows])]
+    return [part for part in parts if np.count_nonzero(part) > FEWEST_ROWS]
+
+
+def _same_range(first: Floats, second: Floats) -> bool:
+    """Whether two runs load the drive from about as far to about as far."""
+    room = SAME_RANGE * max(float(np.ptp(first)), float(np.ptp(second)))
+    ends = (first.min() - second.min(), first.max() - second.max())
+    return bool(np.max(np.abs(ends)) <= room)
+
+
+def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
+    """Compare the residuals of runs over the same torque, flank and direction."""
+    history = fitted.history
+    rows = problem.fitted | problem.held_out
+    residual = problem.angle_deg - fitted.mean_deg
+    band = np.floor(np.abs(history.applied_nm) / history.largest_torque_nm * 19.99)
+    cell = band * 4 + (history.side > 0) * 2 + (history.sense > 0)
+    runs = _by_run(problem, rows)
+    best = Repetition(0.0, 0)
+    found: list[Repetition] = []
+    for i, first in enumerate(runs):
+        for second in runs[i + 1 :]:
+            a, b = _means(residual, cell, first, second)
+            if len(a) >= 12 and np.std(a) > 0 and np.std(b) > 0:
+                found.append(Repetition(float(np.corrcoef(a, b)[0, 1]), len(a)))
+    if found:
+        middle = sorted(found, key=lambda r: r.correlation)
+        best = middle[len(middle) // 2]
+    return best
+
+
+def _means(residual: Floats, cell: Floats, first: Flags, second: Flags) -> tuple[Floats, Floats]:
+    """Mean residuals of two runs in every cell that both have visited."""
+    a, b = [], []
+    for value in np.unique(cell[first]):
+        one, two = first & (cell == value), second & (cell == value)
+        if np.any(one) and np.any(two):
+            a.append(float(residual[one].mean()))
+            b.append(float(residual[two].mean()))
+    return np.array(a), np.array(b)

@@ -1,0 +1,206 @@
+"""Stepwise choice of effects where the residual is error of the model rather than noise.
+
+Where the sensor is far better than any model, the residual is structured down to the last step,
+and a test against noise rejects everything. The simulation itself is then fitted to whole loops,
+crossings of the dead zone included: effects are left out or added one at a time, as long as each
+gains more than its parameters are charged. What remains is judged by whether it repeats from run
+to run.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
+from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.diagnosis.prepare.split import whole_stretches
+from cyclosweep.diagnosis.whole_loop.forecast import (
+    BLUR,
+    Forecast,
+    fit_forecast,
+    refit,
+    start,
+)
+from cyclosweep.diagnosis.whole_loop.known_flank import whole_loop_fit
+from cyclosweep.diagnosis.whole_loop.usual_effects import STARTS, USUAL, first_amplitude
+from cyclosweep.simulation.effects import Effect
+from cyclosweep.simulation.simulate import EffectValue
+
+MOST_ADDED = 1
+"""Effects added beyond the usual ones."""
+LEAST_GAIN = 0.15
+"""Share of the error on left-out stretches that the usual effects must take away."""
+TRIED = 2
+"""Effects that are fitted in a step, those whose shape is most like what is left."""
+PARAMETER_CHARGE = 2.0
+"""What a parameter must gain: twice the log likelihood of independent pieces."""
+
+
+def choose_effects(search: Search) -> Candidate:
+    """Fit what such loops usually show, leave out what is not worth its parameters, add what is.
+
+    Returns
+    -------
+    Candidate
+        The baseline where the usual effects do not predict left-out stretches much better.
+    """
+    problem = search.problem
+    base = fit_forecast(problem, start(problem), (), zero=False, most=10)
+    usual = _usual(search, base)
+    if usual is None or not _predicts_better(usual, base):
+        return search.baseline
+    best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
+    best = _extend(search, _prune(problem, best))
+    gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
+    return search.add(whole_loop_fit(best, base, search.noise), gain)
+
+
+def _usual(search: Search, base: Forecast) -> Forecast | None:
+    """Both kinds of friction, stiffening and asymmetry at once, from several starts.
+
+    One at a time, friction takes the place of the stiffening and does not give it back; and the
+    crossings of the dead zone leave many small minima.
+    """
+    problem = search.problem
+    top, twist = problem.history.largest_torque_nm, problem.history.largest_twist_deg
+    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
+    effects = [known[name] for name in USUAL if name in known]
+    if not effects:
+        return None
+    zero = not problem.one_sided and _crosses_late(problem)
+    found: Forecast | None = None
+    for limit, slip in STARTS:
+        sliding = {
+            "slip_deg": slip * twist, "scatter": 1.0, "skew": 0.0, "slack": 0.0,
+            "growth": 0.7, "reference_nm": 0.3 * top,
+        }  # fmt: skip
+        terms, values = [], []
+        for effect in effects:
+            shape = sliding if effect.slips else USUAL[effect.name](top)
+            amplitude = first_amplitude(effect, shape, limit * top, twist / top)
+            terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
+            values.append(EffectValue(effect.name, shape, (amplitude,)))
+        model = replace(base.model, effects=tuple(values))
+        joint = fit_forecast(problem, model, terms, zero=zero, most=10)
+        found = joint if found is None else _better(found, joint)
+    return found
+
+
+def _crosses_late(problem: Problem) -> bool:
+    """Whether crossings of the dead zone were recorded where they tell the torque's zero."""
+    history, rows = problem.history, problem.whole_fitted
+    pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
+    return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
+
+
+def _prune(problem: Problem, best: Forecast) -> Forecast:
+    """Leave out what gains less than its parameters are charged."""
+    for name in sorted(best.names):
+        kept = [k for k, term in enumerate(best.terms) if term.name != name]
+        if not kept:
+            continue
+        terms = tuple(best.terms[k] for k in kept)
+        model = replace(best.model, effects=tuple(best.model.effects[k] for k in kept))
+        without = fit_forecast(problem, model, terms, zero=best.has_zero, most=5)
+        if _cost(without) < _cost(best):
+            best = without
+    return best
+
+
+def _extend(search: Search, best: Forecast) -> Forecast:
+    """Add effects that look like what is left, as long as they gain more than they are charged."""
+    problem = search.problem
+    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
+    for _ in range(MOST_ADDED):
+        tried = [
+            _with(problem, best, known[name], shape)
+            for name, shape in _most_similar(search, best)[:TRIED]
+        ]
+        if not tried:
+            break
+        joint = min(tried, key=_cost)
+        if _cost(joint) >= _cost(best):
+            break
+        best = _better(
+            joint,
+            fit_forecast(problem, joint.model, joint.terms, zero=joint.has_zero, most=8, blur=BLUR),
+        )
+    return best
+
+
+def _cost(model: Forecast) -> float:
+    """Minus twice the log likelihood of a residual's pieces, and the charge for the parameters."""
+    return 2.0 * INDEPENDENT_PIECES * float(np.log(model.error_deg)) + PARAMETER_CHARGE * len(
+        model.parameters
+    )
+
+
+def _better(first: Forecast, second: Forecast) -> Forecast:
+    return second if second.error_deg < first.error_deg else first
+
+
+def _predicts_better(model: Forecast, base: Forecast) -> bool:
+    """Whether a model predicts stretches that were left out much better than the baseline."""
+    return left_out_error(model) < (1.0 - LEAST_GAIN) * left_out_error(base)
+
+
+def left_out_error(model: Forecast) -> float:
+    """Root mean square on stretches that were left out in turn [deg]."""
+    problem = model.problem
+    total, count = 0.0, 0
+    for _, rows in whole_stretches(problem):
+        part = refit(model, rows=problem.whole_fitted & ~rows, most=3)
+        left = problem.whole_fitted & rows
+        total += problem.rms_error(part.angle_deg, left) ** 2 * np.count_nonzero(left)
+        count += int(np.count_nonzero(left))
+    return float(np.sqrt(total / max(count, 1)))
+
+
+def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:
+    """Fit a model with one more effect, starting from next to none of it."""
+    columns = effect.columns(best.history, shape)
+    largest = np.abs(columns).max(axis=0, initial=1e-12)
+    little = 0.01 * problem.history.largest_twist_deg / np.maximum(largest, 1e-12)
+    model = replace(
+        best.model,
+        effects=(*best.model.effects, EffectValue(effect.name, shape, tuple(map(float, little)))),
+    )
+    terms = (*best.terms, Term(effect, shape))
+    return fit_forecast(problem, model, terms, zero=best.has_zero, most=8)
+
+
+def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, float]]]:
+    """Shapes of elastic effects that explain most of what is left, with physical signs.
+
+    Others are left to recordings with more than one rate, position or temperature: along a single
+    ramp each of them can take any shape.
+    """
+    problem = search.problem
+    rows = problem.fitted
+    history = best.history
+    left = (problem.angle_deg - best.angle_deg)[rows]
+    line = line_design(history, history.elastic_nm, one_sided=problem.one_sided)
+    basis = np.linalg.qr(line[rows])[0]
+    left = left - basis @ (basis.T @ left)
+    gains: dict[str, tuple[float, dict[str, float]]] = {}
+    for signature in search.library.signatures:
+        effect = signature.effect
+        if effect is None or not effect.elastic or effect.name in best.names:
+            continue
+        columns = effect.columns(history, signature.shape)[rows]
+        if columns.shape[1] > 1 or not np.all(np.isfinite(columns)):
+            continue
+        column = columns[:, 0] - basis @ (basis.T @ columns[:, 0])
+        size = float(column @ column)
+        if size <= 1e-9 * float(columns[:, 0] @ columns[:, 0]):
+            continue
+        along = float(column @ left)
+        if signature.signs[0] > 0 and along < 0:
+            continue
+        gain = along**2 / size
+        if gain > gains.get(effect.name, (0.0, {}))[0]:
+            gains[effect.name] = (gain, {k: float(v) for k, v in signature.shape.items()})
+    order = sorted(gains, key=lambda name: -gains[name][0])
+    return [(name, gains[name][1]) for name in order]
