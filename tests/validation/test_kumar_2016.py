@@ -5,6 +5,7 @@ The drive's dimensions are not published; nothing here rests on the assumed ones
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -63,6 +64,40 @@ def test_section_4_of_the_built_in_drive(reference: cs.Drive) -> None:
     assert pins.mean == pytest.approx(6.75, rel=0.015)
     near_90 = pins.sectors.filter(pl.col("start_deg") < 91, pl.col("end_deg") > 89)
     assert near_90["active"].max() == 8
+
+
+def test_the_shaft_of_the_built_in_drive_has_the_parts_of_the_paper_s(
+    reference: cs.Drive,
+) -> None:
+    """Eqs. (5)-(7): a keyway, four steps, a frustum; assumed dimensions that can be built."""
+    kinds = [segment.kind for segment in reference.shaft]
+    assert kinds == ["keyway", *["cylinder"] * 4, "frustum"]
+    frustum = reference.shaft[-1]
+    assert isinstance(frustum, cs.Frustum)
+    diameters = [*(s.diameter_mm for s in reference.shaft), frustum.end_diameter_mm]
+    assert diameters[4] == diameters[5]  # the frustum begins where the fourth step ends
+    del diameters[5]
+    assert all(after > before for before, after in itertools.pairwise(diameters))
+    assert diameters[0] == 50
+    within_pins = 2 * reference.output_pin_circle_radius_mm - reference.output_pin_diameter_mm
+    assert frustum.end_diameter_mm < within_pins
+    assert reference.explain() is None
+
+
+def test_every_dimension_of_the_built_in_drive_says_where_it_comes_from(
+    reference: cs.Drive,
+) -> None:
+    given = set(reference.inputs()) - {"output_stiffness_nm_per_arcmin", "criterion"}
+    assert set(reference.provenance) == given
+    shaft = {name for name in given if name.startswith("shaft_")}
+    assert all(reference.provenance[name].startswith("assumed") for name in shaft)
+
+
+def test_the_loading_line_stays_where_rig_and_recordings_have_it(reference: cs.Drive) -> None:
+    """19.8 deg at the input per T_N beyond the free play, to 0.1 %."""
+    line = reference.nominal_line()
+    assert line.compliance_deg_per_nm == pytest.approx(19.8 / 7.2575, rel=1e-3)
+    assert reference.evaluate()["twist_1tn_deg"] == pytest.approx(47.7852, abs=1e-4)
 
 
 def test_section_6_loading_line_of_the_built_in_drive(reference: cs.Drive) -> None:

@@ -15,8 +15,8 @@ __all__ = ["facts", "mciver", "pulsation"]
 GROUP = "three criteria"
 PIN_COUNTS = range(6, 16)
 _MCIVER: dict[Criterion, str] = {
-    "published-map": "by the reconstruction nine pins pulsate more than eight: their windows "
-    "no longer end together",
+    "published-map": "by the reconstruction nine pins swing between 4 and 10 active contacts, "
+    "eight between 4 and 8: with nine, one half has a hole more than the other",
     "inside": "",
     "statics": "by statics neither eight nor nine pins on two discs pulsate at all: the sum of "
     "sin^2 is the same in every position",
