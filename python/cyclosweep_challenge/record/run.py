@@ -97,7 +97,7 @@ class Record:
             _discard(out)
         self.out, self.seed, self.size, self.kept = out, seed, size, kept or Kept()
         out.mkdir(parents=True, exist_ok=True)
-        own = {"schema": "cyclosweep.record/1", "seed": seed, "size": asdict(size)} | code()
+        own = {"schema": "cyclosweep.record/1", "seed": seed, "size": asdict(size)} | dict(code())
         file = out / "record.json"
         if not file.exists():
             _write(file, own | {"commit": commit(), "machine": machine()})
