@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from tests.drives import random_drives
 
 import cyclosweep as cs
+from tests.drives import random_drives
 
 
 def column(drive: cs.Drive, name: str) -> float:

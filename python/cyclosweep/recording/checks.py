@@ -1,16 +1,14 @@
 """Checks of a recording that was read: clock, gaps, saturation, duplicates, sample size."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from cyclosweep.recording.faults import Fault
-
-if TYPE_CHECKING:
-    from cyclosweep.recording.recording import Recording
+from cyclosweep.recording.samples import Samples
 
 MIN_SAMPLES = 8
-"""Fewest samples from which stiffness, free play, datum and a scatter can be told."""
+"""Fewest samples from which stiffness, free play, datum and a scatter can be estimated."""
 
 ABSURD = 1e10
 """Magnitude that no reading has, in any of the units."""
@@ -20,13 +18,33 @@ GAP_FACTOR = 20.0
 
 
 @np.errstate(all="ignore")
-def find_faults(recording: "Recording") -> tuple[Fault, ...]:
-    """Everything that is wrong with a recording, worst first."""
+def find_faults(
+    recording: Samples,
+    *,
+    conditioning_runs: Sequence[int] = (),
+    holdout_runs: Sequence[int] = (),
+) -> tuple[Fault, ...]:
+    """Find everything that is wrong with samples, worst first.
+
+    Parameters
+    ----------
+    recording : Samples
+        The samples, all of them finite.
+    conditioning_runs, holdout_runs : sequence of int
+        Runs that the metadata name; each should have samples.
+
+    Returns
+    -------
+    tuple of Fault
+        Contradictions first, then shortage, then what forces no verdict.
+    """
     if absurd := _absurd(recording):
         return absurd
+    named = {"conditioning_runs": conditioning_runs, "holdout_runs": holdout_runs}
     faults = [
         *_sample_size(recording),
-        *_runs(recording),
+        *_split_runs(recording),
+        *_absent_runs(recording, named),
         *_clock(recording),
         *_range(recording),
         *_relation(recording),
@@ -35,7 +53,7 @@ def find_faults(recording: "Recording") -> tuple[Fault, ...]:
     return tuple(sorted(faults, key=lambda fault: order[fault.verdict]))
 
 
-def _absurd(recording: "Recording") -> tuple[Fault, ...]:
+def _absurd(recording: Samples) -> tuple[Fault, ...]:
     """Refuse numbers that no torque, angle or clock has."""
     for name, unit in (("torque_nm", "N m"), ("angle_deg", "deg"), ("time_s", "s")):
         values = getattr(recording, name)
@@ -46,8 +64,8 @@ def _absurd(recording: "Recording") -> tuple[Fault, ...]:
     return ()
 
 
-def _sample_size(recording: "Recording") -> list[Fault]:
-    """Too few samples."""
+def _sample_size(recording: Samples) -> list[Fault]:
+    """Find a recording of too few samples."""
     if recording.is_program or len(recording) >= MIN_SAMPLES:
         return []
     return [
@@ -60,22 +78,40 @@ def _sample_size(recording: "Recording") -> list[Fault]:
     ]
 
 
-def _runs(recording: "Recording") -> list[Fault]:
-    """Find runs that appear in two places, and metadata that name runs which are not there."""
-    faults = []
+def _split_runs(recording: Samples) -> list[Fault]:
+    """Find runs whose rows stand in two places."""
     run = recording.run
-    blocks = 1 + np.count_nonzero(np.diff(run)) if len(run) else 0
-    if blocks > len(recording.runs):
-        faults.append(
-            Fault(
-                "run_split",
-                "DATA_FAULT",
-                f"{len(recording.runs)} run numbers in {blocks} separate blocks of rows: the order "
-                "of events is unknown. Sort the rows as they were recorded.",
-            )
+    stretches = 1 + np.count_nonzero(np.diff(run)) if len(run) else 0
+    if stretches <= len(recording.runs):
+        return []
+    return [
+        Fault(
+            "run_split",
+            "DATA_FAULT",
+            f"{len(recording.runs)} run numbers in {stretches} separate blocks of rows: the order "
+            "of events is unknown. Sort the rows as they were recorded.",
         )
-    for key in ("conditioning_runs", "holdout_runs"):
-        absent = [k for k in getattr(recording, key) if k not in recording.runs]
+    ]
+
+
+def _absent_runs(recording: Samples, named: Mapping[str, Sequence[int]]) -> list[Fault]:
+    """Find runs that the metadata name and that have no samples.
+
+    Parameters
+    ----------
+    recording : Samples
+        The samples.
+    named : mapping of str to sequence of int
+        Runs by the key of the metadata that names them.
+
+    Returns
+    -------
+    list of Fault
+        One for each key that names such a run; none forces a verdict.
+    """
+    faults = []
+    for key, runs in named.items():
+        absent = [k for k in runs if k not in recording.runs]
         if absent:
             faults.append(
                 Fault("run_absent", None, f"{key} names run {absent[0]}, which has no samples.")
@@ -83,8 +119,8 @@ def _runs(recording: "Recording") -> list[Fault]:
     return faults
 
 
-def _clock(recording: "Recording") -> list[Fault]:
-    """Time that runs backwards within a run, ticks that repeat, gaps."""
+def _clock(recording: Samples) -> list[Fault]:
+    """Find time that runs backwards within a run, ticks that repeat, and gaps."""
     time, run = recording.time_s, recording.run
     if time is None or len(time) < 2:
         return []
@@ -128,8 +164,8 @@ def _clock(recording: "Recording") -> list[Fault]:
     return faults
 
 
-def _range(recording: "Recording") -> list[Fault]:
-    """Constant torque or angle, and plateaus at the end of the range."""
+def _range(recording: Samples) -> list[Fault]:
+    """Find a constant torque or angle, and plateaus at the end of the range."""
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < 2:
         return []
@@ -173,7 +209,7 @@ def _range(recording: "Recording") -> list[Fault]:
     return faults
 
 
-def _relation(recording: "Recording") -> list[Fault]:
+def _relation(recording: Samples) -> list[Fault]:
     """Refuse an angle that does not follow the torque at all."""
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < 30 or not np.ptp(torque) or not np.ptp(angle):

@@ -1,30 +1,26 @@
-"""A torque-twist recording or load programme as arrays, with what is known about it."""
+"""A torque-twist recording or load programme: its samples and what is known about them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, Self
 
 import numpy as np
-import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording import reading, structure
 from cyclosweep.recording.checks import find_faults
+from cyclosweep.recording.cleaning import drop_missing
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.messages import printable
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-_COLUMNS = ("torque_nm", "angle_deg", "time_s", "crank_deg", "temperature_c")
-_KINDS: dict[str, type] = {"run": np.int64, "unscored": np.bool_}
+from cyclosweep.recording.reading import read
+from cyclosweep.recording.samples import COLUMNS, Floats, Ints, Samples
+from cyclosweep.recording.structure import Structure, find_structure
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Recording:
+class Recording(Samples):
     """Torque and twist of a drive with its output (or input) locked, in the order recorded.
 
     Attributes
@@ -74,12 +70,6 @@ class Recording:
 
     name: str
     path: Path | None = None
-    torque_nm: Floats
-    angle_deg: Floats | None = None
-    time_s: Floats | None = None
-    run: Ints
-    crank_deg: Floats | None = None
-    temperature_c: Floats | None = None
     side: Literal["input", "output"] = "input"
     drive: str | None = None
     torque_from: Literal["sensor", "motor-current"] = "sensor"
@@ -88,25 +78,9 @@ class Recording:
     reset_between_runs: bool = False
     conditioning_runs: tuple[int, ...] = ()
     holdout_runs: tuple[int, ...] = ()
-    unscored: NDArray[np.bool_] | None = None
     notes: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
     sha256: str | None = field(default=None, repr=False)
-
-    def __post_init__(self) -> None:
-        for name in (*_COLUMNS, "run", "unscored"):
-            given = getattr(self, name)
-            if given is None:
-                continue
-            array: NDArray[Any] = np.asarray(given, dtype=_KINDS.get(name, np.float64))
-            if array.ndim != 1 or len(array) != len(self.torque_nm):
-                raise ValueError(
-                    f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
-                )
-            if array.flags.writeable:
-                array = array.copy()
-                array.flags.writeable = False
-            object.__setattr__(self, name, array)
 
     @classmethod
     def read(cls, path: str | Path, meta: str | Path | None = None) -> Self:
@@ -120,17 +94,21 @@ class Recording:
             TOML file that says how to read it; default: the file of the same stem beside it,
             where there is one.
 
+        Returns
+        -------
+        Recording
+            With its ``faults`` found and its ``notes`` on what was recognised.
+
         Raises
         ------
         InputError
             The file cannot be read as a recording; one line says why.
         """
         try:
-            parts = reading.read(Path(path), None if meta is None else Path(meta))
+            parts = read(Path(path), None if meta is None else Path(meta))
         except InputError as error:  # names in the file may hold line breaks
             raise InputError(printable(str(error))) from None
-        recording = cls(**parts)
-        return replace(recording, faults=(*recording.faults, *find_faults(recording)))
+        return cls(**parts)._checked()
 
     @classmethod
     def from_arrays(
@@ -145,7 +123,32 @@ class Recording:
         name: str = "recording",
         **known: Any,
     ) -> Self:
-        """Make a recording of arrays; other attributes by keyword.
+        """Make a recording of arrays.
+
+        Parameters
+        ----------
+        torque_nm : array_like, shape (n,)
+            Torque at the measured shaft [N m].
+        angle_deg : array_like, shape (n,), optional
+            Twist at the measured shaft [deg]; without it this is a load programme.
+        time_s, crank_deg, temperature_c : array_like, shape (n,), optional
+            Clock [s], position of the mesh zone [deg], temperature [degC].
+        run : array_like of int, shape (n,), optional
+            Trial each sample belongs to; by default all are one run.
+        name : str
+            What the recording is called.
+        **known
+            Other attributes of a recording, such as ``side``.
+
+        Returns
+        -------
+        Recording
+            Without the samples that lack a finite torque, angle or time, and with its faults.
+
+        Raises
+        ------
+        ValueError
+            For arrays of different lengths or more than one dimension.
 
         Examples
         --------
@@ -164,13 +167,16 @@ class Recording:
         }
         whole = cls(name=name, **given, **known)  # refuses columns of unequal length
         notes = list(whole.notes)
-        columns, faults = reading.drop_missing(given, notes)
+        columns, faults = drop_missing(given, notes)
         kept: dict[str, Any] = dict(columns)
-        recording = replace(whole, **kept, notes=tuple(notes))
-        return replace(recording, faults=(*faults, *find_faults(recording)))
+        return replace(whole, **kept, notes=tuple(notes), faults=faults)._checked()
 
-    def __len__(self) -> int:
-        return len(self.torque_nm)
+    def _checked(self) -> Self:
+        """Return this recording with the faults that its samples show."""
+        found = find_faults(
+            self, conditioning_runs=self.conditioning_runs, holdout_runs=self.holdout_runs
+        )
+        return replace(self, faults=(*self.faults, *found))
 
     @property
     def counts(self) -> NDArray[np.bool_]:
@@ -179,51 +185,27 @@ class Recording:
         return whole if self.unscored is None else whole & ~self.unscored
 
     @property
-    def is_program(self) -> bool:
-        """Whether it is a load programme, without a measured angle."""
-        return self.angle_deg is None
-
-    @property
-    def runs(self) -> tuple[int, ...]:
-        """Numbers of the runs in the order recorded."""
-        if not len(self):
-            return ()
-        first = np.unique(self.run, return_index=True)[1]
-        return tuple(int(k) for k in self.run[np.sort(first)])
-
-    @property
     def blocking_fault(self) -> Fault | None:
         """First fault that forces a verdict; contradictions before shortage."""
         forcing = [fault for fault in self.faults if fault.verdict]
         return min(forcing, key=lambda fault: fault.verdict != "DATA_FAULT", default=None)
 
     @cached_property
-    def structure(self) -> "structure.Structure":
+    def structure(self) -> Structure:
         """Runs, branches, holds, reversals and dead-zone samples."""
-        return structure.find_structure(self)
-
-    def in_runs(self, runs: Iterable[int]) -> NDArray[np.bool_]:
-        """Mask of the samples that belong to the given runs."""
-        return np.isin(self.run, list(runs))
+        return find_structure(self)
 
     def take(self, rows: NDArray[np.bool_] | Sequence[int] | Ints | slice) -> Self:
         """Return a part of the recording, in the order recorded."""
         parts: dict[str, Any] = {
             name: None if (array := getattr(self, name)) is None else array[rows]
-            for name in (*_COLUMNS, "run", "unscored")
+            for name in COLUMNS
         }
         return replace(self, **parts)
 
     def with_angle(self, angle_deg: ArrayLike | None) -> Self:
         """Return the same load history with another angle, as for synthetic twins."""
         return replace(self, angle_deg=_floats(angle_deg))
-
-    def to_frame(self) -> pl.DataFrame:
-        """Canonical columns as a polars frame."""
-        columns = ("time_s", "torque_nm", "angle_deg", "run", "crank_deg", "temperature_c")
-        return pl.DataFrame(
-            {name: array for name in columns if (array := getattr(self, name)) is not None}
-        )
 
 
 def _floats(values: ArrayLike | None) -> Floats | None:

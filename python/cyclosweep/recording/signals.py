@@ -1,9 +1,9 @@
-"""What a torque or angle signal shows of itself: wraps, sign, resolution, clock ticks."""
+"""Properties read off torque and angle signals: wraps, sign, resolution, clock ticks."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from cyclosweep.recording.samples import Floats
 
 
 def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
@@ -11,14 +11,14 @@ def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
 
     Parameters
     ----------
-    values : ndarray of float
+    values : ndarray of float, shape (n,)
         Signal in file order; non-finite samples are passed over.
     period : float
         Where it wraps [unit of the signal].
 
     Returns
     -------
-    unwrapped : ndarray of float
+    unwrapped : ndarray of float, shape (n,)
     count : int
         Number of wraps undone.
 
@@ -41,6 +41,17 @@ def wraps_at_360(angle_deg: Floats, torque_nm: Floats) -> bool:
     All readings must lie within one turn, some step must exceed half of it, and the unwrapped
     angle must follow the torque no worse: a soft drive that is loaded the other way between two
     readings also makes a long step, but a true one.
+
+    Parameters
+    ----------
+    angle_deg : ndarray of float, shape (n,)
+        Angle as read [deg].
+    torque_nm : ndarray of float, shape (n,)
+        Torque [N m].
+
+    Returns
+    -------
+    bool
     """
     if len(angle_deg) < 2:
         return False
@@ -53,7 +64,18 @@ def wraps_at_360(angle_deg: Floats, torque_nm: Floats) -> bool:
 
 
 def _relation(a: Floats, b: Floats) -> float:
-    """Magnitude of the correlation; NaN where one of them is constant."""
+    """Magnitude of the correlation of two signals.
+
+    Parameters
+    ----------
+    a, b : ndarray of float, shape (n,)
+        The signals, in any unit.
+
+    Returns
+    -------
+    float
+        From 0 to 1; NaN where one of them is constant.
+    """
     return abs(float(np.corrcoef(a, b)[0, 1]))
 
 
@@ -61,6 +83,19 @@ def sign_is_reversed(torque_nm: Floats, angle_deg: Floats, run: NDArray[np.gener
     """Whether the angle falls where the torque rises, pooled within runs.
 
     A correlation below -0.5 decides; noise and friction loops leave it far above zero.
+
+    Parameters
+    ----------
+    torque_nm : ndarray of float, shape (n,)
+        Torque [N m].
+    angle_deg : ndarray of float, shape (n,)
+        Angle [deg].
+    run : ndarray, shape (n,)
+        Trial each sample belongs to.
+
+    Returns
+    -------
+    bool
     """
     if len(torque_nm) < 3:
         return False
@@ -108,9 +143,18 @@ def merge_same_time(
 ) -> tuple[dict[str, Floats | None], int]:
     """Average neighbouring samples of one run that share a clock tick, in file order.
 
+    Parameters
+    ----------
+    columns : dict of str to ndarray of float, shape (n,), or None
+        What is averaged.
+    time_s : ndarray of float, shape (n,)
+        Clock [s].
+    run : ndarray of float, shape (n,)
+        Trial each sample belongs to.
+
     Returns
     -------
-    merged : dict
+    merged : dict of str to ndarray of float, shape (m,), or None
         The columns, shorter.
     largest : int
         Most samples that became one.

@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from cyclosweep.recording.recording import Recording
+from cyclosweep.recording.samples import Floats, Ints, Samples
 
 Direction = Literal["loading", "unloading"]
 
@@ -19,12 +18,24 @@ HOLD_SAMPLES = 5
 """Fewest samples at one torque that count as a hold."""
 
 DEAD_ZONE_SHARE = 0.005
-"""Torque below this share of the largest leaves the twist undetermined, unless told otherwise."""
+"""Torque below this share of the largest leaves the twist undetermined."""
 
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """Samples `start` to `stop` (exclusive) over which the magnitude of torque goes one way."""
+    """Samples over which the magnitude of torque goes one way.
+
+    Attributes
+    ----------
+    run : int
+        Run they belong to.
+    start, stop : int
+        First sample, and the one after the last.
+    direction : {"loading", "unloading"}
+        Whether the magnitude of torque grows.
+    torque_from_nm, torque_to_nm : float
+        Torque of the first and of the last sample [N m].
+    """
 
     run: int
     start: int
@@ -36,7 +47,19 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """Samples `start` to `stop` (exclusive) at one torque."""
+    """Samples at one torque.
+
+    Attributes
+    ----------
+    run : int
+        Run they belong to.
+    start, stop : int
+        First sample, and the one after the last.
+    torque_nm : float
+        The torque [N m].
+    duration_s : float or None
+        How long it was held [s]; None without a clock.
+    """
 
     run: int
     start: int
@@ -67,13 +90,13 @@ class Structure:
 
     branches: tuple[Branch, ...]
     holds: tuple[Hold, ...]
-    reversals: NDArray[np.int64]
+    reversals: Ints
     sense: NDArray[np.int8]
     loading: NDArray[np.bool_]
     dead_zone: NDArray[np.bool_]
 
 
-def find_structure(recording: "Recording") -> Structure:
+def find_structure(recording: Samples) -> Structure:
     """Split a load history into branches, holds and reversals, each within a run."""
     torque, run = recording.torque_nm, recording.run
     n = len(torque)
@@ -112,10 +135,22 @@ def find_structure(recording: "Recording") -> Structure:
     )
 
 
-def turning_points(values: NDArray[np.float64], threshold: float) -> NDArray[np.int64]:
+def turning_points(values: Floats, threshold: float) -> Ints:
     """Find the extremes between which a signal goes at least `threshold` one way.
 
-    Smaller wiggles, as noise makes them, are passed over (the rainflow convention).
+    Smaller changes of direction, as noise makes them, are passed over, as in rainflow counting.
+
+    Parameters
+    ----------
+    values : ndarray of float, shape (n,)
+        The signal.
+    threshold : float
+        Least way back that counts as a change of direction [unit of the signal].
+
+    Returns
+    -------
+    ndarray of int, shape (k,)
+        Indices of the extremes; the first and the last sample are none.
 
     Examples
     --------
@@ -148,18 +183,42 @@ def turning_points(values: NDArray[np.float64], threshold: float) -> NDArray[np.
     return np.array([turn for turn in turns if turn > 0], dtype=np.int64)
 
 
-def _zero_crossing(torque: NDArray[np.float64], rising: bool) -> int:
-    """Index within one sweep from which the magnitude of torque grows.
+def _zero_crossing(torque: Floats, rising: bool) -> int:
+    """Find the sample from which the magnitude of torque grows.
 
     The sum of torque turns there, which noise around zero does not shift.
+
+    Parameters
+    ----------
+    torque : ndarray of float, shape (n,)
+        Torque between two changes of direction [N m].
+    rising : bool
+        Whether it rises.
+
+    Returns
+    -------
+    int
+        Index into `torque`.
     """
     total = np.cumsum(torque if rising else -torque)
     lowest = int(np.argmin(total))
     return lowest + 1 if total[lowest] < 0 else 0
 
 
-def _holds(recording: "Recording", start: int, stop: int) -> list[Hold]:
-    """Plateaus of at least `HOLD_SAMPLES` samples of equal torque within one run."""
+def _holds(recording: Samples, start: int, stop: int) -> list[Hold]:
+    """Find plateaus of at least `HOLD_SAMPLES` samples of equal torque within one run.
+
+    Parameters
+    ----------
+    recording : Samples
+        The samples.
+    start, stop : int
+        First sample of the run, and the one after its last.
+
+    Returns
+    -------
+    list of Hold
+    """
     torque = recording.torque_nm[start:stop]
     edges = np.flatnonzero(np.r_[True, np.diff(torque) != 0])
     ends = np.r_[edges[1:], len(torque)]

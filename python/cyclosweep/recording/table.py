@@ -1,57 +1,18 @@
-"""From a file to a table of numbers: CSV (also gzip, byte-order mark, decimal commas), Parquet."""
+"""From a file to a table of numbers: the cells of a CSV file, the columns of a Parquet file."""
 
 import csv
-import gzip
 import io
-import zlib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import polars as pl
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.csv_text import CsvText, number_in
 from cyclosweep.recording.messages import one_line, shown
-
-MAX_BYTES = 8 * 2**30
-"""Largest uncompressed text that is read [byte]."""
 
 MISSING = ["", "NA", "N/A", "na", "n/a", "null", "None", "-", "--", "#N/A"]
 """Cell contents that stand for a value that is not there."""
-
-_CHUNK = 1 << 22
-_SEPARATORS = ",;\t|"
-
-
-@dataclass(frozen=True, slots=True)
-class CsvText:
-    """Text of a CSV file and how its cells are divided.
-
-    Attributes
-    ----------
-    content : bytes
-        UTF-8 without a byte-order mark.
-    separator : str
-        Character between cells.
-    decimal_comma : bool
-        Whether numbers are written 1,5.
-    start : int
-        Where the rows below the header begin [byte].
-    line : int
-        Line number of the header.
-    header : list of str
-        Column names without surrounding blanks.
-    notes : list of str
-        What was recognised.
-    """
-
-    content: bytes
-    start: int
-    line: int
-    separator: str
-    decimal_comma: bool
-    header: list[str]
-    notes: list[str]
 
 
 def is_parquet(path: Path) -> bool:
@@ -60,92 +21,6 @@ def is_parquet(path: Path) -> bool:
         return True
     with path.open("rb") as file:
         return file.read(4) == b"PAR1"
-
-
-def read_bytes(path: Path) -> bytes:
-    """Content of a file, uncompressed where it is gzip.
-
-    Raises
-    ------
-    InputError
-        The file is missing, empty, a truncated or damaged gzip, or too large.
-    """
-    try:
-        with path.open("rb") as file:
-            packed = file.read(2) == b"\x1f\x8b"
-        with gzip.open(path) if packed else path.open("rb") as stream:
-            chunks: list[bytes] = []
-            size = 0
-            while chunk := stream.read(_CHUNK):
-                chunks.append(chunk)
-                size += len(chunk)
-                if size > MAX_BYTES:
-                    raise InputError(f"{path}: larger than {MAX_BYTES // 2**30} GiB uncompressed")
-    except EOFError:
-        raise InputError(f"{path}: truncated gzip: the file ends before its data do") from None
-    except (gzip.BadGzipFile, zlib.error) as error:
-        raise InputError(f"{path}: damaged gzip ({one_line(str(error))})") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
-    content = b"".join(chunks)
-    if not content.strip():
-        raise InputError(f"{path}: empty file, expected a header row and samples")
-    return content
-
-
-def to_utf8(content: bytes, path: Path) -> bytes:
-    """Text as UTF-8 without a byte-order mark."""
-    for mark, encoding in ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
-        if content.startswith(mark):
-            try:
-                return content.decode(encoding).encode()
-            except UnicodeDecodeError:
-                raise InputError(f"{path}: UTF-16 byte-order mark, but not UTF-16 text") from None
-    content = content.removeprefix(b"\xef\xbb\xbf")
-    if b"\0" in content[:_CHUNK]:
-        raise InputError(f"{path}: binary data, expected a CSV or Parquet file")
-    head = content[:_CHUNK]
-    try:
-        head.decode()
-    except UnicodeDecodeError as error:
-        if error.start < len(head) - 4:  # not merely cut in the middle of a character
-            return content.decode("latin-1").encode()
-    return content
-
-
-def open_csv(path: Path) -> CsvText:
-    """Read a CSV file and find its header, separator and decimal sign.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, has no header row, or has one column.
-    """
-    content = to_utf8(read_bytes(path), path)
-    if b"\n" not in content:
-        content = content.replace(b"\r", b"\n")
-    start, stop, line = _header_line(content, path)
-    head = content[start:stop].decode("utf-8", "replace").strip("\r\n")
-    separator = max(_SEPARATORS, key=head.count)
-    if separator not in head and head.strip().strip('"') != "torque_nm":  # a programme's least
-        raise InputError(
-            f"{path}, line {line}: one column ({shown(head)}), expected at least torque_nm and "
-            "angle_deg divided by ',' or ';'"
-        )
-    try:
-        names = [name.strip() for name in next(csv.reader([head], delimiter=separator))]
-    except csv.Error as error:
-        raise InputError(
-            f"{path}, line {line}: unreadable header ({one_line(str(error))})"
-        ) from None
-    if all(_is_number(name) or not name for name in names):
-        raise InputError(
-            f"{path}, line {line}: found numbers ({shown(head)}), expected a header row with "
-            "column names such as torque_nm,angle_deg"
-        )
-    decimal_comma = separator != "," and b"," in content[stop : stop + 10_000]
-    notes = [f"Cells divided by '{separator}', decimal commas."] if decimal_comma else []
-    return CsvText(content, stop, line, separator, decimal_comma, names, notes)
 
 
 def read_csv(
@@ -161,6 +36,11 @@ def read_csv(
         What `open_csv` returned.
     numbers, words : iterable of str
         Columns to read as numbers and as text.
+
+    Returns
+    -------
+    polars.DataFrame
+        The named columns, Float64 and String, without rows that are empty in all of them.
 
     Raises
     ------
@@ -182,7 +62,19 @@ def read_csv(
 
 
 def _parse(text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
-    """Hand the cells to polars under plain names, which the header's own may not be."""
+    """Hand the cells to polars under plain names, which the header's own may not be.
+
+    Parameters
+    ----------
+    text : CsvText
+        What `open_csv` returned.
+    kinds : mapping of str to polars.DataType
+        Type of each column wanted.
+
+    Returns
+    -------
+    polars.DataFrame
+    """
     places = {name: f"c{text.header.index(name)}" for name in kinds}
     header = text.separator.join(f"c{i}" for i in range(len(text.header))).encode() + b"\n"
     frame = pl.read_csv(
@@ -203,7 +95,26 @@ def _parse(text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
 
 
 def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
-    """Parse row by row: blanks around numbers are allowed, the first bad cell is named."""
+    """Parse row by row: blanks around numbers are allowed, the first bad cell is named.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    text : CsvText
+        What `open_csv` returned.
+    kinds : mapping of str to polars.DataType
+        Type of each column wanted.
+
+    Returns
+    -------
+    polars.DataFrame
+
+    Raises
+    ------
+    InputError
+        For a cell that holds text where a number belongs.
+    """
     columns: dict[str, list[float | str | None]] = {name: [] for name in kinds}
     places = {name: text.header.index(name) for name in kinds}
     for line, cells in _rows(path, text):
@@ -214,7 +125,7 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
             elif kinds[name] == pl.String:
                 columns[name].append(cell)
             else:
-                number = _number(cell.replace(",", ".") if text.decimal_comma else cell)
+                number = number_in(cell.replace(",", ".") if text.decimal_comma else cell)
                 if number is None:
                     raise InputError(
                         f"{path}, line {line}, column {name}: found {shown(cell)}, "
@@ -226,7 +137,20 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
 
 
 def _refuse_long_rows(path: Path, text: CsvText) -> None:
-    """Refuse rows with more cells than the header, as decimal commas between commas make them."""
+    """Refuse rows with more cells than the header, as decimal commas between commas make them.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    text : CsvText
+        What `open_csv` returned.
+
+    Raises
+    ------
+    InputError
+        With the line and both numbers of cells.
+    """
     count = text.content.count(text.separator.encode(), text.start)
     lines = text.content.count(b"\n", text.start) + (not text.content.endswith(b"\n"))
     if count == lines * (len(text.header) - 1):
@@ -240,7 +164,25 @@ def _refuse_long_rows(path: Path, text: CsvText) -> None:
 
 
 def _rows(path: Path, text: CsvText) -> Iterator[tuple[int, list[str]]]:
-    """Rows of cells with the line number on which each ends, without comments and blank lines."""
+    """Go through the rows below the header, without comments and blank lines.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    text : CsvText
+        What `open_csv` returned.
+
+    Yields
+    ------
+    int, list of str
+        Number of the line on which the row ends, and its cells.
+
+    Raises
+    ------
+    InputError
+        Where the text cannot be divided into cells.
+    """
     stream = io.TextIOWrapper(io.BytesIO(text.content), encoding="utf-8", errors="replace")
     for _ in range(text.line):
         next(stream)
@@ -256,36 +198,20 @@ def _rows(path: Path, text: CsvText) -> Iterator[tuple[int, list[str]]]:
         raise InputError(f"{path}, line {line}: unreadable ({one_line(str(error))})") from None
 
 
-def _header_line(content: bytes, path: Path) -> tuple[int, int, int]:
-    """Start, end and number of the header: not blank, a comment, or a spreadsheet's ``sep=;``."""
-    start = line = 0
-    while start < len(content):
-        line += 1
-        stop = content.find(b"\n", start) + 1 or len(content)
-        head = content[start:stop].strip()
-        if head and not head.startswith(b"#") and not head.lower().startswith(b"sep="):
-            return start, stop, line
-        start = stop
-    raise InputError(f"{path}: only comments, expected a header row and samples")
-
-
-def _number(cell: str) -> float | None:
-    """Value of a cell, None where it is not a number."""
-    if "_" in cell:
-        return None
-    try:
-        return float(cell)
-    except ValueError:
-        return None
-
-
-def _is_number(cell: str) -> bool:
-    """Whether a header cell is a number, also with a decimal comma."""
-    return _number(cell.replace(",", ".")) is not None
-
-
 def read_parquet(path: Path, numbers: Iterable[str], words: Iterable[str]) -> pl.DataFrame:
     """Read the named columns of a Parquet file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    numbers, words : iterable of str
+        Columns to read as numbers and as text.
+
+    Returns
+    -------
+    polars.DataFrame
+        The named columns, Float64 and String.
 
     Raises
     ------

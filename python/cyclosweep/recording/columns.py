@@ -1,0 +1,223 @@
+"""From the columns of a file to canonical columns: found by name, scaled, unwrapped."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from cyclosweep.errors import InputError
+from cyclosweep.recording import table
+from cyclosweep.recording.csv_text import open_csv
+from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata
+from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.signals import unwrap
+
+__all__ = ["Columns", "canonical_columns", "file_columns", "load", "stem"]
+
+Columns = dict[str, Floats | None]
+"""Canonical columns by name, each of shape (rows,); None where the file has none."""
+
+
+def stem(path: Path) -> str:
+    """Name of a file without its endings .gz, .csv and the like.
+
+    Examples
+    --------
+    >>> stem(Path("ramp.v2.csv.gz"))
+    'ramp.v2'
+    """
+    name = path.name[:-3] if path.name.lower().endswith(".gz") else path.name
+    main, dot, ending = name.rpartition(".")
+    if dot and ending.lower() in {"csv", "tsv", "txt", "dat", "parquet", "pq"}:
+        name = main
+    return name or path.name
+
+
+def file_columns(meta: Metadata) -> dict[str, Column]:
+    """File column of each canonical one; its own name where the metadata do not say."""
+    return {
+        name: meta.columns.get(name) or Column(column=name)  # type: ignore[call-overload]
+        for name in CANONICAL_COLUMNS
+    }
+
+
+def load(
+    path: Path, meta_path: Path | None, meta: Metadata, sources: dict[str, Column]
+) -> tuple[pl.DataFrame, list[str]]:
+    """Read the file columns that are needed, all of them numbers but those selected by text.
+
+    Parameters
+    ----------
+    path : Path
+        The recording's file, CSV or Parquet.
+    meta_path : Path or None
+        The metadata file, for messages.
+    meta : Metadata
+        What it says.
+    sources : dict of str to Column
+        File column of each canonical one.
+
+    Returns
+    -------
+    frame : polars.DataFrame
+        The file columns, in the file's units.
+    notes : list of str
+        What was recognised.
+
+    Raises
+    ------
+    InputError
+        For a column that is missing, or a cell that is not of its kind.
+    """
+    if parquet := table.is_parquet(path):
+        header = table.parquet_columns(path)
+    else:
+        text = open_csv(path)
+        header = text.header
+    _refuse_missing_columns(path, meta_path, meta, sources, header)
+    numbers, words = _needed(path, meta_path, meta, sources, header)
+    if parquet:
+        return table.read_parquet(path, sorted(numbers), sorted(words)), []
+    return table.read_csv(path, text, sorted(numbers), sorted(words)), list(text.notes)
+
+
+def _refuse_missing_columns(
+    path: Path,
+    meta_path: Path | None,
+    meta: Metadata,
+    sources: dict[str, Column],
+    header: list[str],
+) -> None:
+    """Refuse a file without the torque or without a column that the metadata name.
+
+    Parameters
+    ----------
+    path, meta_path, meta, sources
+        As for `load`.
+    header : list of str
+        Columns of the file.
+
+    Raises
+    ------
+    InputError
+        With the columns that were found.
+    """
+    found = _listed(header)
+    for name, source in sources.items():
+        if name in meta.columns and source.column not in header:
+            raise InputError(
+                f"{meta_path}, key columns.{name}: column {source.column!r} is not in {path}, "
+                f"found {found}"
+            )
+    if sources["torque_nm"].column not in header:
+        raise InputError(
+            f"{path}: no column torque_nm, found {found}; name it under [columns] in "
+            f"{meta_path or stem(path) + '.toml'}"
+        )
+
+
+def _needed(
+    path: Path,
+    meta_path: Path | None,
+    meta: Metadata,
+    sources: dict[str, Column],
+    header: list[str],
+) -> tuple[set[str], set[str]]:
+    """Decide which file columns are read as numbers and which as text.
+
+    Parameters
+    ----------
+    path, meta_path, meta, sources
+        As for `load`.
+    header : list of str
+        Columns of the file.
+
+    Returns
+    -------
+    numbers, words : set of str
+        Names of file columns; no column is in both.
+
+    Raises
+    ------
+    InputError
+        For a selection or limit on a column that is not there or not of that kind.
+    """
+    found = _listed(header)
+    numbers = {source.column for source in sources.values() if source.column in header}
+    words: set[str] = set()
+    for key, values in meta.keep.items():
+        column = sources[key].column if key in sources else key
+        if column not in header:
+            raise InputError(f"{meta_path}, key select.{key}: not a column of {path}: {found}")
+        is_text = bool(values) and all(isinstance(value, str) for value in values)
+        if is_text and column in numbers:
+            raise InputError(f"{meta_path}, key select.{key}: found text, expected numbers")
+        (words if is_text else numbers).add(column)
+    for table_name, limits in (("select", meta.abs_max), ("score", meta.score.abs_max)):
+        for key in limits:
+            column = sources[key].column if key in sources else key
+            if column not in header:
+                raise InputError(
+                    f"{meta_path}, key {table_name}.abs_max.{key}: not a column of {path}: {found}"
+                )
+            numbers.add(column)
+    if both := numbers & words:
+        raise InputError(f"{meta_path}, key select: {min(both)} is selected as text and as number")
+    return numbers, words
+
+
+def canonical_columns(
+    path: Path, frame: pl.DataFrame, sources: dict[str, Column], notes: list[str]
+) -> Columns:
+    """Scale and unwrap every column; a missing run column is one run.
+
+    Parameters
+    ----------
+    path : Path
+        The recording's file, for messages.
+    frame : polars.DataFrame
+        What `load` read, in the file's units.
+    sources : dict of str to Column
+        File column, scale, offset and period of each canonical column.
+    notes : list of str
+        What was changed is added to it.
+
+    Returns
+    -------
+    dict of str to ndarray of float, shape (rows,), or None
+        In canonical units.
+
+    Raises
+    ------
+    InputError
+        For a run that is no whole number.
+    """
+    columns: Columns = {}
+    for name, source in sources.items():
+        if source.column not in frame.columns:
+            columns[name] = None
+            continue
+        values = frame[source.column].to_numpy().astype(np.float64) * source.scale + source.offset
+        if source.modulo is not None:
+            values, count = unwrap(values, source.modulo)
+            notes.append(f"{name} is known modulo {source.modulo:g}: {count} wraps undone.")
+        columns[name] = values
+    run = columns["run"]
+    if run is None:
+        columns["run"] = np.ones(frame.height)
+    else:
+        wrong = np.flatnonzero(~(np.isfinite(run) & (run == np.rint(run)) & (abs(run) < 2**53)))
+        if len(wrong):
+            raise InputError(
+                f"{path}, data row {wrong[0] + 1}, column {sources['run'].column}: found "
+                f"{run[wrong[0]]:g}, expected an integer"
+            )
+    return columns
+
+
+def _listed(header: Iterable[str]) -> str:
+    """Column names for a message."""
+    names = list(header)
+    shown = ", ".join(names[:12])
+    return shown if len(names) <= 12 else f"{shown} and {len(names) - 12} more"

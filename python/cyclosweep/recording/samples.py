@@ -1,0 +1,102 @@
+"""The samples of a recording as plain arrays, one entry a sample, in the order recorded."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+__all__ = ["COLUMNS", "Floats", "Ints", "Samples"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+COLUMNS: dict[str, type] = {
+    "time_s": np.float64,
+    "torque_nm": np.float64,
+    "angle_deg": np.float64,
+    "run": np.int64,
+    "crank_deg": np.float64,
+    "temperature_c": np.float64,
+    "unscored": np.bool_,
+}
+"""Every column of samples and the type of its values."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Samples:
+    """Torque, twist and what was recorded with them; every array is read-only.
+
+    Attributes
+    ----------
+    torque_nm : ndarray of float, shape (n,)
+        Torque at the measured shaft [N m].
+    angle_deg : ndarray of float, shape (n,), or None
+        Twist at the measured shaft [deg], unwrapped, positive with the torque; None for a load
+        programme.
+    time_s : ndarray of float, shape (n,), or None
+        Clock [s]. Without it only the order of rows is known and rate effects are untestable.
+    run : ndarray of int, shape (n,)
+        Trial each sample belongs to.
+    crank_deg : ndarray of float, shape (n,), or None
+        Position of the mesh zone at which the output was locked [deg].
+    temperature_c : ndarray of float, shape (n,), or None
+        Temperature [degC].
+    unscored : ndarray of bool, shape (n,), or None
+        Samples simulated for their effect on the state, neither fitted nor scored; None: all count.
+    """
+
+    torque_nm: Floats
+    angle_deg: Floats | None = None
+    time_s: Floats | None = None
+    run: Ints
+    crank_deg: Floats | None = None
+    temperature_c: Floats | None = None
+    unscored: NDArray[np.bool_] | None = None
+
+    def __post_init__(self) -> None:
+        for name, kind in COLUMNS.items():
+            given = getattr(self, name)
+            if given is None:
+                continue
+            array: NDArray[Any] = np.asarray(given, dtype=kind)
+            if array.ndim != 1 or len(array) != len(self.torque_nm):
+                raise ValueError(
+                    f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
+                )
+            if array.flags.writeable:
+                array = array.copy()
+                array.flags.writeable = False
+            object.__setattr__(self, name, array)
+
+    def __len__(self) -> int:
+        return len(self.torque_nm)
+
+    @property
+    def is_program(self) -> bool:
+        """Whether this is a load programme, without a measured angle."""
+        return self.angle_deg is None
+
+    @property
+    def runs(self) -> tuple[int, ...]:
+        """Numbers of the runs in the order recorded."""
+        if not len(self):
+            return ()
+        first = np.unique(self.run, return_index=True)[1]
+        return tuple(int(k) for k in self.run[np.sort(first)])
+
+    def in_runs(self, runs: Iterable[int]) -> NDArray[np.bool_]:
+        """Mask of the samples that belong to the given runs."""
+        return np.isin(self.run, list(runs))
+
+    def to_frame(self) -> pl.DataFrame:
+        """Canonical columns as a polars frame."""
+        return pl.DataFrame(
+            {
+                name: array
+                for name in COLUMNS
+                if name != "unscored" and (array := getattr(self, name)) is not None
+            }
+        )
