@@ -84,6 +84,10 @@ def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.5g}"
 
 
+def _remark(note: str, explanation: str) -> str:
+    return f"{note}. Why not: {explanation}" if explanation else note
+
+
 def _counted_rows(table: pl.DataFrame) -> str:
     head = ("row", "source", "computed", "unit", "agrees", "remark")
     parts = []
@@ -95,7 +99,7 @@ def _counted_rows(table: pl.DataFrame) -> str:
                 _number(row["computed"]),
                 row["unit"],
                 "yes" if row["ok"] else "no",
-                ". ".join(row[name] for name in ("note", "explanation") if row[name]),
+                _remark(row["note"], row["explanation"]),
             )
             for row in table.filter(kind=kind).iter_rows(named=True)
         )
@@ -143,6 +147,7 @@ def _broken_tables() -> str:
     left = "; ".join(untouched(rows)) or "no row"
     return (
         f"{table}\nThe other way round: which errors break a row. Broken by none of them: {left}."
+        " Rows that count and disagree already are not in the list."
         "\n\n"
         f"{by_row}"
     )

@@ -63,7 +63,7 @@ def test_what_is_typed_in_or_reconstructed_does_not_count(intact: pl.DataFrame) 
     kinds = dict(zip(intact["fact"], intact["kind"], strict=True))
     assert kinds["ratio i"] == kinds["free play at the input"] == "input"
     assert kinds["twist at 2.5 T_N, 75 to 80 deg"] == "input"
-    assert kinds["C_OS, Eq. (13) multiplying by 0.84375, from"] == "input"
+    assert kinds["C_OS of the published line, eta 0.84375, from"] == "input"
     assert kinds["eta_OP"] == kinds["start of hole H1's active zone"] == "reconstruction"
     assert kinds["nominal input torque T_N"] == "evidence"
 

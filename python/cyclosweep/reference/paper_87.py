@@ -88,7 +88,7 @@ def _map_by_rules(model: Model, drive: Drive) -> Iterator[Fact]:
     statics = model.pin_map(unclocked, "statics")
     alike = (
         "holes treated alike on an equal pitch show one of two neighbouring numbers on each disc; "
-        "the printed map needs windows cut off at 0 and 180 deg, which no rule in the paper states"
+        "the printed map needs windows cut off at the ends of the half turn in which it is drawn"
     )
     half = (
         "the hole pushes its pin along the eccentricity, so half of the pins carry load at any "
@@ -235,9 +235,9 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
         note = "arithmetic with the published line alone: no model in it"
         reflected = slope / _PUBLISHED_EFFICIENCY
         for fact, published, computed, tolerance in (
-            ("input compliance", at_input, slope, 6e-5),
-            ("C*_OS, Eq. (13) multiplying by 0.84375", without_eta, reflected, 6e-5),
-            ("C_OS, Eq. (13) multiplying by 0.84375", at_output, reflected / 87**2, 6e-8),
+            ("input compliance of the published line", at_input, slope, 6e-5),
+            ("C*_OS of the published line, eta 0.84375", without_eta, reflected, 6e-5),
+            ("C_OS of the published line, eta 0.84375", at_output, reflected / 87**2, 6e-8),
         ):
             unit = "rad/(N m)"
             name = f"{fact}, {word}"

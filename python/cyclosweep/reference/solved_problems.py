@@ -29,7 +29,7 @@ From Saint-Venant's torsion problem, finite differences; solved again by the sam
 _SAMENESS = 0.05
 """Largest relative distance at which a formula and a solution count as the same."""
 _SHAPE = (
-    "the printed term, (1 - (d/D)^3) / 8, is a fit that meets the solution near D/d = 1.6: too "
+    "the printed term, (1 - (d/D)^3) / 8, is a fit that meets the solution near D/d = 1.55: too "
     "soft below, too stiff above, and never more than 0.125"
 )
 _SHOULDER_EXPLANATIONS = {

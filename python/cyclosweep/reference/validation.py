@@ -104,7 +104,7 @@ def report_tables(
     """
     table = validate(drive)
     for (group,), rows in table.group_by("group", maintain_order=True):
-        shown = _table(str(group), "fact", ("published", "computed"), ("unit", "kind", "mark"))
+        shown = _table(str(group), "fact", ("published", "computed"), ("unit", "kind, basis"))
         shown.add_column("ok")
         for row in rows.iter_rows(named=True):
             shown.add_row(
@@ -114,8 +114,7 @@ def report_tables(
                 _number(row["published"]),
                 _number(row["computed"]),
                 row["unit"],
-                row["kind"],
-                row["mark"],
+                row["kind"] + f"\n[dim]{row['mark']}[/]",
                 _outcome(row["ok"], row["counted"], row["explanation"]),
             )
         yield shown
