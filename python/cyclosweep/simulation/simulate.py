@@ -10,7 +10,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.effects.slip import slip_state, solve_slip, stretch_of
+from cyclosweep.simulation.effects.slip import Friction
 from cyclosweep.simulation.elastic_law import ElasticLaw, elastic_law
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist
 
@@ -210,12 +210,11 @@ def _slide(
     law: ElasticLaw | None,
     told_side: Floats | None,
 ) -> History:
-    shape = sliding[0].shape
     told = 0.0 if told_side is None else told_side * model.free_play_deg
     play = model.free_play_deg if told_side is None else 0.0
     points = None if law is None else (law.torque_nm, law.twist_deg)
     offset = model.datum_deg + added + told
-    angle, friction = solve_slip(history, shape, offset, _limits(sliding), play, points)
+    angle, friction = _friction(sliding).solve(history, offset, play, points)
     elastic = history.applied_nm - friction
     if told_side is not None:
         return history.with_state(elastic_nm=elastic, angle_deg=angle)
@@ -224,13 +223,9 @@ def _slide(
     return history.with_state(elastic_nm=elastic, angle_deg=angle, side=side)
 
 
-def _limits(sliding: Sequence[EffectValue]) -> tuple[float, float]:
-    """Friction limit without load [N m], and in proportion to the transmitted torque."""
-    of = {
-        name: float(sum(v.amplitudes[0] for v in sliding if v.name == name))
-        for name in ("friction_hysteresis", "load_dependent_friction")
-    }
-    return of["friction_hysteresis"], of["load_dependent_friction"]
+def _friction(sliding: Sequence[EffectValue]) -> Friction:
+    """Friction of all effects that slip."""
+    return Friction.of((v.effect, v.shape, v.amplitudes[0]) for v in sliding)
 
 
 def _torque(model: Model, programme: Recording) -> Floats:
@@ -239,7 +234,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         raise InputError(f"{programme.name}: angle_deg: missing, expected to predict a torque")
     angle = np.ascontiguousarray(programme.angle_deg, dtype=np.float64)
     sliding = [value for value in model.effects if value.effect.slips]
-    limits = _limits(sliding)
+    held_back = _friction(sliding) if sliding else None
     history = history_of(programme, model)
     farthest = float(np.abs(angle - model.datum_deg).max(initial=0.0))
     law = elastic_law(model, farthest / model.compliance_deg_per_nm)
@@ -259,11 +254,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
             settled = np.interp(beyond, law.twist_deg, law.torque_nm)
         moved = float(np.max(np.abs(settled - elastic)))
         elastic = settled
-        friction = np.zeros(len(angle))
-        for value in sliding:
-            state = slip_state(history, value.shape, stretch_of(history, value.shape, limits))
-            load = np.abs(elastic) if value.name == "load_dependent_friction" else 1.0
-            friction += value.amplitudes[0] * load * state
+        if held_back is not None:
+            friction = held_back.torque_nm(history.with_state(elastic_nm=elastic))
         if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9):
             break
     return elastic + friction + model.torque_zero_nm

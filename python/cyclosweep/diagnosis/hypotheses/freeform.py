@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.creep import FEWEST_STEPS
+from cyclosweep.simulation.effects.base import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 

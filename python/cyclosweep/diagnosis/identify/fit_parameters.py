@@ -1,14 +1,13 @@
 """Parameters that enter a fit nonlinearly: which they are, and within what bounds they lie."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.base import Parameter
-from cyclosweep.simulation.effects.creep import FEWEST_STEPS
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,47 +53,18 @@ def fit_parameters_of(terms: Sequence[Term], problem: Problem) -> tuple[FitParam
     """
     found: list[FitParameter] = []
     sliding = False
-    top = problem.history.largest_torque_nm
     for index, term in enumerate(terms):
         if term.effect is None:
             continue
         if term.slips:
-            amplitude = term.effect.amplitudes(term.shape)[0]
-            upper = min(amplitude.upper, 0.95 if "share" in amplitude.name else top)
-            limits = replace(amplitude, upper=upper)
-            found.append(FitParameter(index, "amplitude", limits))
+            amplitude = term.effect.amplitude_bounds(problem.history, term.shape)[0]
+            found.append(FitParameter(index, "amplitude", amplitude))
             if sliding:
                 continue
             sliding = True
         for parameter in term.effect.shape_parameters:
             if parameter.name not in term.shape:
                 continue
-            found.append(FitParameter(index, parameter.name, _within(parameter, problem)))
+            bounded = term.effect.shape_bounds(parameter, problem.history)
+            found.append(FitParameter(index, parameter.name, bounded))
     return tuple(found)
-
-
-def _within(parameter: Parameter, problem: Problem) -> Parameter:
-    """Bounds of a shape parameter as narrow as the recording allows."""
-    top = problem.history.largest_torque_nm
-    twist = problem.history.largest_twist_deg
-    if parameter.unit == "N m":
-        lower, upper = 1e-3 * top, 3.0 * top
-        if parameter.name == "onset_nm":
-            lower, upper = 0.0, 0.92 * top
-        if parameter.name == "first_nm":
-            # A single kink further out is what a sensor at its limit shows.
-            lower, upper = 0.0, 0.45 * top
-        if parameter.name == "turn_nm":
-            upper = 0.25 * top
-        if parameter.name == "range_nm":
-            upper = 0.9 * top
-        return replace(parameter, lower=lower, upper=upper)
-    step = problem.history.usual_step_s
-    if parameter.unit == "s" and step > 0:
-        upper = parameter.upper
-        if parameter.name == "delay_s" and problem.history.time_s is not None:
-            upper = max(0.1 * float(np.ptp(problem.history.time_s)), 4.0 * step)
-        return replace(parameter, lower=FEWEST_STEPS * step, upper=upper)
-    if parameter.name == "slip_deg":
-        return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)
-    return parameter

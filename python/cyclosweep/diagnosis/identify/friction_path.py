@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip import solve_slip
+from cyclosweep.simulation.effects.slip import Friction
 
 
 def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> History:
@@ -25,10 +25,11 @@ def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> 
     History
         With the new elastic torque [N m] and twist [deg].
     """
-    sliding = [term for term in terms if term.slips]
-    shape = sliding[0].shape
-    limit = sum(t.amplitude for t in sliding if t.name == "friction_hysteresis")
-    load = sum(t.amplitude for t in sliding if t.name == "load_dependent_friction")
+    friction = Friction.of(
+        (term.effect, term.shape, term.amplitude)
+        for term in terms
+        if term.effect is not None and term.slips
+    )
     offset = mean_deg - history.compliance_deg_per_nm * history.elastic_nm
-    angle, friction = solve_slip(history, shape, offset, (float(limit), float(load)), 0.0)
-    return history.with_state(elastic_nm=history.applied_nm - friction, angle_deg=angle)
+    angle, torque = friction.solve(history, offset, 0.0)
+    return history.with_state(elastic_nm=history.applied_nm - torque, angle_deg=angle)

@@ -11,6 +11,7 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.slip import on_shared_elements
 
 INNER = 3
 """Rounds in which the path of the shaft and the linear parameters are solved in turn."""
@@ -104,9 +105,7 @@ class JointFit:
                 amplitudes[parameter.term] = parameter.to_physical(value)
             else:
                 shapes[parameter.term][parameter.name] = parameter.to_physical(value)
-        sliding = [k for k, term in enumerate(self.terms) if term.slips]
-        for k in sliding[1:]:
-            shapes[k] = dict(shapes[sliding[0]])
+        shapes = on_shared_elements([term.effect for term in self.terms], shapes)
         return tuple(
             replace(term, shape=shape, amplitude=amplitude)
             for term, shape, amplitude in zip(self.terms, shapes, amplitudes, strict=True)

@@ -446,6 +446,5 @@ def _caution(name: str, effect: Effect | None, shape: Shape) -> float:
 
 
 def _differs(signature: Signature, other: Signature) -> bool:
-    """Whether two slip shapes are far enough apart to be worth a second start."""
-    ratio = float(signature.shape["slip_deg"]) / float(other.shape["slip_deg"])
-    return not 0.5 < ratio < 2.0 or signature.shape.get("slack") != other.shape.get("slack")
+    """Whether two shapes are far enough apart to be worth a second start."""
+    return signature.effect is not None and signature.effect.far_apart(signature.shape, other.shape)

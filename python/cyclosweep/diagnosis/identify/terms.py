@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from cyclosweep.diagnosis.hypotheses.freeform import FreeForm
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
@@ -48,3 +50,9 @@ class Term:
             return self.effect.columns(history, self.shape)
         assert self.free is not None
         return self.free.make(history)
+
+    def friction_limit(self, history: History) -> Floats:
+        """Limit of a friction along the path, shape (n,) [N m]."""
+        assert self.effect is not None
+        plain, loaded = self.effect.friction_limits(self.shape)
+        return np.asarray(self.amplitude * (plain + loaded * np.abs(history.elastic_nm)))

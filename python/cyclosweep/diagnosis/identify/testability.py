@@ -9,6 +9,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Candidate, Search
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import line_design
+from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 
 HIDDEN = 0.9999
@@ -142,31 +143,14 @@ def hidden_effects(search: Search) -> list[dict[str, str]]:
     """Effects that this recording cannot show, with reason and remedy."""
     out = [{"name": n, "reason": r, "needs": w} for n, r, w in ALWAYS_HIDDEN]
     for name, reason in search.library.untestable.items():
-        out.append({"name": name, "reason": reason, "needs": NEEDS.get(name, "another programme")})
+        out.append({"name": name, "reason": reason, "needs": find(name).shown_by})
     shown = set(search.baseline.rest.groups)
     for name in {b.hypothesis for b in search.library.signatures if b.named} - shown:
         out.append(
             {
                 "name": name,
                 "reason": "the calibration of stiffness, play and datum hides all of it",
-                "needs": NEEDS.get(name, "another programme"),
+                "needs": find(name).shown_by,
             }
         )
     return out
-
-
-NEEDS = {
-    "friction_hysteresis": "loading and unloading",
-    "load_dependent_friction": "loading and unloading to several amplitudes",
-    "contact_stiffening": "more samples at small load",
-    "clearance_takeup": "a wider range of torque",
-    "overload_softening": "loads beyond 2.5 times the nominal torque",
-    "datum_drift": "three or more runs without a reset between them",
-    "creep": "a clock, and holds at constant torque",
-    "phase_dependent_compliance": "runs at three or more recorded mesh positions",
-    "transmission_error": "runs at three or more recorded mesh positions",
-    "thermal_drift": "a recorded temperature that changes",
-    "viscous_drag": "a clock, and runs at different rates",
-    "load_asymmetry": "loading in both directions",
-    "dial_eccentricity": "twists over a good part of a turn of the dial",
-}

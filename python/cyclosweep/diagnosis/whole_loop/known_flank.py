@@ -147,12 +147,11 @@ class WholeLoopFit(FittedStructure):
         if not term.slips:
             return super().contribution(index)
         history = self.history
-        load = np.abs(history.elastic_nm)
         limit = np.zeros(len(history))
         for other in self.terms:
             if other.slips:
-                limit += other.amplitude * (load if other.name.startswith("load") else 1.0)
-        own = term.amplitude * (load if term.name.startswith("load") else 1.0)
+                limit += other.friction_limit(history)
+        own = term.friction_limit(history)
         share = np.divide(own, limit, out=np.zeros_like(limit), where=limit > 0)
         friction = history.applied_nm - history.elastic_nm
         return np.asarray(-history.compliance_deg_per_nm * share * friction)

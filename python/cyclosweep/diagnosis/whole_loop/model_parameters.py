@@ -10,7 +10,8 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.base import Parameter
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.simulate import EffectValue, Model
+from cyclosweep.simulation.effects.slip import on_shared_elements
+from cyclosweep.simulation.model import EffectValue, Model
 
 GROWTH = Parameter("growth", "", "power by which presliding distances grow with the limit")
 
@@ -182,10 +183,7 @@ def with_values(
             amplitudes[parameter.term][0] = value
         else:
             shapes[parameter.term][parameter.name] = value
-    sliding = next((k for k, term in enumerate(terms) if term.slips), None)
-    for k, term in enumerate(terms):
-        if term.slips and sliding is not None:
-            shapes[k] = dict(shapes[sliding])
+    shapes = on_shared_elements([term.effect for term in terms], shapes)
     moved = tuple(
         replace(term, shape=shape, amplitude=amplitude[0] if term.slips else term.amplitude)
         for term, shape, amplitude in zip(terms, shapes, amplitudes, strict=True)

@@ -24,10 +24,11 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     start,
 )
 from cyclosweep.diagnosis.whole_loop.known_flank import whole_loop_fit
-from cyclosweep.diagnosis.whole_loop.usual_effects import STARTS, USUAL, first_amplitude
 from cyclosweep.simulation.effects import Effect
-from cyclosweep.simulation.simulate import EffectValue
+from cyclosweep.simulation.model import EffectValue
 
+STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
+"""Friction limits and presliding distances to start from, as shares of torque and twist."""
 MOST_ADDED = 1
 """Effects added beyond the usual ones."""
 LEAST_GAIN = 0.15
@@ -58,30 +59,27 @@ def choose_effects(search: Search) -> Candidate:
 
 
 def _usual(search: Search, base: Forecast) -> Forecast | None:
-    """Both kinds of friction, stiffening and asymmetry at once, from several starts.
+    """Effects that such loops usually show, all at once, from several starts.
 
     One at a time, friction takes the place of the stiffening and does not give it back; and the
     crossings of the dead zone leave many small minima.
     """
     problem = search.problem
-    top, twist = problem.history.largest_torque_nm, problem.history.largest_twist_deg
+    history = problem.history
     known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
-    effects = [known[name] for name in USUAL if name in known]
-    if not effects:
-        return None
     zero = not problem.one_sided and _crosses_late(problem)
     found: Forecast | None = None
     for limit, slip in STARTS:
-        sliding = {
-            "slip_deg": slip * twist, "scatter": 1.0, "skew": 0.0, "slack": 0.0,
-            "growth": 0.7, "reference_nm": 0.3 * top,
-        }  # fmt: skip
         terms, values = [], []
-        for effect in effects:
-            shape = sliding if effect.slips else USUAL[effect.name](top)
-            amplitude = first_amplitude(effect, shape, limit * top, twist / top)
+        for effect in known.values():
+            begun = effect.usual_start(history, limit, slip)
+            if begun is None:
+                continue
+            shape, amplitude = begun
             terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
             values.append(EffectValue(effect.name, shape, (amplitude,)))
+        if not terms:
+            return None
         model = replace(base.model, effects=tuple(values))
         joint = fit_forecast(problem, model, terms, zero=zero, most=10)
         found = joint if found is None else _better(found, joint)

@@ -1,13 +1,19 @@
 """What every effect is: physics in words, its parameters, and its response to a load history."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
+
+FEWEST_STEPS = 3.0
+"""Steps between samples below which a delay cannot be told from drag."""
+MOST_FRICTION = 0.95
+"""Largest share of the transmitted torque that friction may take."""
 
 Shape = Mapping[str, float]
 """Values of the parameters that enter an effect's response nonlinearly, by name."""
@@ -73,13 +79,16 @@ class Effect:
         Class of look-alikes, named in the report where the recording cannot go further.
     needs : tuple of str
         Columns without which the effect cannot be tested.
+    shown_by : str
+        What a programme has to have so that the effect shows.
     shape_parameters : tuple of Parameter
         Parameters that enter nonlinearly and are refined by the fit.
     forms : tuple of ShapeForm
         What a shape may consist of, by which a shape in a file is checked. An effect that states
         none takes any, and all its shape parameters have to be there.
     slips : bool
-        The effect is a friction torque on slip elements, solved in the angle.
+        The effect is a friction torque on slip elements, solved in the angle; such an effect
+        derives from `cyclosweep.simulation.effects.slip.FrictionEffect`.
     elastic : bool
         The twist is a function of the elastic torque alone: part of the drive's elastic law.
     dense : bool
@@ -95,6 +104,7 @@ class Effect:
     tell_tale: ClassVar[str]
     family: ClassVar[str]
     needs: ClassVar[tuple[str, ...]] = ()
+    shown_by: ClassVar[str] = "another programme"
     shape_parameters: ClassVar[tuple[Parameter, ...]] = ()
     forms: ClassVar[tuple[ShapeForm, ...]] = ()
     slips: ClassVar[bool] = False
@@ -118,6 +128,102 @@ class Effect:
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Parameters that multiply the columns, with their signs as bounds."""
         raise NotImplementedError
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Shape parameter with bounds as narrow as the recording allows.
+
+        Loads lie between a thousandth and three times the largest one; times are at least a few
+        steps between samples.
+
+        Parameters
+        ----------
+        parameter : Parameter
+            One of ``shape_parameters``.
+        history : History
+            Load history of the recording.
+
+        Returns
+        -------
+        Parameter
+            The same with other bounds.
+        """
+        lower, upper = parameter.lower, parameter.upper
+        if parameter.unit == "N m":
+            top = history.largest_torque_nm
+            lower, upper = max(lower, 1e-3 * top), min(upper, 3.0 * top)
+        elif parameter.unit == "s":
+            lower = max(lower, FEWEST_STEPS * history.usual_step_s)
+        return replace(parameter, lower=lower, upper=upper) if lower < upper else parameter
+
+    def amplitude_bounds(self, history: History, shape: Shape) -> tuple[Parameter, ...]:
+        """Amplitudes with bounds as narrow as the recording allows.
+
+        Friction takes no more than the largest torque, and less than what is transmitted.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+
+        Returns
+        -------
+        tuple of Parameter
+        """
+        amplitudes = self.amplitudes(shape)
+        if not self.slips:
+            return amplitudes
+        plain, loaded = self.friction_limits(shape)
+        most = min(
+            history.largest_torque_nm / plain if plain > 0 else np.inf,
+            MOST_FRICTION / loaded if loaded > 0 else np.inf,
+        )
+        return tuple(replace(each, upper=min(each.upper, most)) for each in amplitudes)
+
+    def friction_limits(self, shape: Shape) -> tuple[float, float]:
+        """Limit of a friction of unit amplitude, for effects that slip.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape of the effect.
+
+        Returns
+        -------
+        tuple of float
+            Limit without load [N m], and in proportion to the transmitted torque.
+        """
+        return 1.0, 0.0
+
+    def slip_elements(self, shape: Shape) -> Elements:
+        """Slip elements of a friction, for effects that slip: presliding distances and shares."""
+        return elements_of(shape)
+
+    def far_apart(self, shape: Shape, other: Shape) -> bool:
+        """Whether two shapes of the grid are so unlike that a fit is started from both."""
+        return False
+
+    def usual_start(
+        self, history: History, limit_share: float, slip_share: float
+    ) -> tuple[Shape, float] | None:
+        """Where a fit of whole loops starts, for effects that such loops usually show.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        limit_share : float
+            Friction limit to start from, over the largest torque.
+        slip_share : float
+            Presliding distance to start from, over the largest elastic twist.
+
+        Returns
+        -------
+        tuple of shape and amplitude, or None
+            None for an effect that is looked for only in what the usual ones leave.
+        """
+        return None
 
     def known_shape(self, shape: Shape) -> Shape:
         """Return a shape with its parameters in the effect's own order.

@@ -1,6 +1,7 @@
 """Pins or teeth with unequal clearances come into contact one after another."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,6 +29,7 @@ class ClearanceTakeup(Effect):
     )
     source = "Kumar et al. 2016, section 4 (pins that come to carry one after another)"
     tell_tale = "slope drops in steps at certain twists"
+    shown_by = "a wider range of torque"
     family = "smooth odd curve"
     elastic = True
     dense = True
@@ -45,6 +47,13 @@ class ClearanceTakeup(Effect):
             for first in np.linspace(*FIRST, 8)
             for width in np.linspace(*WIDTH, 6)
         ]
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """First engagement in the lower half; a kink further out is what a sensor's limit shows."""
+        top = history.largest_torque_nm
+        if parameter.name == "first_nm":
+            return replace(parameter, lower=0.0, upper=0.45 * top)
+        return replace(parameter, lower=1e-3 * top, upper=0.9 * top)
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist lost for a unit drop of compliance [deg]."""

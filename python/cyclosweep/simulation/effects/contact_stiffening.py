@@ -1,6 +1,7 @@
 """Hertzian contacts: the compliance falls smoothly as the load grows."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ class ContactStiffening(Effect):
     )
     source = "Johnson, Contact Mechanics, 1985, ch. 4 (Hertz)"
     tell_tale = "steep near zero load, flatter above; both directions alike"
+    shown_by = "more samples at small load"
     family = "smooth odd curve"
     elastic = True
     dense = True
@@ -36,6 +38,18 @@ class ContactStiffening(Effect):
         top = history.largest_torque_nm
         powers: list[Shape] = [{"power": float(p)} for p in np.linspace(1 / 2, 5 / 6, 7)]
         return powers + [{"turn_nm": float(t) * top} for t in np.geomspace(0.02, 0.25, 7)]
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Keep the turning load to a quarter of the largest load."""
+        top = history.largest_torque_nm
+        return replace(parameter, lower=1e-3 * top, upper=0.25 * top)
+
+    def usual_start(
+        self, history: History, limit_share: float, slip_share: float
+    ) -> tuple[Shape, float] | None:
+        """Loops usually show contacts that stiffen; see `Effect.usual_start`."""
+        compliance = history.largest_twist_deg / history.largest_torque_nm
+        return {"turn_nm": 0.1 * history.largest_torque_nm}, 0.3 * compliance
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""

@@ -5,11 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed, spread
+from cyclosweep.simulation.effects.base import (
+    FEWEST_STEPS,
+    Effect,
+    Parameter,
+    Shape,
+    ShapeForm,
+    listed,
+    spread,
+)
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-
-FEWEST_STEPS = 3.0
-"""Steps between samples below which a delay cannot be told from drag."""
 
 
 class Creep(Effect):
@@ -25,6 +30,7 @@ class Creep(Effect):
     )
     source = "Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, 1976"
     tell_tale = "angle goes on moving at constant torque; recovers"
+    shown_by = "a clock, and holds at constant torque"
     family = "relaxation"
     needs = ("time_s",)
     shape_parameters = (

@@ -80,6 +80,7 @@ class DatumDrift(Effect):
     )
     source = "Kumar et al. 2016 (datum drift of up to 1 deg over repeated runs)"
     tell_tale = "offset differs by run, tied to what the last run did"
+    shown_by = "three or more runs without a reset between them"
     family = "run offsets"
     shape_parameters = (
         Parameter("memory", "", "part of the shift kept to the next run", 0.0, 1.0),

@@ -22,6 +22,7 @@ class DialEccentricity(Effect):
     )
     source = "geometry: a circle read from a point off its centre"
     tell_tale = "periodic in the indicated angle itself"
+    shown_by = "twists over a good part of a turn of the dial"
     family = "dial"
     vector = True
     forms = (ShapeForm(("order",), ("phase_deg",)),)

@@ -18,6 +18,7 @@ class LoadAsymmetry(Effect):
     )
     source = "Kumar et al. 2016 (side load of the hanging weight)"
     tell_tale = "even in torque: differs between directions"
+    shown_by = "loading in both directions"
     family = "even curve"
     elastic = True
     dense = True
@@ -33,6 +34,12 @@ class LoadAsymmetry(Effect):
     def shapes(self, history: History) -> Sequence[Shape]:
         """From a square root to a square of the load."""
         return [{"power": float(power)} for power in np.linspace(0.6, 2.0, 8)]
+
+    def usual_start(
+        self, history: History, limit_share: float, slip_share: float
+    ) -> tuple[Shape, float] | None:
+        """Loops usually show a difference of the directions; see `Effect.usual_start`."""
+        return {"power": 1.0}, 1e-3
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Even twist, one at a load of 10 N m [deg]."""

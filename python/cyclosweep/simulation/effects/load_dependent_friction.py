@@ -2,18 +2,12 @@
 
 from collections.abc import Sequence
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
-from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip import (
-    SLIP_FORMS,
-    SLIP_PARAMETERS,
-    slip_shapes,
-    slip_state,
-    stretch_of,
-)
+from cyclosweep.simulation.effects.base import Parameter, Shape
+from cyclosweep.simulation.effects.history import History
+from cyclosweep.simulation.effects.slip import FrictionEffect
 
 
-class LoadDependentFriction(Effect):
+class LoadDependentFriction(FrictionEffect):
     """Friction whose limit grows with the transmitted torque, ``mu |T_e|``."""
 
     name = "load_dependent_friction"
@@ -23,24 +17,16 @@ class LoadDependentFriction(Effect):
     )
     source = "Volbeda, MSc thesis 2024 (measured 13:1 drive); Al-Bender et al. 2005"
     tell_tale = "loop that opens with load"
-    family = "hysteresis"
-    shape_parameters = SLIP_PARAMETERS
-    forms = SLIP_FORMS
-    slips = True
-
-    def shapes(self, history: History) -> Sequence[Shape]:
-        """Presliding distances and scatters; see `slip_shapes`."""
-        return slip_shapes(history)
+    shown_by = "loading and unloading to several amplitudes"
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Presliding distances that do not depend on the load, and ones that grow with it."""
         middle = 0.5 * history.largest_torque_nm
         return [shape, {**shape, "growth": 1.0, "reference_nm": middle}]
 
-    def columns(self, history: History, shape: Shape) -> Floats:
-        """Twist taken away by friction of 100 % of the transmitted torque [deg]."""
-        state = slip_state(history, shape, stretch_of(history, shape, (0.0, 1.0)))
-        return (-history.compliance_deg_per_nm * history.load_nm * state)[:, None]
+    def friction_limits(self, shape: Shape) -> tuple[float, float]:
+        """The amplitude is a share of the transmitted torque."""
+        return 0.0, 1.0
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Friction torque as a share of the transmitted torque."""

@@ -40,6 +40,7 @@ class MeshPeriodic(Effect):
     """An effect that is periodic in the position of the mesh zone."""
 
     needs = ("crank_deg",)
+    shown_by = "runs at three or more recorded mesh positions"
     forms = (ShapeForm(numbered="order_{}"),)
 
     def largest(self, history: History) -> float:

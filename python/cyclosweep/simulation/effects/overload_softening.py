@@ -1,6 +1,7 @@
 """Compliance that grows above a load."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +19,7 @@ class OverloadSoftening(Effect):
     )
     source = "Kumar et al. 2016 (the loading curve is nonlinear above 2.5 times nominal torque)"
     tell_tale = "slope rises beyond a torque"
+    shown_by = "loads beyond 2.5 times the nominal torque"
     family = "smooth odd curve"
     elastic = True
     dense = True
@@ -35,6 +37,12 @@ class OverloadSoftening(Effect):
             for share in (0.15, 0.3, 0.45, 0.55, 0.65, 0.8)
             for power in (1.0, 1.5, 2.0, 3.0)
         ]
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Keep the onset below the largest load."""
+        if parameter.name != "onset_nm":
+            return super().shape_bounds(parameter, history)
+        return replace(parameter, lower=0.0, upper=0.92 * history.largest_torque_nm)
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Extra twist, one at an overload of 10 N m [deg]."""

@@ -1,66 +1,64 @@
-"""Slip elements behind both friction effects: how they are distributed, started and solved."""
+"""Friction on slip elements: how it is distributed, started, limited and solved in the angle."""
 
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import Parameter, Shape, ShapeForm
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.slip_elements import (
+    ELEMENTS,
+    Elements,
+    elements_of,
+    spread_elements,
+)
 
-ELEMENTS = 14
-"""Number of slip elements; the response no longer depends on it beyond about ten."""
-
+__all__ = [
+    "ELEMENTS",
+    "SLIP_FORMS",
+    "SLIP_PARAMETERS",
+    "Elements",
+    "Friction",
+    "FrictionEffect",
+    "elements_of",
+    "on_shared_elements",
+    "slip_shapes",
+    "slip_state",
+    "solve_slip",
+    "spread_elements",
+    "start_of",
+    "stretch_of",
+]
 
 SLIP_PARAMETERS = (
     Parameter("slip_deg", "deg", "median presliding distance", 1e-6, 1e3, logarithmic=True),
     Parameter("scatter", "", "spread of the presliding distances (sd of log)", 0.05, 3.0, True),
     Parameter("skew", "", "1: a power law up to a longest distance, 0: lognormal", -1.0, 1.0),
 )
-
-
 SLIP_FORMS = (
     ShapeForm(("slip_deg", "scatter"), ("skew", "slack")),
     ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), ("skew", "slack")),
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Elements:
-    """Presliding distances [deg] and shares of the friction limit."""
-
-    slip_deg: Floats
-    share: Floats
-
-
-@lru_cache(maxsize=256)
-def spread_elements(slip_deg: float, scatter: float, skew: float = 0.0) -> Elements:
-    """Elements at equally probable quantiles of a distribution of presliding distances.
-
-    Between a lognormal one (no skew) and a power law up to a longest distance, as Segalman found
-    for joints (J. Appl. Mech. 72, 2005), or its mirror image down to a shortest one.
-    """
-    from scipy.special import ndtri
-
-    share = (np.arange(ELEMENTS) + 0.5) / ELEMENTS
-    tail = 1.0 + np.log(share) if skew > 0 else -1.0 - np.log1p(-share)
-    quantile = (1.0 - abs(skew)) * ndtri(share) + abs(skew) * tail
-    return Elements(slip_deg * np.exp(scatter * quantile), np.full(ELEMENTS, 1.0 / ELEMENTS))
-
-
-def elements_of(shape: Shape) -> Elements:
-    """Elements of a friction effect with this shape."""
-    return spread_elements(
-        float(shape["slip_deg"]), float(shape["scatter"]), float(shape.get("skew", 0.0))
-    )
-
-
 def start_of(history: History, shape: Shape) -> Floats:
     """Angle at which fresh elements are anchored.
 
-    `slack` 0: unloaded contact on the first flank; 1: the middle of the dead zone, so that the
-    elements have slipped before the flank is reached.
+    Parameters
+    ----------
+    history : History
+        Load history of n samples.
+    shape : mapping
+        `slack` 0: unloaded contact on the first flank; 1: the middle of the dead zone, so that the
+        elements have slipped before the flank is reached.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Angle [deg].
     """
     contact = history.start_angle_deg
     return contact - float(shape.get("slack", 0.0)) * history.side * history.free_play_deg
@@ -72,6 +70,20 @@ def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> F
     With `growth` 0 they do not depend on the load, as where more asperities touch under load; with
     1 they grow with the friction limit, as for a contact of constant stiffness, and hold at the
     transmitted torque `reference_nm`.
+
+    Parameters
+    ----------
+    history : History
+        Load history of n samples.
+    shape : mapping
+        Shape of a friction, perhaps with ``growth`` and ``reference_nm`` [N m].
+    limits : tuple of float
+        Friction limit without load [N m], and in proportion to the transmitted torque.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Factor on the presliding distances.
     """
     growth = float(shape.get("growth", 0.0))
     if growth == 0.0:
@@ -82,9 +94,31 @@ def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> F
     return np.asarray(np.maximum(ratio, 1e-9) ** growth)
 
 
-def slip_state(history: History, shape: Shape, stretch: Floats | None = None) -> Floats:
-    """State of the elements along the model's path, between -1 and 1; see `stretch_of`."""
-    elements = elements_of(shape)
+def slip_state(
+    history: History,
+    shape: Shape,
+    stretch: Floats | None = None,
+    elements: Elements | None = None,
+) -> Floats:
+    """State of the elements along the model's path.
+
+    Parameters
+    ----------
+    history : History
+        Load history of n samples with the model's path.
+    shape : mapping
+        Shape of a friction.
+    stretch : ndarray, shape (n,), optional
+        Factor on the presliding distances, see `stretch_of`; default: one.
+    elements : Elements, optional
+        Default: those of the shape's ``slip_deg``, ``scatter`` and ``skew``.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Friction over its limit, between -1 and 1.
+    """
+    elements = elements_of(shape) if elements is None else elements
     return _core.slip_state(
         history.angle_deg,
         history.restart,
@@ -102,12 +136,17 @@ def solve_slip(
     limits: tuple[float, float],
     free_play: float,
     law: tuple[Floats, Floats] | None = None,
+    elements: Elements | None = None,
 ) -> tuple[Floats, Floats]:
-    """Angle [deg] and friction torque [N m] along the applied torque.
+    """Angle and friction torque along the applied torque.
 
     Parameters
     ----------
-    offset : ndarray
+    history : History
+        Load history of n samples with the calibrated line.
+    shape : mapping
+        Shape of the friction.
+    offset : ndarray, shape (n,)
         Everything that shifts the datum [deg].
     limits : tuple of float
         Friction limit without load [N m], and in proportion to the transmitted torque.
@@ -115,8 +154,15 @@ def solve_slip(
         Half width of the dead zone; zero where `offset` already holds the flank in contact [deg].
     law : pair of ndarray, optional
         Elastic torques [N m] and twists [deg] of an elastic law that is no line.
+    elements : Elements, optional
+        Default: those of the shape's ``slip_deg``, ``scatter`` and ``skew``.
+
+    Returns
+    -------
+    angle_deg, friction_nm : ndarray, shape (n,)
+        Angle [deg] and friction torque [N m].
     """
-    elements = elements_of(shape)
+    elements = elements_of(shape) if elements is None else elements
     return _core.solve_slip(
         history.applied_nm,
         np.ascontiguousarray(offset),
@@ -145,3 +191,156 @@ def slip_shapes(history: History) -> list[Shape]:
         for scatter in (0.4, 1.2)
         for start in slack
     ]
+
+
+class FrictionEffect(Effect):
+    """Friction torque on slip elements, for effects to derive from.
+
+    A subclass says how the friction limit depends on the load by `friction_limits`, and may give
+    slip elements of its own by `slip_elements`; then it states its own shape parameters, too.
+    """
+
+    family = "hysteresis"
+    shown_by = "loading and unloading"
+    shape_parameters = SLIP_PARAMETERS
+    forms = SLIP_FORMS
+    slips = True
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Presliding distances and scatters; see `slip_shapes`."""
+        return slip_shapes(history)
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Keep presliding distances to what a recording of this twist can show."""
+        if parameter.name != "slip_deg":
+            return super().shape_bounds(parameter, history)
+        twist = history.largest_twist_deg
+        return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)
+
+    def columns(self, history: History, shape: Shape) -> Floats:
+        """Twist taken away by a friction of unit amplitude [deg]."""
+        plain, loaded = self.friction_limits(shape)
+        stretch = stretch_of(history, shape, (plain, loaded))
+        state = slip_state(history, shape, stretch, self.slip_elements(shape))
+        limit = plain + loaded * history.load_nm
+        return np.asarray(-history.compliance_deg_per_nm * limit * state)[:, None]
+
+    def far_apart(self, shape: Shape, other: Shape) -> bool:
+        """Whether presliding distances, or the starts, are worth a second start of a fit."""
+        if "slip_deg" not in shape or "slip_deg" not in other:
+            return False
+        ratio = float(shape["slip_deg"]) / float(other["slip_deg"])
+        return not 0.5 < ratio < 2.0 or shape.get("slack") != other.get("slack")
+
+    def usual_start(
+        self, history: History, limit_share: float, slip_share: float
+    ) -> tuple[Shape, float] | None:
+        """Friction is what whole loops usually show.
+
+        See `Effect.usual_start` for the parameters.
+        """
+        if self.shape_parameters != SLIP_PARAMETERS:
+            return None
+        top = history.largest_torque_nm
+        shape = {
+            "slip_deg": slip_share * history.largest_twist_deg, "scatter": 1.0, "skew": 0.0,
+            "slack": 0.0, "growth": 0.7, "reference_nm": 0.3 * top,
+        }  # fmt: skip
+        plain, loaded = self.friction_limits(shape)
+        return shape, limit_share * top / plain if plain > 0 else 0.2 / loaded
+
+
+@dataclass(frozen=True)
+class Friction:
+    """All friction of a model: one set of slip elements, and what limits it together.
+
+    Attributes
+    ----------
+    shape : mapping
+        Shape of the first friction, by which all start and stretch.
+    elements : Elements
+        Slip elements of the first friction, on which all act.
+    limits : tuple of float
+        Friction limit without load [N m], and in proportion to the transmitted torque.
+    """
+
+    shape: Shape
+    elements: Elements
+    limits: tuple[float, float]
+
+    @classmethod
+    def of(cls, parts: Iterable[tuple[Effect, Shape, float]]) -> Self:
+        """Friction of these effects with their shapes and amplitudes, at least one."""
+        parts = tuple(parts)
+        first, shape, _ = parts[0]
+        plain = loaded = 0.0
+        for effect, own, amplitude in parts:
+            limits = effect.friction_limits(own)
+            plain += amplitude * limits[0]
+            loaded += amplitude * limits[1]
+        return cls(shape, first.slip_elements(shape), (float(plain), float(loaded)))
+
+    def solve(
+        self,
+        history: History,
+        offset: Floats,
+        free_play: float,
+        law: tuple[Floats, Floats] | None = None,
+    ) -> tuple[Floats, Floats]:
+        """Angle and friction torque along the applied torque; see `solve_slip`.
+
+        Parameters
+        ----------
+        history : History
+            Load history of n samples with the calibrated line.
+        offset : ndarray, shape (n,)
+            Everything that shifts the datum [deg].
+        free_play : float
+            Half width of the dead zone [deg].
+        law : pair of ndarray, optional
+            Elastic torques [N m] and twists [deg].
+
+        Returns
+        -------
+        angle_deg, friction_nm : ndarray, shape (n,)
+            Angle [deg] and friction torque [N m].
+        """
+        return solve_slip(history, self.shape, offset, self.limits, free_play, law, self.elements)
+
+    def torque_nm(self, history: History) -> Floats:
+        """Friction torque along the path of a history, shape (n,) [N m]."""
+        stretch = stretch_of(history, self.shape, self.limits)
+        state = slip_state(history, self.shape, stretch, self.elements)
+        limit = self.limits[0] + self.limits[1] * np.abs(history.elastic_nm)
+        return np.asarray(limit * state)
+
+
+def on_shared_elements(
+    effects: Sequence[Effect | None], shapes: Sequence[dict[str, float]]
+) -> list[dict[str, float]]:
+    """Shapes of a structure with all friction on the slip elements of the first.
+
+    Parameters
+    ----------
+    effects : sequence of Effect or None
+        Effects of the structure; None for what is no effect.
+    shapes : sequence of dict
+        Their shapes.
+
+    Returns
+    -------
+    list of dict
+        Friction whose shape has the same parameters as that of the first takes its values.
+    """
+    out = list(shapes)
+    first: int | None = None
+    for k, effect in enumerate(effects):
+        if effect is None or not effect.slips:
+            continue
+        if first is None:
+            first = k
+            continue
+        leader = effects[first]
+        if leader is not None and leader.shape_parameters == effect.shape_parameters:
+            out[k] = dict(shapes[first])
+    return out

@@ -1,6 +1,7 @@
 """Thermal change of clearance or datum."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,6 +27,7 @@ class ThermalDrift(Effect):
     )
     source = "thermal expansion of unlike materials"
     tell_tale = "offset follows temperature"
+    shown_by = "a recorded temperature that changes"
     family = "run offsets"
     needs = ("temperature_c",)
     shape_parameters = (
@@ -50,6 +52,14 @@ class ThermalDrift(Effect):
             return kinds
         delays = [share * spread(history.time_s) for share in (0.01, 0.04)]
         return kinds + [{**kind, "delay_s": delay} for kind in kinds for delay in delays]
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Keep the delay to a tenth of the recording."""
+        bounds = super().shape_bounds(parameter, history)
+        step = history.usual_step_s
+        if history.time_s is None or not step > 0:
+            return bounds
+        return replace(bounds, upper=max(0.1 * spread(history.time_s), 4.0 * step))
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Offset for 1 deg/K [deg]."""

@@ -26,6 +26,7 @@ class ViscousDrag(Effect):
     )
     source = "Volbeda, MSc thesis 2024 (viscous 1.3 N m s/rev); Newton's law of viscosity"
     tell_tale = "torque in proportion to twist rate"
+    shown_by = "a clock, and runs at different rates"
     family = "hysteresis"
     needs = ("time_s",)
     shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
