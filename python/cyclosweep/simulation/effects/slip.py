@@ -227,10 +227,10 @@ class FrictionEffect(Effect):
 
     def far_apart(self, shape: Shape, other: Shape) -> bool:
         """Whether presliding distances, or the starts, are worth a second start of a fit."""
-        if "slip_deg" not in shape or "slip_deg" not in other:
-            return False
-        ratio = float(shape["slip_deg"]) / float(other["slip_deg"])
-        return not 0.5 < ratio < 2.0 or shape.get("slack") != other.get("slack")
+        if shape.get("slack") != other.get("slack"):
+            return True
+        distances = [p.name for p in self.shape_parameters if p.unit == "deg" and p.logarithmic]
+        return any(not 0.5 < shape[name] / other[name] < 2.0 for name in distances)
 
     def usual_start(
         self, history: History, limit_share: float, slip_share: float
