@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -160,6 +161,7 @@ class Noise:
             scaled = np.where(start[:, None], scaled, step)
         return scaled[:, 0] if flat else scaled
 
+    @lru_cache(maxsize=512)  # noqa: B019 - a few numbers a noise, not the programme
     def information(self) -> float:
         """Fisher information of a whitened reading's location over that of a normal one [-]."""
         if np.isfinite(self.freedom):

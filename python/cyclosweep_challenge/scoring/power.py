@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import optimize, stats
+from scipy import optimize
+from scipy.special import ndtr, ndtri
 
 from cyclosweep_challenge.scoring.intervals import NOTHING, Estimate, share_of
 from cyclosweep_challenge.scoring.outcome import Outcome
@@ -27,12 +28,12 @@ def _fit(d: Array, hit: Array, level: float) -> float:
     """Fit a probit curve above a false-alarm floor; return where it reaches 0.9."""
 
     def loss(theta: Array) -> float:
-        curve = level + (1.0 - level) * stats.norm.cdf((d - theta[0]) / np.exp(theta[1]))
+        curve = level + (1.0 - level) * ndtr((d - theta[0]) / np.exp(theta[1]))
         chance = np.clip(curve, 1e-9, 1.0 - 1e-9)
         return float(-np.sum(hit * np.log(chance) + (1.0 - hit) * np.log(1.0 - chance)))
 
     best = optimize.minimize(loss, [4.0, 0.2], method="Nelder-Mead")
-    needed = stats.norm.ppf((0.9 - level) / (1.0 - level))
+    needed = ndtri((0.9 - level) / (1.0 - level))
     return float(best.x[0] + np.exp(best.x[1]) * needed)
 
 
