@@ -76,7 +76,8 @@ def nomenclature() -> str:
         + "\n## Results: columns of a sweep\n\n"
         + _table(OUTPUTS)
         + "\n`twist_1tn_deg`, `twist_4p5tn_deg`, ...: twist at the input [deg] under 1, 4.5, ... "
-        "nominal torques, Eq. (13).\n"
+        "nominal torques, Eq. (13);\n`twist_minus_4p5tn_deg` under a load of -4.5: in the other "
+        "direction, the negative of the twist under 4.5.\n"
     )
 
 

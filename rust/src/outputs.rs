@@ -168,10 +168,10 @@ impl Output {
     }
 }
 
-/// `twist_4p5tn_deg` for 4.5 times the nominal torque.
+/// `twist_4p5tn_deg` for 4.5 times the nominal torque, `twist_minus_4p5tn_deg` for -4.5 times.
 #[must_use]
 pub fn twist_name(load: f64) -> String {
-    format!("twist_{}tn_deg", format!("{load}").replace('.', "p"))
+    format!("twist_{}tn_deg", format!("{load}").replace('.', "p").replace('-', "minus_"))
 }
 
 stage! {

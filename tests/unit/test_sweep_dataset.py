@@ -8,6 +8,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecu
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import polars as pl
 import pytest
 from filelock import FileLock
@@ -310,10 +311,28 @@ def test_shards_in_any_order_are_the_whole(tmp_path: Path, of: int) -> None:
     assert_whole(tmp_path)
 
 
-@pytest.mark.parametrize(("index", "of"), [(-1, 2), (2, 2), (0, 0)])
-def test_shard_numbers_that_make_no_sense(tmp_path: Path, index: int, of: int) -> None:
-    with pytest.raises(cs.InputError, match="shard"):
+@pytest.mark.parametrize(("index", "of"), [(-1, 2), (2, 2), (0, 0), (0.0, 2), (True, 2), (0, "2")])
+def test_shard_numbers_that_make_no_sense(tmp_path: Path, index: Any, of: Any) -> None:
+    with pytest.raises(cs.InputError, match=r"shard: .*expected a whole number"):
         cs.shard(STUDY, tmp_path, index=index, of=of)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"rows_per_part": 0}, {"rows_per_part": 100.0}, {"workers": 0}, {"workers": 1.5}],
+)
+def test_counts_that_are_none_are_refused(tmp_path: Path, options: dict[str, Any]) -> None:
+    with pytest.raises(cs.InputError, match=f"{next(iter(options))}: found .*, expected a whole"):
+        sink(tmp_path / "study", **options)
+    assert not (tmp_path / "study").exists()
+
+
+def test_numpy_counts_are_counts(tmp_path: Path) -> None:
+    sink(tmp_path / "a", rows_per_part=np.int64(ROWS), workers=np.uint8(1))
+    assert_whole(tmp_path / "a")
+    for index in np.arange(2):
+        cs.shard(STUDY, tmp_path / "b", index=index, of=np.int32(2), rows_per_part=np.int16(ROWS))  # type: ignore[arg-type]
+    assert_whole(tmp_path / "b")
 
 
 def test_a_shard_of_another_study_is_refused(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 import cyclosweep as cs
+from cyclosweep.design.units import quantity
 
 DRIVE = cs.Drive.reference_87()
 E = {"eccentricity_mm": (0.3, 0.8)}
@@ -82,11 +84,19 @@ def test_a_space_that_makes_no_sense(make: Callable[[], Any], words: tuple[str, 
         ({"loads_tn": [float("inf")]}, ("loads_tn", "inf")),
         ({"loads_tn": [float("nan")]}, ("loads_tn", "nan")),
         ({"loads_tn": [1, 1.0]}, ("loads_tn", "once")),
+        ({"loads_tn": [-0.0]}, ("loads_tn", "0", "below zero for the other direction")),
+        ({"loads_tn": [-math.inf]}, ("loads_tn", "-inf")),
+        ({"loads_tn": [np.float64("nan")]}, ("loads_tn", "nan")),
+        ({"loads_tn": [True]}, ("loads_tn", "True", "number")),
+        ({"loads_tn": ["1"]}, ("loads_tn", "'1'", "number")),
+        ({"loads_tn": "1"}, ("loads_tn", "'1'", "list")),
+        ({"loads_tn": 2.0}, ("loads_tn", "2.0", "list")),
         ({"limits": {"web": (1, 2)}}, ("limits.web", "no such column")),
         ({"limits": {"criterion": (1, 2)}}, ("limits.criterion",)),
         ({"limits": {"status": (1, 2)}}, ("limits.status",)),
         ({"limits": {"hole_web_mm": (3, 2)}}, ("limits.hole_web_mm", "min <= max")),
         ({"limits": {"hole_web_mm": (float("nan"), 2)}}, ("limits.hole_web_mm",)),
+        ({"limits": {"hole_web_mm": ("2", None)}}, ("limits.hole_web_mm", "'2'", "number")),
         ({"objective": cs.Objective("web")}, ("objective", "web")),
     ],
 )
@@ -119,6 +129,44 @@ def test_tables_keep_their_rows(reference: cs.Drive) -> None:
             output_pin_count=frame["output_pin_count"][k],
         )
         assert swept["twist_1tn_deg"][k] == drive.evaluate()["twist_1tn_deg"]
+
+
+def test_the_column_of_a_negative_load_has_a_name_of_its_own(reference: cs.Drive) -> None:
+    frame = cs.sweep(cs.Space.grid(reference), loads_tn=[4.5, -4.5])
+    assert frame.columns[-2:] == ["twist_4p5tn_deg", "twist_minus_4p5tn_deg"]
+    assert quantity("twist_minus_4p5tn_deg").unit == "deg"
+    assert "under -4.5 T_N" in quantity("twist_minus_4p5tn_deg").meaning
+
+
+def test_numbers_of_numpy_make_the_same_study(reference: cs.Drive) -> None:
+    axes = {"eccentricity_mm": (0.3, 0.8), "output_pin_count": (6, 12)}
+    plain = cs.Space.sobol(reference, 16, seed=3, **axes)
+    wrapped = {name: tuple(map(np.int64, v)) for name, v in axes.items() if name.endswith("count")}
+    numpy = cs.Space.sobol(reference, np.int32(16), seed=np.uint64(3), **{**axes, **wrapped})  # type: ignore[arg-type]
+    assert (
+        cs.Study.of(numpy, loads_tn=np.array([1, 2])).hash
+        == cs.Study.of(  # type: ignore[arg-type]
+            plain, loads_tn=[1, 2]
+        ).hash
+    )
+    grid = cs.Space.grid(
+        reference,
+        output_pin_count=np.array([6, 8], dtype=np.uint8),
+        eccentricity_mm=cs.linspace(np.float32(0.25), np.float64(0.75), np.int64(3)),  # type: ignore[arg-type]
+    )
+    listed = cs.Space.grid(reference, output_pin_count=[6, 8], eccentricity_mm=[0.25, 0.5, 0.75])
+    assert_frame_equal(cs.sweep(grid), cs.sweep(listed), check_exact=True)
+    assert grid[np.int64(4)] == grid[4] == grid[np.uint8(4)] == grid[-2]  # type: ignore[index]
+    assert_frame_equal(cs.sweep(grid[np.int16(1) : np.int64(4)]), cs.sweep(grid[1:4]))  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        grid[1.0]  # type: ignore[call-overload]
+
+
+def test_a_space_is_sampled_over_any_collection_of_values(reference: cs.Drive) -> None:
+    listed = cs.Space.random(reference, 20, output_pin_count=[6, 7, 8, 9])
+    for values in (range(6, 10), np.arange(6, 10), pl.Series([6, 7, 8, 9]), iter([6, 7, 8, 9])):
+        space = cs.Space.random(reference, 20, output_pin_count=values)
+        assert cs.Study.of(space).hash == cs.Study.of(listed).hash
 
 
 def test_any_loads(reference: cs.Drive) -> None:
@@ -218,6 +266,8 @@ WRONG_FILES: list[tuple[str, tuple[str, ...]]] = [
     ("speed = 3\n" + AXIS, ("speed", "unknown key")),
     ("loads_tn = [0]\n" + AXIS, ("loads_tn", "0")),
     ('loads_tn = ["1"]\n' + AXIS, ("loads_tn", "'1'", "number")),
+    ("loads_tn = [nan]\n" + AXIS, ("loads_tn", "nan", "above zero")),
+    ("loads_tn = [-inf]\n" + AXIS, ("loads_tn", "-inf", "above zero")),
     (AXIS + '[sample]\nmethod = "halton"', ("sample.method", "halton", "sobol")),
     (AXIS + "[sample]\ncount = 3", ("sample.count", "grid")),
     (AXIS + '[sample]\nmethod = "sobol"', ("sample.count", "missing")),

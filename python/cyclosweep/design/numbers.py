@@ -138,4 +138,4 @@ def checked_loads(values: object, *, allow_zero: bool = False) -> tuple[float, .
                 f"loads_tn: found {load:g}, expected loads above zero, or below zero for the "
                 "other direction"
             )
-    return tuple(numbers)
+    return tuple(load + 0.0 for load in numbers)  # -0.0 and 0.0 are one load

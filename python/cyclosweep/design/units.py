@@ -115,12 +115,12 @@ def twist_column(load_tn: float) -> str:
     Parameters
     ----------
     load_tn : float
-        Load in nominal torques [1].
+        Load in nominal torques [1]; below zero it acts in the other direction.
 
     Returns
     -------
     str
-        For example ``twist_4p5tn_deg``.
+        For example ``twist_4p5tn_deg``, or ``twist_minus_4p5tn_deg`` for a load of -4.5.
 
     Examples
     --------
@@ -156,8 +156,8 @@ def quantity(name: str) -> Quantity:
         return OUTPUTS[name]
     if name in INPUTS:
         return INPUTS[name]
-    if match := re.fullmatch(r"twist_([0-9a-z-]+)tn_deg", name):
-        load = match[1].replace("p", ".")
+    if match := re.fullmatch(r"twist_((?:minus_)?[0-9a-z]+)tn_deg", name):
+        load = match[1].replace("minus_", "-").replace("p", ".")
         return Quantity("theta'", "deg", f"twist at the input under {load} T_N, Eq. (13)")
     if match := re.fullmatch(r"shaft_(\d+)_(\w+)", name):
         return Quantity("", "mm", f"{_SEGMENT_FIELDS[match[2]]}, shaft segment {match[1]}")
