@@ -22,7 +22,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
-.PHONY: help env demo test test-rust test-python test-grid lint bench docs golden proof \
+.PHONY: help env demo test test-rust test-python test-grid lint bench docs golden coverage proof \
 	proof-record proof-contest proof-contest-poor same-diagnosis clean
 .DEFAULT_GOAL := help
 
@@ -30,7 +30,8 @@ help:
 	@echo "make demo    set up, sweep 1,050,000 variants to Parquet, validate the 87:1 case"
 	@echo "make test    set up, run all tests"
 	@echo "make test-grid  closed form against a 0.01 deg grid on 10,000 random drives, some minutes"
-	@echo "make lint    rustfmt, clippy, ruff, mypy, stubtest"
+	@echo "make lint    rustfmt, clippy, rustdoc, ruff, mypy, stubtest"
+	@echo "make coverage  the Python tests once more, with the share of lines and branches they run"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
 	@echo "make proof-record  the run of record and proof/proof.md; hours, goes on where it stopped"
@@ -73,6 +74,7 @@ test-grid: env
 lint: env
 	cargo fmt --check
 	cargo clippy --release --locked --quiet --all-targets --features python -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --locked --quiet --features python
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy

@@ -1,4 +1,4 @@
-"""What the columns of the published model must do whatever the drive: limits, independence, scaling."""
+"""What the columns of the published model must do for any drive: limits, independence, scaling."""
 
 from __future__ import annotations
 
