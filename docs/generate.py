@@ -82,7 +82,7 @@ def nomenclature() -> str:
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.5g}"
+    return "-" if value is None else f"{value:.6g}"
 
 
 def _remark(note: str, explanation: str) -> str:
