@@ -29,7 +29,7 @@ def random_drive(rng: np.random.Generator, **fixed: Any) -> cs.Drive:
     e = min(rng.uniform(0.05, 0.95) * ring / (ratio + 1), rng.uniform(0.02, 0.13) * room)
     pin = (room * rng.uniform(0.3, 0.95) - 2 * e) * rng.uniform(0.5, 1)
     wall = max(0.0, (room * 0.96 - 2 * e - pin) / 2) * rng.choice([0.0, 0.5])
-    shaft = random_shaft(rng) if rng.random() < 0.85 else ()
+    shaft = random_shaft(rng, 2 * circle) if rng.random() < 0.85 else ()
     stiffness = rng.uniform(0.05, 500) if not shaft or rng.random() < 0.1 else None
     drawn: dict[str, Any] = {
         "ratio": ratio,
@@ -61,8 +61,10 @@ def random_drive(rng: np.random.Generator, **fixed: Any) -> cs.Drive:
     return cs.Drive(**{**plain, **fixed})
 
 
-def random_shaft(rng: np.random.Generator) -> tuple[cs.Keyway | cs.Cylinder | cs.Frustum, ...]:
-    """Draw one to six segments whose diameter never falls from one to the next."""
+def random_shaft(
+    rng: np.random.Generator, largest: float
+) -> tuple[cs.Keyway | cs.Cylinder | cs.Frustum, ...]:
+    """Draw one to six segments whose diameter never falls and ends at ``largest`` (mm) at most."""
     segments: list[cs.Keyway | cs.Cylinder | cs.Frustum] = []
     diameter = float(rng.uniform(5, 80))
     for _ in range(int(rng.integers(1, 7))):
@@ -79,5 +81,14 @@ def random_shaft(rng: np.random.Generator) -> tuple[cs.Keyway | cs.Cylinder | cs
             end = diameter * float(rng.uniform(0.5, 2))
             segments.append(cs.Frustum(diameter_mm=diameter, end_diameter_mm=end, length_mm=length))
             diameter = end
+        flange = diameter
         diameter *= float(rng.choice([1.0, rng.uniform(1, 1.8)]))
-    return tuple(segments)
+    return tuple(thinner(segment, min(1.0, 0.99 * largest / flange)) for segment in segments)
+
+
+def thinner(
+    segment: cs.Keyway | cs.Cylinder | cs.Frustum, scale: float
+) -> cs.Keyway | cs.Cylinder | cs.Frustum:
+    """Return the segment with every diameter and depth multiplied by ``scale``."""
+    fields = {"diameter_mm", "end_diameter_mm", "keyway_depth_mm"} & segment.model_dump().keys()
+    return segment.model_copy(update={name: getattr(segment, name) * scale for name in fields})

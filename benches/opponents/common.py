@@ -74,7 +74,7 @@ class Constants:
     inertia: float = 0.002
     shaft_diameters: tuple[float, ...] = (0.050, 0.050, 0.055, 0.060, 0.062)
     shaft_lengths: tuple[float, ...] = (0.060, 0.030, 0.030, 0.020, 0.015)
-    shaft_end: float = 0.090
+    shaft_end: float = 0.084
     keyway_depth: float = 0.0055
 
 

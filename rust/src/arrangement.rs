@@ -62,6 +62,12 @@ impl Counts {
     }
 }
 
+/// Whether statics apply: one spring a contact holds while a pin meets one disc at a time.
+#[inline(always)]
+pub(crate) fn statics_apply(discs: f64) -> bool {
+    discs <= 2.0
+}
+
 /// Where the first hole from ring pin 0 on stands, from 0 to 1 pitch, for a clocking (turns)
 /// within one turn.
 #[inline(always)]
@@ -153,12 +159,20 @@ impl Arrangement {
         Counts { mean, min, max }
     }
 
-    /// Participation by statics, and whether it is the same at every position of the mesh zone:
-    /// pairs of lattice points half a turn apart add to one, so that an even lattice gives n/4.
+    /// Number of angles at which the holes of all discs stand: lcm(N, n).
+    #[inline(always)]
+    pub(crate) fn lattice(&self) -> f64 {
+        self.pins * (self.discs / self.fold)
+    }
+
+    /// Participation by statics, NaN where they do not apply, and whether it is the same at every
+    /// position of the mesh zone: pairs of lattice points half a turn apart add to one, so that an
+    /// even lattice gives n/4.
     #[inline(always)]
     pub(crate) fn even_participation(&self) -> (f64, bool) {
-        let lattice = self.pins * (self.discs / self.fold);
-        (0.25 * self.discs, divides(2.0, 0.5, lattice))
+        let apply = statics_apply(self.discs);
+        let share = if apply { 0.25 * self.discs } else { f64::NAN };
+        (share, divides(2.0, 0.5, self.lattice()) | !apply)
     }
 
     /// Angle (pitches) of the left half's hole nearest ring pin 0, above minus one and not above

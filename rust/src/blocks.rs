@@ -18,6 +18,7 @@ use crate::stages::{Geometry, PinBending, Rating, Shaft, Stage};
 pub(crate) struct Wanted {
     pub map: bool,
     pub every_criterion: bool,
+    pub pin_force: bool,
     /// Whether every variant is to be looked at alone.
     pub one_by_one: bool,
 }
@@ -58,7 +59,8 @@ impl Stages {
         let of_inputs = |inputs: &[Input]| inputs.iter().map(|i| *i as usize).collect();
         let mut shaft_inputs: Vec<usize> = of_inputs(&Shaft::INPUTS);
         shaft_inputs.extend(SCALARS..SCALARS + SEGMENT_FIELDS.len() * kinds.len());
-        let geometry_inputs: Vec<usize> = of_inputs(&Geometry::INPUTS);
+        let mut geometry_inputs: Vec<usize> = of_inputs(&Geometry::INPUTS);
+        geometry_inputs.extend(base.flange_input());
         let map_inputs: Vec<usize> = of_inputs(&Map::INPUTS);
         let pin_inputs: Vec<usize> = of_inputs(&PinBending::INPUTS);
         let rating_inputs: Vec<usize> = of_inputs(&Rating::INPUTS);
@@ -247,7 +249,7 @@ fn criteria(wanted: Wanted, code: Option<f64>) -> Criteria {
     match (wanted.map, code) {
         (false, _) => Criteria::NONE,
         (true, None) => Criteria::ALL,
-        (true, Some(code)) => Criteria::of(code, wanted.every_criterion),
+        (true, Some(code)) => Criteria::of(code, wanted.every_criterion, wanted.pin_force),
     }
 }
 

@@ -4,10 +4,13 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use thiserror::Error;
 
+use crate::active_pins::Criterion;
 use crate::blocks::{Scratch, Stages, Wanted, explained};
 use crate::error::{DesignError, Status};
-use crate::inputs::{Inputs, SCALARS, SEGMENT_FIELDS, factor};
+
+use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
 use crate::lanes::{BLOCK, Wide, with_widest};
 use crate::outputs::Output;
 use crate::shaft::SegmentKind;
@@ -45,6 +48,41 @@ pub struct Columns {
     pub any_refused: bool,
     /// One column an asked output.
     pub values: Vec<Vec<f64>>,
+}
+
+/// Why a study cannot be.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum StudyError {
+    /// A load is no number.
+    #[error("loads_tn: found {load}, expected finite numbers")]
+    LoadNotFinite {
+        /// The load found.
+        load: f64,
+    },
+    /// The base design lacks inputs, or has too many.
+    #[error("a design with this shaft has {expected} inputs, found {found}")]
+    InputCount {
+        /// How many there are to be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// An axis or a limit is on an input that the design does not have.
+    #[error("no input number {input} in a design of {inputs} inputs")]
+    NoSuchInput {
+        /// Place of the input.
+        input: usize,
+        /// Inputs of the design.
+        inputs: usize,
+    },
+    /// A limit is on the twist at a load that the study does not have.
+    #[error("no load number {load} in a study of {loads} loads")]
+    NoSuchLoad {
+        /// Place of the load.
+        load: usize,
+        /// Loads of the study.
+        loads: usize,
+    },
 }
 
 /// The definition of a study, ready to evaluate.
@@ -87,22 +125,45 @@ impl std::fmt::Debug for Study {
 impl Study {
     /// A study of a base design (core units, all inputs in order) varied over `space`.
     ///
-    /// # Panics
-    /// When `base` does not hold every input of a design with these segments, or an axis names
-    /// an input beyond them; the bindings check both.
-    #[must_use]
+    /// # Errors
+    /// [`StudyError`] when `base` does not hold every input of a design with these segments, an axis
+    /// or a limit is on an input or a load beyond them, or a load is no number.
     pub fn new(
         space: Space,
         base: Vec<f64>,
         kinds: Vec<SegmentKind>,
         loads: Vec<f64>,
         limits: Vec<Limit>,
-    ) -> Self {
-        assert_eq!(base.len(), SCALARS + SEGMENT_FIELDS.len() * kinds.len());
-        assert!(space.axes().iter().all(|axis| axis.input < base.len()));
-        let base = Inputs::new(&base);
+    ) -> Result<Self, StudyError> {
+        let inputs = SCALARS + SEGMENT_FIELDS.len() * kinds.len();
+        if base.len() != inputs {
+            return Err(StudyError::InputCount {
+                expected: inputs,
+                found: base.len(),
+            });
+        }
+        let limited = limits.iter().filter_map(|limit| match limit.column {
+            Limited::Input(input) => Some(input),
+            Limited::Output(_) => None,
+        });
+        let mut named = space.axes().iter().map(|axis| axis.input).chain(limited);
+        if let Some(input) = named.find(|input| *input >= inputs) {
+            return Err(StudyError::NoSuchInput { input, inputs });
+        }
+        for limit in &limits {
+            if let Limited::Output(Output::Twist(load)) = limit.column
+                && load >= loads.len()
+            {
+                let loads = loads.len();
+                return Err(StudyError::NoSuchLoad { load, loads });
+            }
+        }
+        if let Some(load) = loads.iter().find(|load| !load.is_finite()) {
+            return Err(StudyError::LoadNotFinite { load: *load });
+        }
+        let base = Inputs::new(&base, &kinds);
         let (stages, evaluated) = (OnceLock::new(), AtomicU64::new(0));
-        Self {
+        Ok(Self {
             space,
             base,
             kinds,
@@ -110,6 +171,34 @@ impl Study {
             limits,
             stages,
             evaluated,
+        })
+    }
+
+    /// Whether a column may be NaN for a variant that can be built: without an inertia or a shaft,
+    /// and what rests on statics for more than two discs.
+    #[must_use]
+    pub fn may_not_apply(&self, output: Output) -> bool {
+        let axes = self.space.axes();
+        let may_be = |input: Input, is: fn(f64) -> bool| {
+            let varies = axes.iter().any(|axis| axis.input == input as usize);
+            varies || is(self.base.get(input))
+        };
+        let beyond_statics = may_be(Input::DiscCount, |discs| discs > 2.0);
+        let by_statics = may_be(Input::Criterion, |code| {
+            code >= f64::from(Criterion::Statics as u8)
+        });
+        match output {
+            Output::ShaftCompliance => self.kinds.is_empty(),
+            Output::PinParticipationStatics | Output::OutputComplianceStatics => beyond_statics,
+            Output::NaturalFrequency | Output::NaturalFrequencyWithEfficiency => {
+                may_be(Input::InputInertia, f64::is_nan) || (beyond_statics && by_statics)
+            }
+            Output::OutputCompliance
+            | Output::ReflectedCompliance
+            | Output::ReflectedStiffness
+            | Output::OutputStiffness
+            | Output::Twist(_) => beyond_statics && by_statics,
+            _ => false,
         }
     }
 
@@ -257,6 +346,7 @@ impl Study {
         Wanted {
             map: needed().any(|output| !output.is_free_of_map()),
             every_criterion: needed().any(Output::needs_every_criterion),
+            pin_force: needed().any(Output::needs_pin_force),
             one_by_one: path == Path::OneByOne,
         }
     }

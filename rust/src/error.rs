@@ -45,7 +45,8 @@ pub enum DesignError {
         /// The number found.
         pins: f64,
     },
-    /// The short-width coefficient K1 = e (i + 1) / R_ring reaches one: the profile loops.
+    /// The short-width coefficient K1 = e (i + 1) / R_ring reaches one, within rounding: the profile
+    /// has cusps, or loops above it.
     #[error(
         "eccentricity too large for the ring: K1 = e (i + 1) / R_ring = {k1:.4}, must stay below 1"
     )]
@@ -97,6 +98,16 @@ pub enum DesignError {
         /// Material between hole and bore (m), zero or negative here.
         web: f64,
     },
+    /// The shaft's end at the flange reaches beyond the pin circle.
+    #[error(
+        "flange cuts the pin circle: the shaft ends with a radius of {flange_radius} m, the output pins stand on {pin_circle_radius} m"
+    )]
+    FlangeCutsPinCircle {
+        /// Radius of the shaft's end at the flange (m).
+        flange_radius: f64,
+        /// Radius of the pins' circle (m).
+        pin_circle_radius: f64,
+    },
     /// Poisson's ratio is outside what an isotropic solid can have.
     #[error("poisson_ratio must lie above -1 and not above 0.5, found {poisson}")]
     PoissonOutOfRange {
@@ -143,6 +154,7 @@ pub enum Status {
     HolesOverlap,
     HoleBreaksRim,
     HoleBreaksBore,
+    FlangeCutsPinCircle,
     PoissonOutOfRange,
     ShaftStepNotAscending,
     KeywayTooDeep,
@@ -150,7 +162,7 @@ pub enum Status {
 
 impl Status {
     /// Every status, in the order of its code.
-    pub const ALL: [Status; 17] = [
+    pub const ALL: [Status; 18] = [
         Status::Ok,
         Status::NonFiniteInput,
         Status::NonPositiveDimension,
@@ -165,6 +177,7 @@ impl Status {
         Status::HolesOverlap,
         Status::HoleBreaksRim,
         Status::HoleBreaksBore,
+        Status::FlangeCutsPinCircle,
         Status::PoissonOutOfRange,
         Status::ShaftStepNotAscending,
         Status::KeywayTooDeep,
@@ -199,6 +212,7 @@ impl Status {
             Status::HolesOverlap => "holes_overlap",
             Status::HoleBreaksRim => "hole_breaks_rim",
             Status::HoleBreaksBore => "hole_breaks_bore",
+            Status::FlangeCutsPinCircle => "flange_cuts_pin_circle",
             Status::PoissonOutOfRange => "poisson_out_of_range",
             Status::ShaftStepNotAscending => "shaft_step_not_ascending",
             Status::KeywayTooDeep => "keyway_too_deep",
@@ -224,6 +238,7 @@ impl DesignError {
             Self::HolesOverlap { .. } => Status::HolesOverlap,
             Self::HoleBreaksRim { .. } => Status::HoleBreaksRim,
             Self::HoleBreaksBore { .. } => Status::HoleBreaksBore,
+            Self::FlangeCutsPinCircle { .. } => Status::FlangeCutsPinCircle,
             Self::PoissonOutOfRange { .. } => Status::PoissonOutOfRange,
             Self::ShaftStepNotAscending { .. } => Status::ShaftStepNotAscending,
             Self::KeywayTooDeep { .. } => Status::KeywayTooDeep,

@@ -12,6 +12,94 @@
 //! IEEE Trans. Autom. Control 50(11), 2005, doi 10.1109/TAC.2005.858676). The equation is monotone in
 //! the angle, so it has one solution a sample, found by a safeguarded Newton step.
 
+use thiserror::Error;
+
+/// Why a history cannot be evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum HistoryError {
+    /// Two columns differ in length.
+    #[error("arrays differ in length: {expected} and {found}")]
+    Length {
+        /// Length of the first column.
+        expected: usize,
+        /// Length of the other.
+        found: usize,
+    },
+    /// A value is not a number.
+    #[error("{what} is not a number at place {place}")]
+    NotANumber {
+        /// The column or parameter.
+        what: &'static str,
+        /// Its place in the column, from 0.
+        place: usize,
+    },
+    /// A width or distance is negative.
+    #[error("{what} must not be negative, found {value}")]
+    Negative {
+        /// The column or parameter.
+        what: &'static str,
+        /// The value found.
+        value: f64,
+    },
+}
+
+/// Requires equal lengths.
+fn same_length(expected: usize, found: &[usize]) -> Result<(), HistoryError> {
+    match found.iter().find(|n| **n != expected) {
+        Some(found) => Err(HistoryError::Length {
+            expected,
+            found: *found,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Requires numbers.
+fn numbers(what: &'static str, values: &[f64]) -> Result<(), HistoryError> {
+    if values.iter().all(|value| !value.is_nan()) {
+        return Ok(());
+    }
+    let place = values.iter().position(|v| v.is_nan()).unwrap_or_default();
+    Err(HistoryError::NotANumber { what, place })
+}
+
+/// Requires numbers where a history starts afresh; elsewhere a start is not read.
+fn numbers_at_starts(
+    what: &'static str,
+    values: &[f64],
+    restart: &[bool],
+) -> Result<(), HistoryError> {
+    let is_read = |place: usize| place == 0 || restart[place];
+    match (0..values.len()).find(|place| is_read(*place) && values[*place].is_nan()) {
+        Some(place) => Err(HistoryError::NotANumber { what, place }),
+        None => Ok(()),
+    }
+}
+
+/// Requires numbers not below zero.
+fn not_negative(what: &'static str, values: &[f64]) -> Result<(), HistoryError> {
+    numbers(what, values)?;
+    match values.iter().find(|value| **value < 0.0) {
+        Some(value) => Err(HistoryError::Negative {
+            what,
+            value: *value,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// `value`, or the end of the range beyond which it lies. Unlike `f64::clamp` it never panics.
+#[inline]
+fn within(value: f64, low: f64, high: f64) -> f64 {
+    if value < low {
+        low
+    } else if value > high {
+        high
+    } else {
+        value
+    }
+}
+
 /// Friction of the contacts: slip elements in parallel that share one limit.
 #[derive(Debug, Clone)]
 pub struct SlipElements<'a> {
@@ -43,6 +131,15 @@ pub struct Spring<'a> {
 }
 
 impl Spring<'_> {
+    /// Requires what the law's own numbers must be.
+    fn check(&self) -> Result<(), HistoryError> {
+        same_length(self.law_torque.len(), &[self.law_twist.len()])?;
+        numbers("free_play", &[self.free_play])?;
+        numbers("compliance", &[self.compliance])?;
+        numbers("law_torque", self.law_torque)?;
+        numbers("law_twist", self.law_twist)
+    }
+
     /// Elastic torque and its slope at a twist measured from the datum.
     fn torque(&self, twist: f64) -> (f64, f64) {
         let beyond = if twist > self.free_play {
@@ -89,6 +186,17 @@ impl Spring<'_> {
 }
 
 impl SlipElements<'_> {
+    /// Requires what the elements' own numbers must be.
+    fn check(&self) -> Result<(), HistoryError> {
+        same_length(self.slip_angle.len(), &[self.share.len()])?;
+        not_negative("slip_angle", self.slip_angle)?;
+        numbers("share", self.share)?;
+        numbers("limit", &[self.limit])?;
+        numbers("load_factor", &[self.load_factor])?;
+        numbers("growth", &[self.growth])?;
+        numbers("reference_torque", &[self.reference_torque])
+    }
+
     fn load_limit(&self, elastic_torque: f64) -> f64 {
         self.limit + self.load_factor * elastic_torque.abs()
     }
@@ -125,7 +233,7 @@ impl SlipElements<'_> {
     fn settle(&self, angle: f64, anchor: &mut [f64], stretch: f64) {
         for (&slip, z) in self.slip_angle.iter().zip(anchor) {
             let reach = slip * stretch;
-            *z = z.clamp(angle - reach, angle + reach);
+            *z = within(*z, angle - reach, angle + reach);
         }
     }
 }
@@ -134,6 +242,9 @@ impl SlipElements<'_> {
 ///
 /// `offset` is everything that shifts the datum, sample by sample; `restart[i]` marks a sample before
 /// which the elements are fresh, anchored at `start_angle[i]`.
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length or hold what is not a number.
 #[expect(
     clippy::too_many_arguments,
     reason = "one slice per column of the history, two of them to fill"
@@ -147,7 +258,15 @@ pub fn solve_slip(
     elements: &SlipElements<'_>,
     angle: &mut [f64],
     friction: &mut [f64],
-) {
+) -> Result<(), HistoryError> {
+    let columns = [offset.len(), restart.len(), start_angle.len()];
+    same_length(torque.len(), &columns)?;
+    same_length(torque.len(), &[angle.len(), friction.len()])?;
+    numbers("torque", torque)?;
+    numbers("offset", offset)?;
+    numbers_at_starts("start_angle", start_angle, restart)?;
+    spring.check()?;
+    elements.check()?;
     let mut anchor = vec![0.0; elements.slip_angle.len()];
     let mut guess = 0.0;
     for i in 0..torque.len() {
@@ -162,6 +281,7 @@ pub fn solve_slip(
         friction[i] = force;
         guess = solved;
     }
+    Ok(())
 }
 
 /// The one angle at which elastic torque and friction add up to the applied torque.
@@ -193,7 +313,7 @@ fn balance(
     let bound = (torque.abs() + elements.limit) / (1.0 - elements.load_factor).max(0.05);
     let reach = spring.free_play + spring.reach(bound) * (1.0 + 1e-9) + 1e-9;
     let (mut low, mut high) = (offset - reach, offset + reach);
-    let mut angle = guess.clamp(low, high);
+    let mut angle = within(guess, low, high);
     let tolerance = 1e-9 * (1e-3 + torque.abs());
     let mut best = evaluate(angle);
     for _ in 0..100 {
@@ -219,6 +339,10 @@ fn balance(
 /// State of slip elements along a given angle history: sum of the shares, each between -1 and 1.
 ///
 /// `stretch[i]` is how much longer than given the slip distances are at sample `i`.
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length or hold what is not a number, or a slip distance
+/// or its stretch is negative.
 pub fn slip_state(
     angle: &[f64],
     restart: &[bool],
@@ -226,7 +350,13 @@ pub fn slip_state(
     stretch: &[f64],
     elements: &SlipElements<'_>,
     out: &mut [f64],
-) {
+) -> Result<(), HistoryError> {
+    let columns = [restart.len(), start_angle.len(), stretch.len(), out.len()];
+    same_length(angle.len(), &columns)?;
+    numbers("angle", angle)?;
+    numbers_at_starts("start_angle", start_angle, restart)?;
+    not_negative("stretch", stretch)?;
+    elements.check()?;
     let mut anchor = vec![0.0; elements.slip_angle.len()];
     for i in 0..angle.len() {
         if i == 0 || restart[i] {
@@ -235,28 +365,48 @@ pub fn slip_state(
         elements.settle(angle[i], &mut anchor, stretch[i]);
         out[i] = elements.state(angle[i], &anchor, stretch[i]).0;
     }
+    Ok(())
 }
 
 /// Play operator: the output follows the input once the gap of half width `half_width` is taken up.
-pub fn play(input: &[f64], half_width: f64, restart: &[bool], start: &[f64], out: &mut [f64]) {
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length or hold what is not a number, or the half width
+/// is negative.
+pub fn play(
+    input: &[f64],
+    half_width: f64,
+    restart: &[bool],
+    start: &[f64],
+    out: &mut [f64],
+) -> Result<(), HistoryError> {
+    same_length(input.len(), &[restart.len(), start.len(), out.len()])?;
+    numbers("signal", input)?;
+    numbers_at_starts("start", start, restart)?;
+    not_negative("half_width", &[half_width])?;
     let mut state = 0.0;
     for i in 0..input.len() {
         if i == 0 || restart[i] {
             state = start[i];
         }
-        state = state.clamp(input[i] - half_width, input[i] + half_width);
+        state = within(state, input[i] - half_width, input[i] + half_width);
         out[i] = state;
     }
+    Ok(())
 }
 
 /// Kelvin-Voigt state: follows the input with a time constant, exactly for a piecewise linear input.
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length.
 pub fn creep_state(
     input: &[f64],
     time: &[f64],
     restart: &[bool],
     time_constant: f64,
     out: &mut [f64],
-) {
+) -> Result<(), HistoryError> {
+    same_length(input.len(), &[time.len(), restart.len(), out.len()])?;
     let mut state = 0.0;
     for i in 0..input.len() {
         if i == 0 || restart[i] {
@@ -275,13 +425,24 @@ pub fn creep_state(
         }
         out[i] = state;
     }
+    Ok(())
 }
 
 /// Input that a dashpot in parallel lets through: the torque balance `u = x + tau dx/dt`, solved sample
 /// by sample with the rate taken backwards.
 ///
 /// `lapse[i]` is the time that led to sample `i`; `restart[i]` marks a sample reached from rest.
-pub fn dragged(input: &[f64], lapse: &[f64], restart: &[bool], lag: f64, out: &mut [f64]) {
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length.
+pub fn dragged(
+    input: &[f64],
+    lapse: &[f64],
+    restart: &[bool],
+    lag: f64,
+    out: &mut [f64],
+) -> Result<(), HistoryError> {
+    same_length(input.len(), &[lapse.len(), restart.len(), out.len()])?;
     let mut state = 0.0;
     for i in 0..input.len() {
         if i == 0 || restart[i] {
@@ -292,6 +453,7 @@ pub fn dragged(input: &[f64], lapse: &[f64], restart: &[bool], lag: f64, out: &m
         state = (input[i] + held * state) / (1.0 + held);
         out[i] = state;
     }
+    Ok(())
 }
 
 /// Datum that remembers earlier runs: after each run it moves by that run's push, and forgets slowly.
@@ -342,7 +504,8 @@ mod tests {
             &single(0.5, &[0.01]),
             &mut angle,
             &mut friction,
-        );
+        )
+        .expect("numbers");
         let width = angle[151] - angle[50];
         assert!((width - 2.0 * 0.5 * 2.0).abs() < 1e-9, "{width}");
     }
@@ -353,7 +516,7 @@ mod tests {
         let mut out = vec![0.0; time.len()];
         let mut restart = vec![false; time.len()];
         restart[0] = true;
-        creep_state(&time, &time, &restart, 5.0, &mut out);
+        creep_state(&time, &time, &restart, 5.0, &mut out).expect("lengths");
         assert!((time[1999] - out[1999] - 5.0).abs() < 1e-9);
     }
 
@@ -361,9 +524,9 @@ mod tests {
     fn drag_delays_a_ramp_by_its_lag() {
         let ramp: Vec<f64> = (1..=400).map(|k| f64::from(k) * 0.1).collect();
         let mut out = vec![0.0; ramp.len()];
-        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 2.0, &mut out);
+        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 2.0, &mut out).expect("lengths");
         assert!((ramp[399] - out[399] - 2.0).abs() < 1e-6);
-        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 0.0, &mut out);
+        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 0.0, &mut out).expect("lengths");
         assert_eq!(ramp, out);
     }
 
@@ -372,6 +535,57 @@ mod tests {
         let mut out = vec![0.0; 200];
         remembered_datum(&[1.0; 200], 0.5, &mut out);
         assert!(out[0] == 0.0 && (out[199] - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_refused_and_does_not_panic() {
+        let (mut out, mut force) = (vec![0.0; 2], vec![0.0; 2]);
+        let (zero, fresh) = ([0.0; 2], [false; 2]);
+        let bad = [0.0, f64::NAN];
+        let elements = single(0.5, &[0.01]);
+        let refused = |what| HistoryError::NotANumber { what, place: 1 };
+        assert_eq!(
+            slip_state(&bad, &fresh, &zero, &[1.0; 2], &elements, &mut out),
+            Err(refused("angle"))
+        );
+        assert_eq!(
+            slip_state(&zero, &fresh, &zero, &bad, &elements, &mut out),
+            Err(refused("stretch"))
+        );
+        assert_eq!(
+            play(&bad, 1.0, &fresh, &zero, &mut out),
+            Err(refused("signal"))
+        );
+        assert_eq!(
+            play(&zero, -1.0, &fresh, &zero, &mut out),
+            Err(HistoryError::Negative {
+                what: "half_width",
+                value: -1.0
+            })
+        );
+        let spring = Spring {
+            free_play: 0.0,
+            compliance: 2.0,
+            law_torque: &[],
+            law_twist: &[],
+        };
+        let mut solve = |torque: &[f64], slip: &[f64]| {
+            let elements = single(0.5, slip);
+            let (angle, friction) = (&mut out[..], &mut force[..]);
+            solve_slip(
+                torque, &zero, &fresh, &zero, spring, &elements, angle, friction,
+            )
+        };
+        assert_eq!(solve(&bad, &[0.01]), Err(refused("torque")));
+        assert_eq!(
+            solve(&zero[..1], &[0.01]),
+            Err(HistoryError::Length {
+                expected: 1,
+                found: 2
+            })
+        );
+        assert!(solve(&zero, &[-0.01]).is_err());
+        assert!(solve(&[f64::INFINITY, 1.0], &[0.01]).is_ok());
     }
 
     proptest! {
@@ -396,7 +610,7 @@ mod tests {
             };
             let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
             solve_slip(&torque, &vec![0.0; n], &vec![false; n], &vec![0.0; n], spring, &elements,
-                       &mut angle, &mut friction);
+                       &mut angle, &mut friction).expect("numbers");
             for i in 0..n {
                 let elastic = spring.torque(angle[i]).0;
                 prop_assert!(friction[i].abs() <= limit + load * elastic.abs() + 1e-9);

@@ -142,22 +142,35 @@ impl Input {
 pub struct Inputs {
     scalars: [f64; SCALARS],
     segments: Vec<[f64; SEGMENT_FIELDS.len()]>,
+    /// Place among all inputs of the shaft's diameter at the flange.
+    flange: Option<usize>,
 }
 
 impl Inputs {
-    /// From all inputs in the order of the core.
-    ///
-    /// # Panics
-    /// When `values` does not hold every scalar and whole segments.
+    /// From all inputs in the order of the core, for a shaft of these segments; inputs that
+    /// `values` lacks are NaN.
     #[must_use]
-    pub fn new(values: &[f64]) -> Self {
-        let (scalars, shaft) = values.split_at(SCALARS);
-        let (segments, rest) = shaft.as_chunks();
-        assert!(rest.is_empty());
+    pub fn new(values: &[f64], kinds: &[SegmentKind]) -> Self {
+        let value = |k: usize| values.get(k).copied().unwrap_or(f64::NAN);
+        let fields = |segment| std::array::from_fn(|field| value(segment_input(segment, field)));
         Self {
-            scalars: std::array::from_fn(|k| scalars[k]),
-            segments: segments.to_vec(),
+            scalars: std::array::from_fn(value),
+            segments: (0..kinds.len()).map(fields).collect(),
+            flange: flange_input(kinds),
         }
+    }
+
+    /// The shaft's diameter at the flange; NaN without a shaft.
+    #[inline(always)]
+    #[must_use]
+    pub fn flange_diameter(&self) -> f64 {
+        self.flange.map_or(f64::NAN, |input| self.at(input))
+    }
+
+    /// Place among all inputs of the shaft's diameter at the flange.
+    #[must_use]
+    pub const fn flange_input(&self) -> Option<usize> {
+        self.flange
     }
 
     /// Value of a scalar input.
@@ -197,6 +210,13 @@ impl Inputs {
 #[must_use]
 pub const fn segment_input(segment: usize, field: usize) -> usize {
     SCALARS + SEGMENT_FIELDS.len() * segment + field
+}
+
+/// Place among all inputs of the diameter at the flange of a shaft of these segments.
+#[must_use]
+pub fn flange_input(kinds: &[SegmentKind]) -> Option<usize> {
+    let last = kinds.last()?;
+    Some(segment_input(kinds.len() - 1, last.flange_field()))
 }
 
 /// Position of an input named as in a study's axes (`eccentricity_mm`, `shaft_2_diameter_mm`).

@@ -46,6 +46,8 @@ pub trait Variant {
     fn get(&self, input: Input) -> f64;
     /// sin(pi / N_OP), where the number of pins is one that a design may have.
     fn half_pitch_sine(&self) -> f64;
+    /// The shaft's diameter at the flange, in the core's unit; NaN without a shaft.
+    fn flange_diameter(&self) -> f64;
 }
 
 /// The inputs of a block of variants.
@@ -53,6 +55,9 @@ pub struct InputLanes {
     scalars: Box<[Lanes; SCALARS]>,
     segments: Vec<[Lanes; SEGMENT_FIELDS.len()]>,
     half_pitch_sines: Lanes,
+    /// Place among all inputs of the shaft's diameter at the flange.
+    flange: Option<usize>,
+    no_flange: Lanes,
 }
 
 /// One variant of a block.
@@ -60,6 +65,7 @@ pub struct InputLanes {
 pub struct Lane<'a> {
     scalars: &'a [Lanes; SCALARS],
     half_pitch_sines: &'a Lanes,
+    flange: &'a Lanes,
     row: usize,
 }
 
@@ -75,6 +81,8 @@ impl InputLanes {
                 .map(|fields| fields.map(|value| [value; BLOCK]))
                 .collect(),
             half_pitch_sines: [0.0; BLOCK],
+            flange: inputs.flange_input(),
+            no_flange: [f64::NAN; BLOCK],
         };
         lanes.find_half_pitch_sines();
         lanes
@@ -89,13 +97,19 @@ impl InputLanes {
         }
     }
 
+    /// The lanes of the input at this position among all inputs.
+    #[inline(always)]
+    fn lanes(&self, input: usize) -> &Lanes {
+        match input.checked_sub(SCALARS) {
+            None => &self.scalars[input],
+            Some(k) => &self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()],
+        }
+    }
+
     /// The value of one variant's input at this position among all inputs.
     #[must_use]
     pub fn at(&self, input: usize, row: usize) -> f64 {
-        match input.checked_sub(SCALARS) {
-            None => self.scalars[input][row],
-            Some(k) => self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()][row],
-        }
+        self.lanes(input)[row]
     }
 
     /// To be called after the numbers of pins have changed.
@@ -129,6 +143,9 @@ impl InputLanes {
         Lane {
             scalars: &self.scalars,
             half_pitch_sines: &self.half_pitch_sines,
+            flange: self
+                .flange
+                .map_or(&self.no_flange, |input| self.lanes(input)),
             row: 0,
         }
     }
@@ -172,6 +189,11 @@ impl Variant for Lane<'_> {
     fn half_pitch_sine(&self) -> f64 {
         self.half_pitch_sines[self.row]
     }
+
+    #[inline(always)]
+    fn flange_diameter(&self) -> f64 {
+        self.flange[self.row]
+    }
 }
 
 impl Variant for Inputs {
@@ -182,6 +204,10 @@ impl Variant for Inputs {
 
     fn half_pitch_sine(&self) -> f64 {
         half_pitch::SINES.0[half_pitch::place(Self::get(self, Input::OutputPinCount))]
+    }
+
+    fn flange_diameter(&self) -> f64 {
+        Self::flange_diameter(self)
     }
 }
 

@@ -53,6 +53,7 @@ pub mod lanes;
 pub mod map_stage;
 pub mod outputs;
 pub mod pin;
+pub mod pin_force;
 mod published_map;
 mod rounding;
 pub mod sampling;

@@ -1,12 +1,15 @@
 //! The stage of the active pins: counts by each criterion that is needed, and what goes with them.
 
 use crate::active_pins::{Criterion, PinMap};
-use crate::arrangement::{Arrangement, Counts, CountsBlock, first_hole, fold, reduced_clocking};
+use crate::arrangement::{
+    Arrangement, Counts, CountsBlock, first_hole, fold, reduced_clocking, statics_apply,
+};
 use crate::error::DesignError;
 use crate::hypotrochoid::crossing_angle;
 use crate::inputs::Input;
 use crate::judge::Judge;
 use crate::lanes::{BLOCK, InputLanes, Lanes, Mask, Variant, for_each_lane};
+use crate::pin_force::{factors, tabulated_factor};
 use crate::stages::{Stage, WholeNumbers, stage};
 
 stage! {
@@ -26,7 +29,7 @@ stage! {
         efficiency_inside,
         /// eta_OP by `published-map`.
         efficiency_published_map,
-        /// Mean participation by statics.
+        /// Mean participation by statics; NaN for more than two discs, where statics do not apply.
         participation,
         /// N_OP.
         pins,
@@ -34,7 +37,8 @@ stage! {
         pins_in_twist,
         /// i^2.
         ratio_squared,
-        /// Largest pin force per output torque (1/m): 4 / (n N R).
+        /// Largest pin force per output torque (1/m) at the worst position; see
+        /// [`crate::pin_force`].
         force_per_torque,
         /// One where the statics hold: at most two discs.
         statics_applicable,
@@ -52,6 +56,8 @@ pub struct Criteria {
     pub statics: bool,
     /// The participation by statics.
     pub participation: bool,
+    /// The largest pin force by statics.
+    pub pin_force: bool,
 }
 
 impl Criteria {
@@ -61,6 +67,7 @@ impl Criteria {
         inside: true,
         statics: true,
         participation: true,
+        pin_force: true,
     };
     /// None of them: only the checks.
     pub const NONE: Self = Self {
@@ -68,12 +75,13 @@ impl Criteria {
         inside: false,
         statics: false,
         participation: false,
+        pin_force: false,
     };
     /// What the chosen criterion needs, of which this is the code, and what columns of every
-    /// criterion need if they are asked for.
+    /// criterion and the pin force need if they are asked for.
     #[inline(always)]
     #[must_use]
-    pub fn of(code: f64, columns: bool) -> Self {
+    pub fn of(code: f64, columns: bool, pin_force: bool) -> Self {
         let statics = code >= Criterion::Statics as u8 as f64;
         let published_map = code < Criterion::Inside as u8 as f64;
         Self {
@@ -81,6 +89,7 @@ impl Criteria {
             inside: columns || !(published_map || statics),
             statics,
             participation: columns || statics,
+            pin_force,
         }
     }
 }
@@ -104,6 +113,7 @@ pub(crate) struct MapParts {
     inside: Box<CountsBlock>,
     statics: Box<CountsBlock>,
     participation: Lanes,
+    pin_force_factor: Lanes,
 }
 
 impl MapParts {
@@ -115,6 +125,7 @@ impl MapParts {
             inside: Counts::NONE.block(),
             statics: Counts::NONE.block(),
             participation: [f64::NAN; BLOCK],
+            pin_force_factor: [f64::NAN; BLOCK],
         }
     }
 }
@@ -212,7 +223,13 @@ impl Map {
             participation = angles.participation(inputs, judge);
         }
         let map = angles.arrangement(inputs);
-        Self::assemble(inputs, &map, published_map, inside, statics, participation)
+        let force_factor = if needed.pin_force {
+            tabulated_factor(factors(), map.lattice())
+        } else {
+            f64::NAN
+        };
+        let shares = (participation, force_factor);
+        Self::assemble(inputs, &map, published_map, inside, statics, shares)
     }
 
     /// [`Map::of`] for every variant of a block.
@@ -257,8 +274,16 @@ impl Map {
                 out[row] = Angles::get(angles, row).participation(lane, judge);
             });
         }
+        if needed.pin_force {
+            let (out, factors) = (&mut parts.pin_force_factor, factors());
+            for_each_lane!(inputs, mask, |row, lane, _judge| {
+                let map = Angles::get(angles, row).arrangement(lane);
+                out[row] = tabulated_factor(factors, map.lattice());
+            });
+        }
         let (published_map, inside) = (&*parts.published_map, &*parts.inside);
         let (statics, participation) = (&*parts.statics, &parts.participation);
+        let force_factor = &parts.pin_force_factor;
         for_each_lane!(inputs, mask, |row, lane, _judge| {
             let map = Self::assemble(
                 lane,
@@ -266,7 +291,7 @@ impl Map {
                 Counts::get(published_map, row),
                 Counts::get(inside, row),
                 Counts::get(statics, row),
-                participation[row],
+                (participation[row], force_factor[row]),
             );
             map.put(block, row);
         });
@@ -279,7 +304,7 @@ impl Map {
         published_map: Counts,
         inside: Counts,
         statics: Counts,
-        participation: f64,
+        (participation, force_factor): (f64, f64),
     ) -> Self {
         let Arrangement {
             ratio, discs, pins, ..
@@ -306,8 +331,9 @@ impl Map {
                 pins
             },
             ratio_squared: ratio * ratio,
-            force_per_torque: 4.0 / (discs * pins * inputs.get(Input::OutputPinCircleRadius)),
-            statics_applicable: if discs <= 2.0 { 1.0 } else { 0.0 },
+            force_per_torque: 4.0 * force_factor
+                / (discs * pins * inputs.get(Input::OutputPinCircleRadius)),
+            statics_applicable: if statics_apply(discs) { 1.0 } else { 0.0 },
         }
     }
 }

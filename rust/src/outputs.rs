@@ -33,6 +33,7 @@ pub enum Output {
     ShortWidthCoefficient,
     NominalTorque,
     NaturalFrequency,
+    NaturalFrequencyWithEfficiency,
     ShaftCompliance,
     PinCompliance,
     OutputCompliance,
@@ -40,6 +41,7 @@ pub enum Output {
     ReflectedCompliance,
     ReflectedStiffness,
     OutputStiffness,
+    ComplianceFactor,
     TorquePerPin,
     ForcePerPin,
     PinForceMax,
@@ -60,7 +62,7 @@ pub enum Kind {
 
 impl Output {
     /// Every column but the twists, in the order of a table.
-    pub const FIXED: [Output; 24] = [
+    pub const FIXED: [Output; 26] = [
         Output::ActivePinsMean,
         Output::ActivePinsMin,
         Output::ActivePinsMax,
@@ -74,6 +76,7 @@ impl Output {
         Output::ShortWidthCoefficient,
         Output::NominalTorque,
         Output::NaturalFrequency,
+        Output::NaturalFrequencyWithEfficiency,
         Output::ShaftCompliance,
         Output::PinCompliance,
         Output::OutputCompliance,
@@ -81,6 +84,7 @@ impl Output {
         Output::ReflectedCompliance,
         Output::ReflectedStiffness,
         Output::OutputStiffness,
+        Output::ComplianceFactor,
         Output::TorquePerPin,
         Output::ForcePerPin,
         Output::PinForceMax,
@@ -106,6 +110,7 @@ impl Output {
             Output::ShortWidthCoefficient => "short_width_coefficient",
             Output::NominalTorque => "nominal_torque_nm",
             Output::NaturalFrequency => "natural_frequency_hz",
+            Output::NaturalFrequencyWithEfficiency => "natural_frequency_with_efficiency_hz",
             Output::ShaftCompliance => "shaft_compliance_rad_per_nm",
             Output::PinCompliance => "pin_compliance_rad_per_nm",
             Output::OutputCompliance => "output_compliance_rad_per_nm",
@@ -113,6 +118,7 @@ impl Output {
             Output::ReflectedCompliance => "reflected_compliance_rad_per_nm",
             Output::ReflectedStiffness => "reflected_stiffness_nm_per_rad",
             Output::OutputStiffness => "output_stiffness_nm_per_arcmin",
+            Output::ComplianceFactor => "compliance_factor",
             Output::TorquePerPin => "torque_per_pin_nm",
             Output::ForcePerPin => "force_per_pin_n",
             Output::PinForceMax => "pin_force_max_n",
@@ -153,6 +159,12 @@ impl Output {
         )
     }
 
+    /// True when the largest pin force by statics is needed for it.
+    #[must_use]
+    pub const fn needs_pin_force(self) -> bool {
+        matches!(self, Output::PinForceMax | Output::PinBendingStress)
+    }
+
     /// True when nothing of the active-pin map is needed for it.
     #[must_use]
     pub const fn is_free_of_map(self) -> bool {
@@ -177,12 +189,15 @@ pub fn twist_name(load: f64) -> String {
 stage! {
     /// What the stages of one variant amount to together.
     Assembly, AssemblyBlock {
-        /// C_OS (rad/(N m)): Eq. (11), or the compliance given as measured.
+        /// C_OS (rad/(N m)): Eq. (11), with the pins' participation where statics feeds the twist,
+        /// or the compliance given as measured.
         compliance,
         /// C*_OS (rad/(N m)) at the input, Eq. (12).
         reflected,
-        /// Twist (deg) at the input for one nominal torque beyond the free play, Eq. (13), by the
-        /// chosen criterion. A stiffness given as measured is taken as it is.
+        /// Factor on C*_OS in Eq. (13): eta_OP by the chosen criterion; one by statics, and for a
+        /// stiffness given as measured.
+        twist_factor,
+        /// Twist (deg) at the input for one nominal torque beyond the free play, Eq. (13).
         slope_deg,
         /// Largest pin force (N).
         pin_force,
@@ -195,29 +210,19 @@ impl Assembly {
     #[must_use]
     pub fn of(map: &Map, shaft: &Shaft, pin: &PinBending, rating: &Rating) -> Self {
         let is_given = !rating.given_compliance.is_nan();
-        let given_or = |computed| {
-            if is_given {
-                rating.given_compliance
-            } else {
-                computed
-            }
+        let computed = output_compliance(shaft.compliance, pin.compliance, map.pins_in_twist);
+        let compliance = if is_given {
+            rating.given_compliance
+        } else {
+            computed
         };
-        let compliance = given_or(output_compliance(
-            shaft.compliance,
-            pin.compliance,
-            map.pins,
-        ));
-        let in_twist = given_or(output_compliance(
-            shaft.compliance,
-            pin.compliance,
-            map.pins_in_twist,
-        ));
-        let factor = if is_given { 1.0 } else { map.twist_factor };
-        let reflected_in_twist = reflected(in_twist, map.ratio_squared);
+        let twist_factor = if is_given { 1.0 } else { map.twist_factor };
+        let reflected = reflected(compliance, map.ratio_squared);
         Self {
             compliance,
-            reflected: reflected(compliance, map.ratio_squared),
-            slope_deg: slope_deg(factor, reflected_in_twist, rating.nominal_torque),
+            reflected,
+            twist_factor,
+            slope_deg: slope_deg(twist_factor, reflected, rating.nominal_torque),
             pin_force: rating.output_torque * map.force_per_torque,
         }
     }
@@ -279,6 +284,10 @@ impl Block<'_> {
             Output::NaturalFrequency => each(out, |k| {
                 natural_frequency(1.0 / assembly.reflected[k], rating.inertia[k])
             }),
+            Output::NaturalFrequencyWithEfficiency => each(out, |k| {
+                let effective = assembly.twist_factor[k] * assembly.reflected[k];
+                natural_frequency(1.0 / effective, rating.inertia[k])
+            }),
             Output::ShaftCompliance => copy(out, &shaft.compliance),
             Output::PinCompliance => copy(out, &pin.compliance),
             Output::OutputCompliance => copy(out, &assembly.compliance),
@@ -297,6 +306,7 @@ impl Block<'_> {
             Output::OutputStiffness => each(out, |k| {
                 1.0 / (assembly.compliance[k] * NM_PER_RAD_OF_NM_PER_ARCMIN)
             }),
+            Output::ComplianceFactor => copy(out, &assembly.twist_factor),
             Output::TorquePerPin => each(out, |k| {
                 torque_per_pin(rating.output_torque[k], map.active_mean[k])
             }),

@@ -23,6 +23,13 @@ impl SegmentKind {
     pub const fn tapers(self) -> bool {
         matches!(self, SegmentKind::Frustum)
     }
+
+    /// Place in [`crate::inputs::SEGMENT_FIELDS`] of the diameter at the flange end.
+    #[inline(always)]
+    #[must_use]
+    pub const fn flange_field(self) -> usize {
+        if self.tapers() { 1 } else { 0 }
+    }
 }
 
 /// One segment, counted from the shaft's free end to the flange. Lengths in m.

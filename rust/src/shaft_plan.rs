@@ -25,9 +25,8 @@ struct SegmentPlan {
     shoulder: Option<f64>,
 }
 
-// Places in [`SEGMENT_FIELDS`].
+/// Place in [`SEGMENT_FIELDS`].
 const DIAMETER: usize = 0;
-const END_DIAMETER: usize = 1;
 
 impl ShaftPlan {
     /// The plan of a study whose unvaried inputs are `base`.
@@ -50,7 +49,7 @@ impl ShaftPlan {
                 factor: known(any_varies, factor),
                 shoulder: known(before.1 || field_varies(DIAMETER), shoulder),
             });
-            before = (segment.flange_diameter(), field_varies(flange(*kind)));
+            before = (segment.flange_diameter(), field_varies(kind.flange_field()));
         }
         // Without a diameter before it there is no shoulder.
         if let Some(first) = segments.first_mut() {
@@ -144,7 +143,7 @@ impl ShaftPlan {
             }
             match (plan.shoulder, k.checked_sub(1)) {
                 (None, Some(last)) => {
-                    let before = &inputs.segments()[last][flange(self.segments[last].kind)];
+                    let before = &inputs.segments()[last][self.segments[last].kind.flange_field()];
                     for_each_lane!(inputs, mask, |row, _lane, judge| {
                         sum[row] +=
                             factors[row] + shoulder(before[row], fields[DIAMETER][row], judge);
@@ -203,16 +202,6 @@ fn scale(inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
 #[inline(always)]
 fn coefficient(inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
     judge.non_negative("keyway_coefficient", inputs.get(Input::KeywayCoefficient))
-}
-
-/// The field that holds the diameter at the flange end.
-#[inline(always)]
-const fn flange(kind: SegmentKind) -> usize {
-    if kind.tapers() {
-        END_DIAMETER
-    } else {
-        DIAMETER
-    }
 }
 
 #[inline(always)]

@@ -14,6 +14,9 @@ use crate::lanes::Variant;
 use crate::pin::{Pin, pin_compliance};
 use crate::rounding::{is_whole_within, smaller};
 
+/// K1 this close to one is one but for rounding: the profile has cusps.
+const CUSP: f64 = 1e-12;
+
 /// What a stage gives for one variant. Where the variant is refused it is meaningless.
 pub trait Stage: Copy + Send + Sync {
     /// The same for every variant of a block.
@@ -148,7 +151,7 @@ impl WholeNumbers {
 }
 
 impl Geometry {
-    /// The inputs this stage reads.
+    /// The scalar inputs this stage reads; it reads the shaft's diameter at the flange too.
     pub const INPUTS: [Input; 11] = [
         Input::Ratio,
         Input::DiscCount,
@@ -182,7 +185,9 @@ impl Geometry {
         let rim = judge.positive("disc_outer_radius", inputs.get(Input::DiscOuterRadius));
         let hub = judge.non_negative("disc_bore_radius", inputs.get(Input::DiscBoreRadius));
         let k1 = e * (ratio + 1.0) / ring;
-        judge.require(k1 < 1.0, || DesignError::EccentricityTooLargeForRing { k1 });
+        judge.require(k1 < 1.0 - CUSP, || {
+            DesignError::EccentricityTooLargeForRing { k1 }
+        });
         judge.require(rim < ring, || DesignError::DiscExceedsRing {
             disc_radius: rim,
             ring_radius: ring,
@@ -203,6 +208,12 @@ impl Geometry {
         judge.require(between > 0.0, || DesignError::HolesOverlap { web: between });
         judge.require(outer > 0.0, || DesignError::HoleBreaksRim { web: outer });
         judge.require(inner > 0.0, || DesignError::HoleBreaksBore { web: inner });
+        let flange = inputs.flange_diameter();
+        let beyond = (flange > 2.0 * circle) & (flange <= f64::MAX);
+        judge.require(!beyond, || DesignError::FlangeCutsPinCircle {
+            flange_radius: 0.5 * flange,
+            pin_circle_radius: circle,
+        });
         Self {
             hole_diameter: hole,
             hole_web: smaller(smaller(between, outer), inner),

@@ -167,6 +167,33 @@ def pin_compliance(drive: cs.Drive) -> float:
     return flexibility / radius**2
 
 
+def largest_pin_force(drive: cs.Drive) -> float:
+    """Look for the largest force (N) on one contact over a turn; forces go with sin(psi)."""
+    radius = drive.output_pin_circle_radius_mm / 1e3
+    contacts = drive.disc_count * drive.output_pin_count
+    if contacts % 2 == 0:
+        return 4 * drive.output_torque_nm / (contacts * radius)
+
+    def force(theta: float) -> float:
+        sines = [
+            math.sin(theta + math.tau * (disc / drive.disc_count - pin / drive.output_pin_count))
+            for disc in range(drive.disc_count)
+            for pin in range(drive.output_pin_count)
+        ]
+        loaded = [sine for sine in sines if sine > 0]
+        return max(loaded) / math.fsum(sine**2 for sine in loaded)
+
+    # Every position repeats after a step of the lattice on which all holes stand.
+    step = math.tau / math.lcm(drive.disc_count, drive.output_pin_count)
+    grid = [step * k / 200 for k in range(201)]
+    best = max(grid, key=force)
+    low, high = best - step / 200, best + step / 200
+    for _ in range(60):
+        left, right = low + (high - low) / 3, high - (high - low) / 3
+        low, high = (left, high) if force(left) < force(right) else (low, right)
+    return force((low + high) / 2) * drive.output_torque_nm / radius
+
+
 def root_stress_mpa(drive: cs.Drive, force: float) -> float:
     """F L / W of a hollow round section."""
     d, bore = drive.output_pin_diameter_mm, drive.output_pin_bore_mm
@@ -197,26 +224,27 @@ def evaluate(drive: cs.Drive, loads_tn: tuple[float, ...]) -> dict[str, float | 
     contacts = drive.disc_count * drive.output_pin_count
     eta = {name: found.mean / (contacts / 2) for name, found in counts.items()}
     chosen = counts[drive.criterion]
-    share = participation(drive)
+    share = participation(drive) if drive.disc_count <= 2 else None
 
+    output: float | None
+    by_statics: float | None
     pin = pin_compliance(drive)
     shaft = shaft_compliance(drive) if drive.shaft else None
     per_arcmin = 60 * 180 / math.pi
     if drive.output_stiffness_nm_per_arcmin is not None:
-        output = by_statics = in_twist = 1 / (drive.output_stiffness_nm_per_arcmin * per_arcmin)
+        output = by_statics = 1 / (drive.output_stiffness_nm_per_arcmin * per_arcmin)
         factor = 1.0
     else:
         assert shaft is not None
-        output = shaft + pin / drive.output_pin_count
-        by_statics = shaft + pin / (drive.output_pin_count * share)
+        by_statics = None if share is None else shaft + pin / (drive.output_pin_count * share)
         if drive.criterion == "statics":
-            in_twist, factor = by_statics, 1.0
+            output, factor = by_statics, 1.0
         else:
-            in_twist, factor = output, eta[drive.criterion]
-    reflected = output * drive.ratio**2
+            output, factor = shaft + pin / drive.output_pin_count, eta[drive.criterion]
+    reflected = None if output is None else output * drive.ratio**2
     nominal = drive.input_power_kw * 1000 / (drive.input_speed_rpm * 2 * math.pi / 60)
     radius = drive.output_pin_circle_radius_mm / 1e3
-    force = 4 * drive.output_torque_nm / (contacts * radius)
+    force = largest_pin_force(drive)
     inertia = drive.input_inertia_kg_m2
 
     columns: dict[str, float | None] = {
@@ -234,26 +262,37 @@ def evaluate(drive: cs.Drive, loads_tn: tuple[float, ...]) -> dict[str, float | 
         * (drive.ratio + 1)
         / drive.ring_pin_circle_radius_mm,
         "nominal_torque_nm": nominal,
-        "natural_frequency_hz": None
-        if inertia is None
-        else math.sqrt(1 / (reflected * inertia)) / (2 * math.pi),
+        "natural_frequency_hz": frequency(reflected, inertia),
+        "natural_frequency_with_efficiency_hz": frequency(
+            None if reflected is None else factor * reflected, inertia
+        ),
         "shaft_compliance_rad_per_nm": shaft,
         "pin_compliance_rad_per_nm": pin,
         "output_compliance_rad_per_nm": output,
         "output_compliance_statics_rad_per_nm": by_statics,
         "reflected_compliance_rad_per_nm": reflected,
-        "reflected_stiffness_nm_per_rad": 1 / reflected,
-        "output_stiffness_nm_per_arcmin": 1 / (output * per_arcmin),
+        "reflected_stiffness_nm_per_rad": None if reflected is None else 1 / reflected,
+        "output_stiffness_nm_per_arcmin": None if output is None else 1 / (output * per_arcmin),
+        "compliance_factor": factor,
         "torque_per_pin_nm": drive.output_torque_nm / chosen.mean,
         "force_per_pin_n": drive.output_torque_nm / chosen.mean / radius,
         "pin_force_max_n": force,
         "pin_bending_stress_mpa": root_stress_mpa(drive, force),
     }
     for load in loads_tn:
-        name = f"twist_{load:g}tn_deg".replace(".", "p")
-        elastic = math.degrees(factor * in_twist * drive.ratio**2 * load * nominal)
-        columns[name] = elastic + drive.free_play_deg
+        name = f"twist_{load:g}tn_deg".replace(".", "p").replace("-", "minus_")
+        columns[name] = None
+        if reflected is not None:
+            elastic = math.degrees(factor * reflected * load * nominal)
+            columns[name] = elastic + math.copysign(drive.free_play_deg, load)
     return columns
+
+
+def frequency(compliance: float | None, inertia: float | None) -> float | None:
+    """First natural frequency (Hz) of an inertia on a spring, where there are both."""
+    if compliance is None or inertia is None:
+        return None
+    return math.sqrt(1 / (compliance * inertia)) / (2 * math.pi)
 
 
 def refusals(values: dict[str, float], kinds: list[str]) -> set[str]:
@@ -296,7 +335,7 @@ def refusals(values: dict[str, float], kinds: list[str]) -> set[str]:
 
     e, circle = values["eccentricity_mm"], values["output_pin_circle_radius_mm"]
     ring, rim = values["ring_pin_circle_radius_mm"], values["disc_outer_radius_mm"]
-    if e * (values["ratio"] + 1) >= ring:
+    if e * (values["ratio"] + 1) >= ring * (1 - 1e-12):
         add("eccentricity_too_large_for_ring")
     if rim >= ring:
         add("disc_exceeds_ring")
@@ -323,4 +362,6 @@ def refusals(values: dict[str, float], kinds: list[str]) -> set[str]:
         if kind == "keyway" and values[f"shaft_{number}_keyway_depth_mm"] >= diameter / 2:
             add("keyway_too_deep")
         before = values[f"shaft_{number}_end_diameter_mm"] if kind == "frustum" else diameter
+    if before > 2 * circle:
+        add("flange_cuts_pin_circle")
     return reasons

@@ -106,7 +106,7 @@ prop_compose! {
         let kinds = if has_shaft { kinds } else { Vec::<SegmentKind>::new() };
         inputs.truncate(SCALARS + kinds.len() * SEGMENT_FIELDS.len());
         let space = Space::new(axes, layout, ROWS as u64, seed).expect("a space that can be");
-        Study::new(space, core_units(&inputs), kinds, LOADS.to_vec(), limits)
+        Study::new(space, core_units(&inputs), kinds, LOADS.to_vec(), limits).expect("a study that can be")
     }
 }
 
@@ -196,6 +196,7 @@ fn sound(criterion: f64) -> Study {
         LOADS.to_vec(),
         Vec::new(),
     )
+    .expect("a study that can be")
 }
 
 #[test]

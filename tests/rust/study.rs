@@ -21,6 +21,7 @@ fn study(axes: Vec<Axis>, layout: Layout, count: u64, seed: u64, limits: Vec<Lim
         LOADS.to_vec(),
         limits,
     )
+    .expect("a study that can be")
 }
 
 fn bits(columns: &[Vec<f64>], row: usize) -> Vec<u64> {
@@ -179,7 +180,7 @@ proptest! {
             inputs[*input] = *value;
         }
         let space = Space::new(Vec::new(), Layout::Grid, 0, 0).expect("one variant");
-        let one = Study::new(space, core_units(&inputs), KINDS.to_vec(), LOADS.to_vec(), Vec::new());
+        let one = Study::new(space, core_units(&inputs), KINDS.to_vec(), LOADS.to_vec(), Vec::new()).expect("a study that can be");
         let columns = one.evaluate(Rows::From(0), 1, &Output::all(&LOADS));
         let refused = one.explain(0);
         prop_assert_eq!(columns.status[0], refused.map_or(Status::Ok, |error| error.status()) as u8);

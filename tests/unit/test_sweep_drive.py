@@ -181,8 +181,12 @@ def test_a_drive_that_cannot_be_built_says_why(reference: cs.Drive) -> None:
 
 def test_a_drive_s_line_is_its_twist(reference: cs.Drive) -> None:
     for drive in [reference, *random_drives(8, 40)]:
-        line = drive.nominal_line("input")
         twist = drive.evaluate((2.5,))["twist_2p5tn_deg"]
+        if twist is None:
+            assert drive.criterion == "statics"
+            assert drive.disc_count > 2
+            continue
+        line = drive.nominal_line("input")
         torque = 2.5 * drive.nominal_torque_nm
         assert line.free_play_deg + line.compliance_deg_per_nm * torque == pytest.approx(
             twist, rel=1e-9

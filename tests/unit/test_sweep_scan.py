@@ -205,7 +205,7 @@ def test_scanned_schema_is_the_swept_one() -> None:
 def test_a_table_without_rows_is_an_empty_frame() -> None:
     empty = pl.DataFrame(schema={"eccentricity_mm": pl.Float64})
     space = cs.Space.table(cs.Drive.reference_87(), empty)
-    assert cs.scan(space).collect().shape == cs.sweep(space).shape == (0, 32)
+    assert cs.scan(space).collect().shape == cs.sweep(space).shape == (0, 34)
 
 
 def test_more_rows_than_a_frame_holds_are_refused_rather_than_attempted() -> None:

@@ -67,7 +67,11 @@ class Drive(DriveInputs):
 
     Eq. (13) multiplies the whole compliance by the torque transfer efficiency: *fewer* active pins
     then mean *less* twist, and an optimiser will exploit it. ``criterion`` decides which count of
-    active pins feeds the twist; every other result is by Eqs. (11) and (12) whatever the criterion.
+    active pins feeds the twist. By ``statics`` the pins' share stands in Eq. (11), and compliance,
+    stiffness, natural frequency and twist of a row follow it. ``compliance_factor`` is what
+    Eq. (13) multiplies the compliance by: the efficiency, or 1 by ``statics`` and for a measured
+    stiffness.
+    Statics hold for one or two discs; for more, what rests on them is null.
 
     Whether the parts fit each other is not asked here (a study's axes may still change them), but
     by :meth:`explain` and by the status of a sweep.
@@ -285,7 +289,8 @@ class Drive(DriveInputs):
         Raises
         ------
         DesignError
-            When the drive cannot be built and gives no stiffness of its own.
+            When the drive cannot be built and gives no stiffness of its own, or when its criterion
+            is ``statics`` and it has more than two discs.
 
         Examples
         --------
@@ -298,7 +303,10 @@ class Drive(DriveInputs):
             at_input = at_output * self.ratio**2
         else:
             twist = self.evaluate((1.0,))["twist_1tn_deg"]
-            assert twist is not None
+            if twist is None:
+                raise _core.DesignError(
+                    f"{self.name}: statics hold for one or two discs, found {self.disc_count}"
+                )
             at_input = (twist - self.free_play_deg) / self.nominal_torque_nm
         if side == "input":
             return NominalLine(self.free_play_deg, at_input)

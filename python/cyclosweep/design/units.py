@@ -77,7 +77,10 @@ OUTPUTS: dict[str, Quantity] = {
         "", "1", "the same by the criterion published-map"
     ),
     "pin_participation_statics": Quantity(
-        "p", "1", "sum of sin^2 over the loaded contacts per output pin, mean over one turn"
+        "p",
+        "1",
+        "sum of sin^2 over the loaded contacts per output pin, mean over one turn; null for more "
+        "than two discs, where statics do not apply",
     ),
     "statics_applicable": Quantity("", "1", "whether statics hold: at most two discs"),
     "hole_diameter_mm": Quantity("", "mm", "hole in the disc: pin + 2 bush walls + 2 e"),
@@ -87,23 +90,38 @@ OUTPUTS: dict[str, Quantity] = {
     "natural_frequency_hz": Quantity(
         "", "Hz", "sqrt(K*_OS / J) / (2 pi) with the output locked; null without an inertia"
     ),
+    "natural_frequency_with_efficiency_hz": Quantity(
+        "", "Hz", "the same with the compliance of Eq. (13), compliance_factor C*_OS, for 1 / K*_OS"
+    ),
     "shaft_compliance_rad_per_nm": Quantity("C_OS^t", "rad/(N m)", "output shaft, Eqs. (4)-(7)"),
     "pin_compliance_rad_per_nm": Quantity(
         "C_OP", "rad/(N m)", "one output pin, delta / (F R_OP^2), Eqs. (8)-(10)"
     ),
-    "output_compliance_rad_per_nm": Quantity("C_OS", "rad/(N m)", "at the output, Eq. (11)"),
+    "output_compliance_rad_per_nm": Quantity(
+        "C_OS",
+        "rad/(N m)",
+        "at the output, Eq. (11); by statics with the pins' share; given where a stiffness is",
+    ),
     "output_compliance_statics_rad_per_nm": Quantity(
-        "", "rad/(N m)", "at the output with the pins' share by statics"
+        "",
+        "rad/(N m)",
+        "at the output with the pins' share by statics, C_OS^t + C_OP / (N_OP p), whatever the "
+        "criterion",
     ),
     "reflected_compliance_rad_per_nm": Quantity("C*_OS", "rad/(N m)", "at the input, Eq. (12)"),
     "reflected_stiffness_nm_per_rad": Quantity("K*_OS", "N m/rad", "1 / C*_OS"),
     "output_stiffness_nm_per_arcmin": Quantity("1/C_OS", "N m/arcmin", "at the output"),
+    "compliance_factor": Quantity(
+        "",
+        "1",
+        "factor on C*_OS in Eq. (13): eta_OP; 1 by statics and where a stiffness is given",
+    ),
     "torque_per_pin_nm": Quantity(
         "T_O*", "N m", "torque of one pin, T_O over the mean number of active pins, Eqs. (1), (2)"
     ),
     "force_per_pin_n": Quantity("F_n", "N", "force of a pin that carries T_O*, Eq. (9)"),
     "pin_force_max_n": Quantity(
-        "", "N", "largest force on one pin at rated output torque by statics"
+        "", "N", "largest force on one pin at rated output torque by statics, at its worst position"
     ),
     "pin_bending_stress_mpa": Quantity("", "MPa", "bending stress at the pin's root by that force"),
 }

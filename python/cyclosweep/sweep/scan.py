@@ -26,8 +26,6 @@ __all__ = ["Evaluations", "frame", "kernel_evaluations", "scan", "sweep"]
 
 DEFAULT_BATCH = 100_000
 _LARGEST_FRAME = 2**32 - 1  # rows polars can count
-# Null also for variants that can be built: without an inertia, without a shaft.
-_MAY_NOT_APPLY = frozenset({"natural_frequency_hz", "shaft_compliance_rad_per_nm"})
 
 
 class Evaluations(NamedTuple):
@@ -258,8 +256,9 @@ def _results(
         status, any_refused, columns = study.core.evaluate_at(picked, outputs)
     dtypes = study.schema()
     series = {"status": pl.Series("status", status)}
-    for name, values in zip(outputs, columns, strict=True):
-        series[name] = pl.Series(name, values, nan_to_null=name in _MAY_NOT_APPLY)
+    may_not_apply = study.core.may_not_apply(outputs)
+    for name, values, nullable in zip(outputs, columns, may_not_apply, strict=True):
+        series[name] = pl.Series(name, values, nan_to_null=nullable)
     table = pl.DataFrame(series)
     if any_refused and outputs:
         # Nothing is copied: polars joins the validity to the columns.

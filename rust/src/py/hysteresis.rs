@@ -1,5 +1,6 @@
-//! Python bindings of the history operators: checks of lengths, then plain slices.
-use crate::hysteresis::{self, SlipElements, Spring};
+//! Python bindings of the history operators.
+
+use crate::hysteresis::{self, HistoryError, SlipElements, Spring};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -8,12 +9,9 @@ type Column<'py> = PyReadonlyArray1<'py, f64>;
 type Reals<'py> = Bound<'py, PyArray1<f64>>;
 type Flags<'py> = PyReadonlyArray1<'py, bool>;
 
-fn same_length(expected: usize, found: &[usize]) -> PyResult<()> {
-    match found.iter().find(|&&n| n != expected) {
-        Some(n) => Err(PyValueError::new_err(format!(
-            "arrays differ in length: {expected} and {n}"
-        ))),
-        None => Ok(()),
+impl From<HistoryError> for PyErr {
+    fn from(error: HistoryError) -> Self {
+        PyValueError::new_err(error.to_string())
     }
 }
 
@@ -44,8 +42,6 @@ fn solve_slip<'py>(
     law_twist: Option<Column<'py>>,
 ) -> PyResult<(Reals<'py>, Reals<'py>)> {
     let n = torque.len()?;
-    same_length(n, &[offset.len()?, restart.len()?, start_angle.len()?])?;
-    same_length(slip_angle.len()?, &[share.len()?])?;
     let (torque, offset) = (torque.as_slice()?, offset.as_slice()?);
     let (restart, start_angle) = (restart.as_slice()?, start_angle.as_slice()?);
     let elements = SlipElements {
@@ -60,7 +56,6 @@ fn solve_slip<'py>(
         (Some(torque), Some(twist)) => (torque.as_slice()?, twist.as_slice()?),
         _ => (&[] as &[f64], &[] as &[f64]),
     };
-    same_length(law_torque.len(), &[law_twist.len()])?;
     let spring = Spring {
         free_play,
         compliance,
@@ -78,8 +73,8 @@ fn solve_slip<'py>(
             &elements,
             &mut angle,
             &mut friction,
-        );
-    });
+        )
+    })?;
     Ok((angle.into_pyarray(py), friction.into_pyarray(py)))
 }
 
@@ -95,8 +90,6 @@ fn slip_state<'py>(
     share: Column<'py>,
 ) -> PyResult<Reals<'py>> {
     let n = angle.len()?;
-    same_length(n, &[restart.len()?, start_angle.len()?, stretch.len()?])?;
-    same_length(slip_angle.len()?, &[share.len()?])?;
     let elements = SlipElements {
         slip_angle: slip_angle.as_slice()?,
         share: share.as_slice()?,
@@ -108,7 +101,7 @@ fn slip_state<'py>(
     let mut out = vec![0.0; n];
     let (angle, restart) = (angle.as_slice()?, restart.as_slice()?);
     let (start, stretch) = (start_angle.as_slice()?, stretch.as_slice()?);
-    py.detach(|| hysteresis::slip_state(angle, restart, start, stretch, &elements, &mut out));
+    py.detach(|| hysteresis::slip_state(angle, restart, start, stretch, &elements, &mut out))?;
     Ok(out.into_pyarray(py))
 }
 
@@ -122,7 +115,6 @@ fn play<'py>(
     start: Column<'py>,
 ) -> PyResult<Reals<'py>> {
     let n = signal.len()?;
-    same_length(n, &[restart.len()?, start.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::play(
         signal.as_slice()?,
@@ -130,7 +122,7 @@ fn play<'py>(
         restart.as_slice()?,
         start.as_slice()?,
         &mut out,
-    );
+    )?;
     Ok(out.into_pyarray(py))
 }
 
@@ -144,7 +136,6 @@ fn dragged<'py>(
     lag: f64,
 ) -> PyResult<Reals<'py>> {
     let n = signal.len()?;
-    same_length(n, &[lapse.len()?, restart.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::dragged(
         signal.as_slice()?,
@@ -152,7 +143,7 @@ fn dragged<'py>(
         restart.as_slice()?,
         lag,
         &mut out,
-    );
+    )?;
     Ok(out.into_pyarray(py))
 }
 
@@ -166,7 +157,6 @@ fn creep_state<'py>(
     time_constant: f64,
 ) -> PyResult<Reals<'py>> {
     let n = signal.len()?;
-    same_length(n, &[time.len()?, restart.len()?])?;
     let mut out = vec![0.0; n];
     hysteresis::creep_state(
         signal.as_slice()?,
@@ -174,7 +164,7 @@ fn creep_state<'py>(
         restart.as_slice()?,
         time_constant,
         &mut out,
-    );
+    )?;
     Ok(out.into_pyarray(py))
 }
 

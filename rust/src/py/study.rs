@@ -201,10 +201,9 @@ impl PyStudy {
         }
         let space = Space::new(built, layout_of(layout)?, count, seed)
             .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(Self {
-            study: Study::new(space, inputs, kinds, loads, ranges),
-            outputs,
-        })
+        let study = Study::new(space, inputs, kinds, loads, ranges)
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Self { study, outputs })
     }
 
     /// Number of variants.
@@ -217,6 +216,17 @@ impl PyStudy {
     #[getter]
     fn evaluated(&self) -> u64 {
         self.study.evaluated()
+    }
+
+    /// Which of these result columns may be NaN for a variant that can be built.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a list from Python arrives by value"
+    )]
+    fn may_not_apply(&self, outputs: Vec<String>) -> PyResult<Vec<bool>> {
+        let chosen = self.chosen(&outputs)?;
+        let may_not_apply = |output| self.study.may_not_apply(output);
+        Ok(chosen.into_iter().map(may_not_apply).collect())
     }
 
     /// Values of axes for variants start..stop, in the user's unit, one row an axis.
