@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cyclosweep import Drive, Recording, diagnose
-from cyclosweep.diagnosis.hypotheses.freeform import CLASSES
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import FAMILIES_ALIKE
 from cyclosweep.diagnosis.identify.alarm import LEVEL, probability, tail_quantile
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.prepare.problem import gaps
@@ -77,7 +77,7 @@ def test_gaps_are_counted_in_the_steps_of_each_run() -> None:
 
 def test_every_class_names_families_that_exist() -> None:
     families = {effect.family for effect in effects.VOCABULARY}
-    assert set().union(*CLASSES.values()) <= families
+    assert set().union(*FAMILIES_ALIKE.values()) <= families
 
 
 def named(name: str) -> Effect:

@@ -6,8 +6,8 @@ import pytest
 from cyclosweep.diagnosis.identify.scan import (
     evidence,
     likelihood_gain,
-    price_of_choice,
-    price_of_vector,
+    shape_choice_penalty,
+    vector_penalty,
 )
 from cyclosweep.diagnosis.identify.verdict import unit_slip
 
@@ -28,7 +28,7 @@ def test_gains_add_up_over_nested_models() -> None:
 def test_vector_of_equal_parts_costs_what_two_amplitudes_cost() -> None:
     size = np.array([3.0, 4.0])
     gain = float(size @ size) / 0.2**2
-    found = 0.5 * gain - price_of_vector(size, np.eye(2) / 0.2**2)
+    found = 0.5 * gain - vector_penalty(size, np.eye(2) / 0.2**2)
     assert found == pytest.approx(evidence(gain, 2), abs=0.05)
 
 
@@ -38,27 +38,27 @@ def test_vector_in_a_direction_that_is_seldom_met_costs_more() -> None:
     usual, seldom = np.array([0.2, 0.0]), np.array([0.0, 20.0])
     gain = usual @ information @ usual
     assert gain == pytest.approx(seldom @ information @ seldom)
-    assert price_of_vector(seldom, information) > price_of_vector(usual, information) + 3.0
+    assert vector_penalty(seldom, information) > vector_penalty(usual, information) + 3.0
 
 
 @pytest.mark.parametrize("noise", [0.0, 15.0, 700.0])
 def test_component_that_does_not_show_costs_nothing(noise: float) -> None:
     # Whatever noise put into it: the price is that of the other component alone.
     information = np.diag([1e4, 1e-12])
-    price = price_of_vector(np.array([0.2, noise]), information)
+    price = vector_penalty(np.array([0.2, noise]), information)
     assert price == pytest.approx(0.5 * (1 + np.log(400.0)), abs=0.02)
-    assert price_of_vector(np.array([0.2, noise]), np.zeros((2, 2))) == 0.0
+    assert vector_penalty(np.array([0.2, noise]), np.zeros((2, 2))) == 0.0
 
 
 def test_choice_costs_the_range_over_the_error_and_nothing_where_it_is_not_told() -> None:
-    assert price_of_choice(np.array([[100.0**2]]), np.array([1.0])) == pytest.approx(
+    assert shape_choice_penalty(np.array([[100.0**2]]), np.array([1.0])) == pytest.approx(
         np.log(100.0 / np.sqrt(2 * np.pi)), abs=1e-3
     )
-    assert price_of_choice(np.zeros((2, 2)), np.array([1.0, 5.0])) == 0.0
+    assert shape_choice_penalty(np.zeros((2, 2)), np.array([1.0, 5.0])) == 0.0
     # Two parameters of which only the sum is told are one.
     both = np.full((2, 2), 100.0**2)
-    assert price_of_choice(both, np.ones(2)) == pytest.approx(
-        price_of_choice(np.array([[2e4]]), np.ones(1)), abs=1e-3
+    assert shape_choice_penalty(both, np.ones(2)) == pytest.approx(
+        shape_choice_penalty(np.array([[2e4]]), np.ones(1)), abs=1e-3
     )
 
 

@@ -12,8 +12,9 @@ from cyclosweep.diagnosis import statement as words
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library, build_library
 from cyclosweep.diagnosis.identify.alarm import DRAWS, probability
+from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import (
     Testability,
     hidden_effects,
@@ -194,7 +195,9 @@ def _conclude(
     possible = {t.name for n, _ in decision.explanations for t in n.fit.terms}
     excluded = {b.name for b in remaining if b.upper95_deg < tolerance} - possible
     regions = (
-        find_regions(search, search.baseline) if search.baseline.left >= search.threshold else []
+        find_regions(search, search.baseline)
+        if search.baseline.largest_excess >= search.threshold
+        else []
     )
     if decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
         regions = find_regions(search, accepted) or regions
@@ -203,7 +206,7 @@ def _conclude(
     if drift is not None:
         decision = Decision("UNKNOWN_PHYSICS", decision.best, decision.explanations, True)
     effects = [_effect(search, accepted, k, held) for k in range(len(accepted.fit.terms))]
-    sufficiency = probability(search.null(candidate), candidate.left)
+    sufficiency = probability(search.null(candidate), candidate.largest_excess)
     model = accepted.fit.model(drive.name)
     before = accepted.fit.baseline_prediction(base)
     after = accepted.fit.prediction
@@ -225,8 +228,8 @@ def _conclude(
             "holdout_rmse_deg": held.before_deg,
         },
         "mismatch": {
-            "p_value": search.alarm.p_value(search.baseline.left),
-            "evidence": search.baseline.left,
+            "p_value": search.alarm.p_value(search.baseline.largest_excess),
+            "evidence": search.baseline.largest_excess,
             "threshold": search.threshold,
             "regions": [region.as_dict() for region in regions],
         },
@@ -488,14 +491,14 @@ def _unknown(
     """Shape, place and size of what has no name."""
     candidate = decision.best
     assert candidate is not None
-    forms = [(k, t) for k, t in enumerate(candidate.fit.terms) if t.free is not None]
+    forms = [(k, t) for k, t in enumerate(candidate.fit.terms) if t.unnamed is not None]
     if forms:
         index, term = forms[0]
-        assert term.free is not None
+        assert term.unnamed is not None
         shape = size_of(candidate.fit, index)
         return {
-            "shape": term.free.family,
-            "place": term.free.place,
+            "shape": term.unnamed.family,
+            "place": term.unnamed.place,
             "size_deg": float(np.max(np.abs(shape))),
         }
     lost = [k for k, own in enumerate(candidate.recognised) if not own]
@@ -505,12 +508,12 @@ def _unknown(
         largest = float(np.max(np.abs(size_of(candidate.fit, lost[0]))))
         return {"shape": effect.family, "place": "all along", "size_deg": largest}
     values = candidate.excesses
-    wave = candidate.sinusoid_left[1]
+    wave = candidate.sinusoid[1]
     name = max(values, key=lambda key: values[key])
     place = wave.place if wave is not None and wave.family == name else ""
-    if name in candidate.rest.groups:
-        found = candidate.rest.library.signatures[candidate.rest.best_signature(name)]
-        place = found.free.place if found.free is not None else "all along"
+    if name in candidate.scan.groups:
+        found = candidate.scan.library.signatures[candidate.scan.best_signature(name)]
+        place = found.unnamed.place if found.unnamed is not None else "all along"
     size = max((abs(r.mean_residual_deg) for r in regions), default=accepted.fit.rmse_deg)
     return {"shape": name, "place": place, "size_deg": size}
 
@@ -518,9 +521,9 @@ def _unknown(
 def _staircase(candidate: Candidate, repeats: run_comparison.Repetition) -> dict[str, Any]:
     """Describe a residual that repeats from run to run, as steps tied to the mesh do."""
     left = (candidate.fit.problem.angle_deg - candidate.fit.mean_deg)[candidate.fit.problem.fitted]
-    wave = candidate.sinusoid_left[1]
+    wave = candidate.sinusoid[1]
     place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
-    if wave is not None and candidate.sinusoid_left[0] > 5.0:
+    if wave is not None and candidate.sinusoid[0] > 5.0:
         place += f", strongest {wave.place}"
     return {
         "shape": "staircase tied to the position of the mesh",

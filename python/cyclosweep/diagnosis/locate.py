@@ -5,8 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.freeform import clock_of
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import clock_of
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.split import recorded_runs
 from cyclosweep.simulation.effects.history import Flags
 

@@ -1,1 +1,1 @@
-"""What may be missing: every effect and every shape without a name as columns."""
+"""What may be missing: every effect and every unnamed shape as columns."""

@@ -1,4 +1,4 @@
-"""A model rich enough that hardly anything but noise is left, for estimating that noise."""
+"""A basis flexible enough that hardly anything but noise is left, for estimating that noise."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ SMOOTH = (
     "compliance by position",
     "position offsets",
 )
-"""Families of free forms that join the named effects in the rich model."""
+"""Families of unnamed shapes that join the named effects in the basis."""
 
 
 def flexible_basis(problem: Problem, library: Library, extra: Floats | None = None) -> Floats:
@@ -24,18 +24,26 @@ def flexible_basis(problem: Problem, library: Library, extra: Floats | None = No
 
     Parameters
     ----------
+    problem : Problem
+        The recording, n rows of which are fitted.
+    library : Library
+        Signatures of all hypotheses on those rows.
     extra : ndarray, shape (n, q), optional
         Further columns that must be in it, as the tangent space of an accepted model.
+
+    Returns
+    -------
+    ndarray, shape (n, k)
     """
     use = problem.fitted
     history = problem.history
     line = line_design(history, history.applied_nm, one_sided=problem.one_sided)[use]
     certain = line if extra is None else np.column_stack([line, extra])
     inner = orthonormal(certain, 1e-10)
-    wanted = [b for b in library.signatures if b.named or b.hypothesis in SMOOTH]
+    wanted = [s for s in library.signatures if s.named or s.hypothesis in SMOOTH]
     if not wanted:
         return inner
-    index = np.concatenate([np.arange(b.first, b.stop) for b in wanted])
+    index = np.concatenate([np.arange(s.first, s.stop) for s in wanted])
     rest = library.columns[:, index] / np.sqrt(len(inner))
     rest = rest - inner @ (inner.T @ rest)
     # Directions by the small matrix of inner products: what is kept lies far above its rounding.

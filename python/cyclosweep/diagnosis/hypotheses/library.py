@@ -1,41 +1,41 @@
-"""All hypotheses of one recording, each by columns: named effects and unnamed shapes."""
+"""All hypotheses of one recording as columns of twist: effects by name and unnamed shapes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.freeform import FreeForm, freeforms
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape, unnamed_shapes
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """One shape of one hypothesis: its columns among all of the library's.
+    """One shape of one hypothesis, and where its columns stand among all of the library's.
 
     Attributes
     ----------
     hypothesis : str
-        Name of the effect, or the family of the free form.
+        Name of the effect, or family of the unnamed shape.
     effect : Effect or None
-        The effect; None for a shape without a name.
+        The effect; None for an unnamed shape.
     shape : dict
         Shape parameters of the effect.
-    free : FreeForm or None
-        The shape without a name.
+    unnamed : UnnamedShape or None
+        The unnamed shape; None for an effect.
     first, stop : int
-        Columns of the signature.
-    signs : ndarray
+        First column, and the one after the last.
+    signs : ndarray, shape (stop - first,)
         +1 where the amplitude cannot be negative, else 0.
-    scale : ndarray
+    scale : ndarray, shape (stop - first,)
         Root mean square by which each column was divided [deg].
     """
 
     hypothesis: str
     effect: Effect | None
     shape: Shape
-    free: FreeForm | None
+    unnamed: UnnamedShape | None
     first: int
     stop: int
     signs: Floats
@@ -49,44 +49,60 @@ class Signature:
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """Blocks and their columns on the fitted rows [deg]."""
+    """Signatures of all hypotheses, and their columns.
+
+    Attributes
+    ----------
+    signatures : tuple of Signature
+        In the order of their columns.
+    columns : ndarray, shape (fitted, k)
+        Twist on the fitted rows, each column divided by its root mean square.
+    untestable : dict of str to str
+        Effects that the recording cannot show, each with the reason.
+    """
 
     signatures: tuple[Signature, ...]
     columns: Floats
-    untestable: dict[str, str] = field(default_factory=dict)
-
-    def of(self, signature: Signature) -> Floats:
-        """Columns of one signature."""
-        return self.columns[:, signature.first : signature.stop]
+    untestable: dict[str, str]
 
 
-def build_library(
-    history: History, fitted: Flags, effects: Sequence[Effect], *, with_freeforms: bool = True
-) -> Library:
-    """Columns of every shape of every effect that the recording can show, and of the free forms."""
+def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) -> Library:
+    """Columns of every shape of every effect that the recording can show, and of unnamed shapes.
+
+    Parameters
+    ----------
+    history : History
+        All n rows of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+    effects : sequence of Effect
+        Effects that are considered.
+
+    Returns
+    -------
+    Library
+    """
     signatures: list[Signature] = []
     parts: list[Floats] = []
     untestable: dict[str, str] = {}
-    first = 0
 
     def add(
-        name: str, effect: Effect | None, shape: Shape, free: FreeForm | None, made: Floats
+        name: str,
+        made: Floats,
+        signs: Floats,
+        effect: Effect | None = None,
+        shape: Shape | None = None,
+        unnamed: UnnamedShape | None = None,
     ) -> None:
-        nonlocal first
         kept = made[fitted]
         if not np.all(np.isfinite(kept)) or not np.any(kept):
             return
-        signs = np.zeros(kept.shape[1])
-        if free is not None and free.positive:
-            signs[:] = 1.0
-        if effect is not None:
-            lower = [p.lower for p in effect.amplitudes(shape)][: len(signs)]
-            signs[: len(lower)] = np.where(np.array(lower) >= 0, 1.0, 0.0)
         scale = np.sqrt(np.mean(kept**2, axis=0))
         parts.append(np.divide(kept, scale, out=np.zeros_like(kept), where=scale > 0))
+        first = signatures[-1].stop if signatures else 0
         stop = first + kept.shape[1]
-        signatures.append(Signature(name, effect, dict(shape), free, first, stop, signs, scale))
-        first = stop
+        values = dict(shape or {})
+        signatures.append(Signature(name, effect, values, unnamed, first, stop, signs, scale))
 
     for effect in effects:
         reason = effect.untestable(history)
@@ -94,9 +110,19 @@ def build_library(
             untestable[effect.name] = reason
             continue
         for shape in effect.shapes(history):
-            add(effect.name, effect, shape, None, effect.columns(history, shape))
-    if with_freeforms:
-        for free in freeforms(history, fitted):
-            add(free.family, None, {}, free, free.make(history))
+            made = effect.columns(history, shape)
+            add(effect.name, made, _signs(effect, shape, made.shape[1]), effect, shape)
+    for unnamed in unnamed_shapes(history, fitted):
+        made = unnamed.make(history)
+        signs = np.full(made.shape[1], 1.0 if unnamed.positive else 0.0)
+        add(unnamed.family, made, signs, unnamed=unnamed)
     columns = np.column_stack(parts) if parts else np.zeros((int(fitted.sum()), 0))
     return Library(tuple(signatures), columns, untestable)
+
+
+def _signs(effect: Effect, shape: Shape, count: int) -> Floats:
+    """+1 for each amplitude that cannot be negative, else 0."""
+    signs = np.zeros(count)
+    lower = [parameter.lower for parameter in effect.amplitudes(shape)][:count]
+    signs[: len(lower)] = np.where(np.array(lower) >= 0, 1.0, 0.0)
+    return signs

@@ -1,50 +1,65 @@
-"""A wave of unknown frequency: in time (also in proportion to torque), or along the twist.
+"""A sinusoid of unknown frequency: in time, in time and proportional to torque, or along the twist.
 
-The periodogram of the residual shows it; the number of frequencies looked at is its price.
+The periodogram of the residual shows it. The more frequencies are looked at, the higher a peak
+chance makes, so the logarithm of their number is taken off the evidence.
 """
 
 from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
+from scipy.stats import gumbel_r
 
-from cyclosweep.diagnosis.hypotheses.freeform import FreeForm, clock_of
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape, clock_of
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
-HUM = "hum"
-RIPPLE = "ripple along the twist"
-LOADED = "hum in proportion to torque"
-FAMILIES = (HUM, RIPPLE, LOADED)
+IN_TIME = "hum"
+ALONG_TWIST = "ripple along the twist"
+WITH_TORQUE = "hum in proportion to torque"
+FAMILIES = (IN_TIME, ALONG_TWIST, WITH_TORQUE)
+"""Kinds of sinusoid, as results call them."""
 CYCLES = 1.5
-"""A hum makes at least this many cycles within the usual run, a ripple within the range of twist.
-Slower waves are the job of other shapes."""
+"""A sinusoid in time makes at least this many cycles within the usual run, one along the twist
+within its range. Slower ones are left to other shapes."""
 FINEST = 250
-"""Most ripples within the range of twist that are looked for."""
-CAUTION = 1.0
-"""Log prior odds against a wave."""
+"""Most cycles within the range of twist that are looked for."""
+PRIOR_PENALTY = 1.0
+"""Log prior odds against a sinusoid."""
 
 
-def find_wave(history: History, fitted: Flags, residual: Floats) -> tuple[float, FreeForm | None]:
+def find_sinusoid(
+    history: History, fitted: Flags, residual: Floats
+) -> tuple[float, UnnamedShape | None]:
     """Evidence of the strongest sinusoid in a white residual, and its columns.
+
+    Parameters
+    ----------
+    history : History
+        All n rows of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+    residual : ndarray, shape (fitted,)
+        White residual of unit variance.
 
     Returns
     -------
     evidence : float
-        Half the chi-squared gain less the log of the number of frequencies looked at.
-    form : FreeForm or None
+        Half the chi-squared gain less the log of the number of frequencies looked at [nat].
+    shape : UnnamedShape or None
         Cosine and sine of that frequency.
     """
     found = [
-        _hum(history, fitted, residual),
-        _hum(history, fitted, residual, loaded=True),
-        _ripple(history, fitted, residual),
+        _in_time(history, fitted, residual),
+        _in_time(history, fitted, residual, with_torque=True),
+        _along_twist(history, fitted, residual),
     ]
     return max(found, key=lambda pair: pair[0])
 
 
-def _hum(
-    history: History, fitted: Flags, residual: Floats, *, loaded: bool = False
-) -> tuple[float, FreeForm | None]:
+def _in_time(
+    history: History, fitted: Flags, residual: Floats, *, with_torque: bool = False
+) -> tuple[float, UnnamedShape | None]:
+    """Strongest sinusoid in time, of even amplitude or in proportion to torque."""
     clock = clock_of(history)[fitted]
     count = len(clock)
     steps = np.diff(clock)
@@ -66,15 +81,18 @@ def _hum(
         lowest=CYCLES / samples,
         highest=0.5,
         unit=step,
-        family=LOADED if loaded else HUM,
+        family=WITH_TORQUE if with_torque else IN_TIME,
         place="at {:.4g} " + unit + ", all along",
         clock=clock_of,
-        factor=(lambda h: h.applied_nm / h.largest_torque_nm) if loaded else None,
-        scale=history.applied_nm[fitted] if loaded else None,
+        factor=(lambda h: h.applied_nm / h.largest_torque_nm) if with_torque else None,
+        scale=history.applied_nm[fitted] if with_torque else None,
     )
 
 
-def _ripple(history: History, fitted: Flags, residual: Floats) -> tuple[float, FreeForm | None]:
+def _along_twist(
+    history: History, fitted: Flags, residual: Floats
+) -> tuple[float, UnnamedShape | None]:
+    """Strongest sinusoid along the twist beyond the free play."""
     twist = history.angle_deg[fitted] - history.side[fitted] * history.free_play_deg
     span = float(np.ptp(twist))
     if len(twist) < 60 or span <= 0:
@@ -88,7 +106,7 @@ def _ripple(history: History, fitted: Flags, residual: Floats) -> tuple[float, F
         lowest=CYCLES / cells,
         highest=FINEST / cells,
         unit=step,
-        family=RIPPLE,
+        family=ALONG_TWIST,
         place="with {:.4g} cycles a degree, over the whole range",
         clock=lambda h: h.angle_deg - h.side * h.free_play_deg,
     )
@@ -106,8 +124,33 @@ def _strongest(
     clock: Callable[[History], Floats],
     factor: Callable[[History], Floats] | None = None,
     scale: Floats | None = None,
-) -> tuple[float, FreeForm | None]:
-    """Strongest frequency between two limits [cycles a cell]."""
+) -> tuple[float, UnnamedShape | None]:
+    """Strongest frequency of a residual between two limits.
+
+    Parameters
+    ----------
+    cell : ndarray of int, shape (fitted,)
+        Place of each row along the clock, in cells of equal size.
+    residual : ndarray, shape (fitted,)
+        White residual of unit variance.
+    lowest, highest : float
+        Limits of the frequency [cycles a cell].
+    unit : float
+        Size of a cell [unit of the clock].
+    family, place : str
+        Words for the result; ``place`` takes the frequency.
+    clock : callable
+        From a load history of n rows to what the phase is proportional to, shape (n,).
+    factor : callable, optional
+        From a load history to a factor of the amplitude, shape (n,).
+    scale : ndarray, shape (fitted,), optional
+        The same factor on the fitted rows, in any unit.
+
+    Returns
+    -------
+    float, UnnamedShape or None
+        Evidence [nat], and cosine and sine of the frequency.
+    """
     count = len(residual)
     if scale is not None:
         residual = residual * scale / np.sqrt(np.mean(scale**2))
@@ -121,7 +164,7 @@ def _strongest(
     power = power / np.maximum(_floor(power), 1.0)
     best = int(np.argmax(np.where(usable, power, 0.0)))
     independent = max(float(np.mean(usable)) * (int(cell.max()) + 1) / 2.0, 1.0)
-    value = float(power[best] - np.log(3.5 * independent) - CAUTION)
+    value = float(power[best] - np.log(3.5 * independent) - PRIOR_PENALTY)
     chosen = float(frequency[best]) / unit
 
     def columns(h: History) -> Floats:
@@ -129,7 +172,7 @@ def _strongest(
         waves = np.column_stack([np.cos(angle), np.sin(angle)])
         return waves if factor is None else waves * factor(h)[:, None]
 
-    return max(value, 0.0), FreeForm(family, place.format(chosen), columns)
+    return max(value, 0.0), UnnamedShape(family, place.format(chosen), columns)
 
 
 def _floor(power: Floats) -> Floats:
@@ -142,7 +185,19 @@ def _floor(power: Floats) -> Floats:
     return np.asarray(np.interp(np.arange(len(power)), middle, level), dtype=np.float64)
 
 
-def null_wave(count: int, rng: np.random.Generator) -> Floats:
-    """Evidence of the strongest sinusoid in white noise: the largest of three Gumbel variables."""
-    gumbel = -np.log(-np.log(rng.uniform(1e-12, 1.0, (3, count))))
-    return np.asarray(np.maximum(gumbel.max(axis=0) - CAUTION, 0.0))
+def null_evidence(count: int, rng: np.random.Generator) -> Floats:
+    """Evidence of the strongest sinusoid in white noise: the largest of three Gumbel variables.
+
+    Parameters
+    ----------
+    count : int
+        Number of draws.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        In nat.
+    """
+    largest = gumbel_r.ppf(rng.uniform(1e-12, 1.0, (len(FAMILIES), count))).max(axis=0)
+    return np.asarray(np.maximum(largest - PRIOR_PENALTY, 0.0))

@@ -1,28 +1,29 @@
-"""When to say that something is missing: every hypothesis against its own null, all together.
+"""The alarm that something is missing: all hypotheses tested together at one level.
 
-Evidences of different hypotheses have different null distributions: one that averages over twenty
-shapes hardly ever reaches what a single column reaches by chance. Each is therefore measured from
-its own null quantile, shapes without a name pay a little more, and the largest excess is judged
-against the largest excess of recordings with nothing missing.
+Evidences of different hypotheses are distributed differently where nothing is missing: one that
+averages over twenty shapes hardly ever reaches what a single column reaches by chance. Each is
+therefore counted from a quantile of its own distribution, unnamed shapes from a little higher, and
+the largest such excess is compared with the largest excess of recordings with nothing missing.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses import sinusoid
+from cyclosweep.diagnosis.hypotheses.sinusoid import FAMILIES, null_evidence
 from cyclosweep.diagnosis.identify.scan import Scan
 from cyclosweep.simulation.effects.history import Floats
 
 DRAWS = 1000
+"""Simulated recordings with nothing missing."""
 LEVEL = 0.01
 """Nominal level of the global test."""
-OWN = 0.02
-"""Null probability at which the excess of a hypothesis begins."""
-NAMELESS = 1.5
-"""What a shape without a name pays: the logarithm by which its share of the level is smaller."""
-FLOOR = 2.5
-"""Smallest threshold of the excess."""
+OWN_LEVEL = 0.02
+"""Probability, with nothing missing, at which the excess of a hypothesis begins."""
+UNNAMED_CHARGE = 1.5
+"""What an unnamed shape is charged: the logarithm by which its share of the level is smaller."""
+LEAST_THRESHOLD = 2.5
+"""Smallest threshold of the excess [nat]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,32 +45,67 @@ class Alarm:
     threshold: float
 
     @classmethod
-    def calibrate(cls, rest: Scan, rng: np.random.Generator) -> "Alarm":
-        """Draw recordings with nothing beyond the model at hand."""
-        drawn = rest.null_evidences(DRAWS, rng)
+    def calibrate(cls, scan: Scan, rng: np.random.Generator) -> "Alarm":
+        """Draw recordings with nothing beyond the baseline.
+
+        Parameters
+        ----------
+        scan : Scan
+            The library, projected on what the baseline leaves.
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        Alarm
+        """
+        drawn = scan.null_evidences(DRAWS, rng)
         start = {
-            name: tail_quantile(row, OWN) + (0.0 if _named(rest, name) else NAMELESS)
-            for name, row in zip(rest.groups, drawn, strict=True)
+            name: tail_quantile(row, OWN_LEVEL) + (0.0 if _named(scan, name) else UNNAMED_CHARGE)
+            for name, row in zip(scan.groups, drawn, strict=True)
         }
-        waves = sinusoid.null_wave(DRAWS, rng)
-        start |= dict.fromkeys(sinusoid.FAMILIES, tail_quantile(waves, OWN) + NAMELESS)
+        sinusoids = null_evidence(DRAWS, rng)
+        start |= dict.fromkeys(FAMILIES, tail_quantile(sinusoids, OWN_LEVEL) + UNNAMED_CHARGE)
         part = cls(start, np.zeros(0), np.inf)
-        maxima = part.largest(rest, drawn, waves)
-        return cls(start, maxima, max(tail_quantile(maxima, LEVEL), FLOOR))
+        maxima = part.largest(scan, drawn, sinusoids)
+        return cls(start, maxima, max(tail_quantile(maxima, LEVEL), LEAST_THRESHOLD))
 
-    def largest(self, rest: Scan, drawn: Floats, waves: Floats) -> Floats:
-        """Largest excess of each draw."""
-        begin = np.array([self.start.get(name, 0.0) for name in rest.groups])
-        wave = waves - self.start[sinusoid.FAMILIES[0]]
+    def largest(self, scan: Scan, drawn: Floats, sinusoids: Floats) -> Floats:
+        """Largest excess of each draw.
+
+        Parameters
+        ----------
+        scan : Scan
+        drawn : ndarray, shape (hypotheses, draws)
+            Evidence of each hypothesis of the library [nat].
+        sinusoids : ndarray, shape (draws,)
+            Evidence of the strongest sinusoid [nat].
+
+        Returns
+        -------
+        ndarray, shape (draws,)
+        """
+        begin = np.array([self.start.get(name, 0.0) for name in scan.groups])
         beyond = (drawn - begin[:, None]).max(axis=0, initial=-np.inf)
-        return np.asarray(np.maximum(beyond, wave))
+        return np.asarray(np.maximum(beyond, sinusoids - self.start[FAMILIES[0]]))
 
-    def null(self, rest: Scan, rng: np.random.Generator, draws: int = DRAWS) -> Floats:
-        """Largest excess in recordings in which this model is all there is."""
-        return self.largest(rest, rest.null_evidences(draws, rng), sinusoid.null_wave(draws, rng))
+    def null(self, scan: Scan, rng: np.random.Generator, draws: int = DRAWS) -> Floats:
+        """Largest excess in recordings in which one structure is all there is.
+
+        Parameters
+        ----------
+        scan : Scan
+            The library, projected on what that structure leaves.
+        rng : numpy.random.Generator
+        draws : int
+
+        Returns
+        -------
+        ndarray, shape (draws,)
+        """
+        return self.largest(scan, scan.null_evidences(draws, rng), null_evidence(draws, rng))
 
     def excess(self, name: str, evidence: float) -> float:
-        """How far a hypothesis is beyond the start of its excess."""
+        """How far the evidence of a hypothesis is beyond the start of its excess [nat]."""
         return evidence - self.start.get(name, 0.0)
 
     def p_value(self, excess: float) -> float:
@@ -78,7 +114,13 @@ class Alarm:
 
 
 def probability(null: Floats, value: float) -> float:
-    """Share of null draws at or beyond a value, never zero."""
+    """Share of null draws at or beyond a value, never zero.
+
+    Parameters
+    ----------
+    null : ndarray, shape (draws,)
+    value : float
+    """
     return float((1 + np.count_nonzero(null >= value)) / (1 + len(null)))
 
 
@@ -86,6 +128,12 @@ def tail_quantile(values: Floats, level: float) -> float:
     """Value exceeded with a small probability, by the exponential tail of the largest draws.
 
     The tail of an evidence falls by a factor of e per nat, near enough to steady the estimate.
+
+    Parameters
+    ----------
+    values : ndarray, shape (draws,)
+    level : float
+        Probability of a larger value.
     """
     within = max(level, 0.03)
     edge = float(np.quantile(values, 1.0 - within))
@@ -94,5 +142,6 @@ def tail_quantile(values: Floats, level: float) -> float:
     return edge + scale * float(np.log(within / level))
 
 
-def _named(rest: Scan, name: str) -> bool:
-    return bool(rest.library.signatures[rest.groups[name][0]].named)
+def _named(scan: Scan, name: str) -> bool:
+    """Whether a hypothesis is a named effect."""
+    return bool(scan.library.signatures[scan.groups[name][0]].named)

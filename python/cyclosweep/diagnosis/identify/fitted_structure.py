@@ -255,8 +255,8 @@ class FittedStructure(ABC):
             return np.array([term.amplitude < 0])
         values = self.beta[self.column_range(index)]
         if term.effect is None:
-            assert term.free is not None
-            return (values < 0) & term.free.positive
+            assert term.unnamed is not None
+            return (values < 0) & term.unnamed.positive
         bounds = term.effect.amplitudes(term.shape)[: len(values)]
         lower = np.array([p.lower for p in bounds]) - 1e-12
         upper = np.array([p.upper for p in bounds])

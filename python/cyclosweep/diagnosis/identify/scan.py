@@ -13,10 +13,17 @@ SEEN = 1e-4
 
 
 def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
-    """Log evidence of a gain by a signature of this projected rank, under an empirical-Bayes prior.
+    """Log evidence of a gain, under an empirical-Bayes prior of the amplitudes [nat].
 
     ``chi2/2 - k/2 - (k/2) ln(chi2/k)``, zero where the gain is below its expectation: the
     likelihood ratio averaged over amplitudes of the best-fitting size.
+
+    Parameters
+    ----------
+    chi2 : float or ndarray
+        Chi-squared that some columns take away.
+    rank : float or ndarray
+        Projected rank k of these columns.
     """
     chi2, rank = np.asarray(chi2, dtype=np.float64), np.asarray(rank, dtype=np.float64)
     safe = np.maximum(chi2, 1e-12)
@@ -24,13 +31,19 @@ def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
     return np.where((chi2 > rank) & (rank > 0), value, 0.0)
 
 
-def price_of_vector(size: Floats, information: Floats) -> float:
-    """Log evidence that a vector of amplitudes costs, every direction as likely as any other.
+def vector_penalty(size: Floats, information: Floats) -> float:
+    """Log evidence that a vector of amplitudes is charged, all directions equally likely [nat].
 
     The components are independent and normal beforehand, of the spread that suits them best. A
-    direction that must be met within a hair, as where one component shows a hundred times more
-    than the other, costs the odds against meeting it; a component that does not show at all costs
-    nothing.
+    direction that must be met closely, as where one component shows a hundred times more than the
+    other, is charged the odds against meeting it; a component that does not show at all, nothing.
+
+    Parameters
+    ----------
+    size : ndarray, shape (k,)
+        Amplitudes.
+    information : ndarray, shape (k, k)
+        Inverse of their covariance.
     """
     strength, axes = np.linalg.eigh(information)
     strength = np.maximum(strength, 0.0)
@@ -44,30 +57,40 @@ def price_of_vector(size: Floats, information: Floats) -> float:
     return float(np.min(0.5 * np.sum(np.log(seen) + gain / seen, axis=1)))
 
 
-def price_of_choice(information: Floats, ranges: Floats) -> float:
-    """Log of how many values of some parameters a recording tells apart within their ranges.
+def shape_choice_penalty(information: Floats, ranges: Floats) -> float:
+    """Log of how many values of some parameters a recording tells apart within their ranges [nat].
 
     Laplace's approximation: the range over the error; nothing for what it does not determine.
+
+    Parameters
+    ----------
+    information : ndarray, shape (k, k)
+        Inverse of the parameters' covariance.
+    ranges : ndarray, shape (k,)
+        Range of each parameter in the library.
     """
-    told = np.maximum(np.linalg.eigvalsh(information * np.outer(ranges, ranges)), 0.0)
-    return float(0.5 * np.sum(np.log1p(told / (2.0 * np.pi))))
+    known = np.maximum(np.linalg.eigvalsh(information * np.outer(ranges, ranges)), 0.0)
+    return float(0.5 * np.sum(np.log1p(known / (2.0 * np.pi))))
 
 
 def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
-    """Twice the log-likelihood gained by taking chi2 away from an excess over pure noise.
+    """Twice the log-likelihood gained by taking chi-squared away from an excess over pure noise.
 
     The noise is known with so many degrees of freedom only, so gains count by the logarithm; they
     add up over nested models, whatever the order.
+
+    Parameters
+    ----------
+    chi2 : ndarray
+        Chi-squared taken away.
+    excess : float
+        Chi-squared beyond what noise explains.
+    freedom : float
+        Degrees of freedom with which the noise is known.
     """
     before = np.log1p(np.maximum(excess, chi2) / freedom)
     after = np.log1p(np.maximum(excess - chi2, 0.0) / freedom)
     return np.asarray(freedom * (before - after))
-
-
-def average_evidence(values: Floats) -> float:
-    """Log of the average likelihood over shapes."""
-    top = float(values.max())
-    return top + float(np.log(np.mean(np.exp(values - top))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +136,11 @@ class Scan:
 
     def gains(self, score: Floats) -> Floats:
         """Chi-squared that each signature takes away.
+
+        Parameters
+        ----------
+        score : ndarray, shape (k,) or (k, draws)
+            Product of each projected column with a white residual.
 
         Returns
         -------
@@ -161,7 +189,17 @@ class Scan:
         return found
 
     def evidences(self, gains: Floats) -> Floats:
-        """Evidence of each hypothesis averaged over its shapes, shape (hypotheses, ...)."""
+        """Evidence of each hypothesis, averaged over its shapes [nat].
+
+        Parameters
+        ----------
+        gains : ndarray, shape (signatures,) or (signatures, draws)
+            Chi-squared that each signature takes away.
+
+        Returns
+        -------
+        ndarray, shape (hypotheses,) or (hypotheses, draws)
+        """
         ranks = self.ranks.reshape((-1,) + (1,) * (gains.ndim - 1))
         each = evidence(gains, ranks)
         rows = []
@@ -202,7 +240,18 @@ class Scan:
         return np.asarray(vectors[:, keep] * np.sqrt(values[keep]))
 
     def draws(self, count: int, rng: np.random.Generator) -> Floats:
-        """Scores of recordings with nothing beyond the model at hand, shape (k, count)."""
+        """Scores of recordings with nothing beyond the model at hand.
+
+        Parameters
+        ----------
+        count : int
+            Number of draws.
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        ndarray, shape (k, count)
+        """
         root = self._root
         score = root @ rng.standard_normal((root.shape[1], count))
         if self.freedom < 1000:
@@ -210,7 +259,13 @@ class Scan:
         return np.asarray(score)
 
     def null_evidences(self, count: int, rng: np.random.Generator) -> Floats:
-        """Evidence of every hypothesis in recordings with nothing more to find.
+        """Evidence of every hypothesis in recordings with nothing more to find [nat].
+
+        Parameters
+        ----------
+        count : int
+            Number of draws.
+        rng : numpy.random.Generator
 
         Returns
         -------

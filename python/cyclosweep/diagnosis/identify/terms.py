@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.freeform import FreeForm
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
 
@@ -19,7 +19,7 @@ class Term:
         The effect; None for an unnamed shape.
     shape : mapping of str to float
         Values of the parameters that enter the twist nonlinearly.
-    free : FreeForm or None
+    unnamed : UnnamedShape or None
         The unnamed shape.
     amplitude : float
         Friction limit of an effect on slip elements [N m, or a share of the torque]. Amplitudes of
@@ -28,16 +28,16 @@ class Term:
 
     effect: Effect | None
     shape: Shape
-    free: FreeForm | None = None
+    unnamed: UnnamedShape | None = None
     amplitude: float = 0.0
 
     @property
     def name(self) -> str:
-        """Name of the effect, or family of the free form."""
+        """Name of the effect, or family of the unnamed shape."""
         if self.effect is not None:
             return self.effect.name
-        assert self.free is not None
-        return self.free.family
+        assert self.unnamed is not None
+        return self.unnamed.family
 
     @property
     def slips(self) -> bool:
@@ -48,8 +48,8 @@ class Term:
         """Columns for unit amplitudes [deg]."""
         if self.effect is not None:
             return self.effect.columns(history, self.shape)
-        assert self.free is not None
-        return self.free.make(history)
+        assert self.unnamed is not None
+        return self.unnamed.make(history)
 
     def friction_limit(self, history: History) -> Floats:
         """Limit of a friction along the path, shape (n,) [N m]."""

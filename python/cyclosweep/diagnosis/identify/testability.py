@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import line_design
 from cyclosweep.simulation.effects import find
@@ -69,19 +70,19 @@ def testability(
     """Judge every testable named effect against the residual of a candidate."""
     fitted = candidate.fit
     raw = _recalibration(fitted)(search.library.columns)
-    rest = candidate.rest
+    scan = candidate.scan
     out: list[Testability] = []
     accepted = set(fitted.names)
-    for name, members in rest.groups.items():
-        if rest.library.signatures[members[0]].effect is None or name in accepted:
+    for name, members in scan.groups.items():
+        if scan.library.signatures[members[0]].effect is None or name in accepted:
             continue
         upper, estimate, detect, absorbed = 0.0, 0.0, np.inf, 1.0
         best_gain = -1.0
         for index in members:
-            signature = rest.library.signatures[index]
+            signature = scan.library.signatures[index]
             part = slice(signature.first, signature.stop)
-            transform = rest.transforms[index]
-            z = transform.T @ rest.score[part]
+            transform = scan.transforms[index]
+            z = transform.T @ scan.score[part]
             rows = raw[:, part] @ transform
             spreads = np.sqrt(np.sum(rows**2, axis=1))
             shape = rows @ z
@@ -94,8 +95,8 @@ def testability(
                 best_gain, estimate = gain, peak
             need = np.sqrt(2.0 * search.threshold) + 1.28
             detect = min(detect, float(spreads.max()) * need / np.sqrt(transform.shape[1]))
-            before = float(np.sum(rest.energy[part]))
-            after = float(np.trace(rest.gram[part, part]))
+            before = float(np.sum(scan.energy[part]))
+            after = float(np.trace(scan.gram[part, part]))
             absorbed = min(absorbed, 1.0 - after / max(before, 1e-300))
         out.append(
             Testability(
@@ -144,7 +145,7 @@ def hidden_effects(search: Search) -> list[dict[str, str]]:
     out = [{"name": n, "reason": r, "needs": w} for n, r, w in ALWAYS_HIDDEN]
     for name, reason in search.library.untestable.items():
         out.append({"name": name, "reason": reason, "needs": find(name).shown_by})
-    shown = set(search.baseline.rest.groups)
+    shown = set(search.baseline.scan.groups)
     for name in {b.hypothesis for b in search.library.signatures if b.named} - shown:
         out.append(
             {

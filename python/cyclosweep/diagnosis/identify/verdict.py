@@ -5,7 +5,8 @@ from typing import Literal
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability
 
 Verdict = Literal[
@@ -50,7 +51,7 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
 
     ``bounds`` are the testable effects at the baseline, for the case that nothing is found.
     """
-    if search.baseline.left < search.threshold:
+    if search.baseline.largest_excess < search.threshold:
         clear = bool(bounds) and all(b.upper95_deg < tolerance_deg for b in bounds)
         return Decision("NOTHING_MISSING" if clear else "INSUFFICIENT_DATA", None, [], False)
     structures = search.explanations()

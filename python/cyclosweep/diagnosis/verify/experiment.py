@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats, History

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.scan import likelihood_gain
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.simulation.effects.history import Floats
 
 TWINS = 300
@@ -23,7 +24,7 @@ def self_check(
         ``false_alarm``, ``power`` and ``confusion`` (true name -> named -> share).
     """
     rng = np.random.default_rng([search.seed, 3])
-    nothing = search.alarm.null(search.baseline.rest, rng, 2 * TWINS)
+    nothing = search.alarm.null(search.baseline.scan, rng, 2 * TWINS)
     out: dict[str, object] = {
         "false_alarm": float(np.mean(nothing > search.threshold)),
         "power": None,
@@ -57,13 +58,13 @@ def _twins(
     signal = _whitened_signal(search, parent, candidate, index)
     tangent = parent.fit.tangent
     left = signal - tangent @ (tangent.T @ signal)
-    rest = parent.rest
-    score = rest.draws(TWINS, rng) + (search.whitened.T @ left)[:, None]
+    scan = parent.scan
+    score = scan.draws(TWINS, rng) + (search.whitened.T @ left)[:, None]
     excess = float(left @ left)
-    gains = likelihood_gain(rest.gains(score), excess, search.noise.freedom)
-    names = np.array(list(rest.groups))
+    gains = likelihood_gain(scan.gains(score), excess, search.noise.freedom)
+    names = np.array(list(scan.groups))
     start = np.array([search.alarm.start.get(str(name), 0.0) for name in names])
-    values = rest.evidences(gains) - start[:, None]
+    values = scan.evidences(gains) - start[:, None]
     found = values.max(axis=0) > search.threshold
     top = names[np.argmax(values, axis=0)]
     row = {str(name): float(np.mean(found & (top == name))) for name in np.unique(top[found])}

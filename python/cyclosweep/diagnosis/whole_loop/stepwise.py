@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.search import Candidate, Search
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design

@@ -1,4 +1,7 @@
-"""Shapes without a name that compete with the named effects, so that wrong names stay away."""
+"""Unnamed shapes of a residual, such as steps, bumps and drifts, which compete with named effects.
+
+Where one of them explains the recording better than every named effect, no effect is named.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,8 +15,8 @@ from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 
 @dataclass(frozen=True, eq=False)
-class FreeForm:
-    """One shape without a name.
+class UnnamedShape:
+    """One shape of twist that is no known effect.
 
     Attributes
     ----------
@@ -22,7 +25,7 @@ class FreeForm:
     place : str
         Where it sits, in words for a reader.
     make : callable
-        Columns [deg] for a history.
+        From a load history of n rows to columns for unit amplitudes, shape (n, k) [deg].
     positive : bool
         Whether its amplitude cannot be negative.
     """
@@ -37,7 +40,7 @@ _OFFSETS = frozenset({"run offsets"})
 _LOOPS = frozenset({"hysteresis"})
 _PLACES = frozenset({"position"})
 _CURVES = frozenset({"smooth odd curve", "dial"})
-CLASSES = {
+FAMILIES_ALIKE = {
     "step of the angle": _OFFSETS,
     "slip within a run": _OFFSETS,
     "change of play": _OFFSETS | _PLACES,
@@ -58,12 +61,24 @@ CLASSES = {
     "torque and direction": _LOOPS,
     "relaxation": frozenset({"relaxation"}),
 }
-"""Families of effects from which a shape without a name cannot be told: beside it they are not
-named, for part of what they explain is its."""
+"""Families of effects that look like an unnamed shape: beside it they are not named, because part
+of what they explain belongs to it."""
 
 
-def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
-    """All shapes without a name that this recording can show."""
+def unnamed_shapes(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
+    """All unnamed shapes that a recording can show.
+
+    Parameters
+    ----------
+    history : History
+        All n rows of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+
+    Yields
+    ------
+    UnnamedShape
+    """
     yield from _steps(history, fitted)
     yield from _bumps(history)
     yield from _clips(history)
@@ -76,18 +91,30 @@ def freeforms(history: History, fitted: Flags) -> Iterator[FreeForm]:
 
 
 def clock_of(history: History) -> Floats:
-    """Time, or the number of the row where there is no clock."""
+    """Time of each row [s], or its number where there is no clock."""
     if history.time_s is None:
         return np.arange(len(history), dtype=np.float64)
     return history.time_s
 
 
 def hats(values: Floats, knots: Floats) -> Floats:
-    """Piecewise linear basis functions on the given knots."""
+    """Piecewise linear basis functions.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    knots : ndarray, shape (k,)
+        Where one of the functions is one and all others are zero.
+
+    Returns
+    -------
+    ndarray, shape (n, k)
+    """
     return np.column_stack([np.interp(values, knots, row) for row in np.eye(len(knots))])
 
 
-def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
+def _steps(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
+    """Steps of angle, play or compliance at places spread evenly over the fitted rows."""
     index = np.flatnonzero(fitted)
     count = min(60, len(index) // 8)
     if count < 1:
@@ -97,20 +124,20 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
     what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
     for place in places:
         label = f"from {what.format(clock[place])} (run {history.run[place] + 1})"
-        yield FreeForm(
+        yield UnnamedShape(
             "step of the angle",
             label,
             partial(_after, place, None),
         )
-        yield FreeForm(
+        yield UnnamedShape(
             "slip within a run",
             label + " to the end of that run",
             partial(_after, place, int(history.run[place])),
         )
         if np.any(history.side > 0) and np.any(history.side < 0):
-            yield FreeForm("change of play", label, partial(_wider_after, place))
+            yield UnnamedShape("change of play", label, partial(_wider_after, place))
     for place in places[::3]:
-        yield FreeForm(
+        yield UnnamedShape(
             "change of compliance",
             f"from {what.format(clock[place])} (run {history.run[place] + 1})",
             partial(_softer_after, place),
@@ -118,6 +145,7 @@ def _steps(history: History, fitted: Flags) -> Iterator[FreeForm]:
 
 
 def _after(place: int, run: int | None, history: History) -> Floats:
+    """One from a row on, to the end of the recording or of one run."""
     rows = np.arange(len(history)) >= place
     if run is not None:
         rows &= history.run == run
@@ -125,22 +153,27 @@ def _after(place: int, run: int | None, history: History) -> Floats:
 
 
 def _wider_after(place: int, history: History) -> Floats:
+    """More free play from a row on."""
     return np.asarray((np.arange(len(history)) >= place) * history.side)[:, None]
 
 
 def _softer_after(place: int, history: History) -> Floats:
+    """More compliance from a row on."""
     return np.asarray((np.arange(len(history)) >= place) * history.elastic_nm)[:, None]
 
 
 def _one_run(number: int, history: History) -> Floats:
+    """One during one run."""
     return np.asarray(history.run == number, dtype=np.float64)[:, None]
 
 
 def _constant(columns: Floats, history: History) -> Floats:
+    """Columns that do not depend on the path of the shaft."""
     return columns
 
 
-def _bumps(history: History) -> Iterator[FreeForm]:
+def _bumps(history: History) -> Iterator[UnnamedShape]:
+    """Bumps at a load, on both flanks or on one."""
     top = history.largest_torque_nm
     for width in (0.03, 0.06, 0.12):
         for centre in np.arange(0.05, 1.0, 1.2 * width):
@@ -148,7 +181,7 @@ def _bumps(history: History) -> Iterator[FreeForm]:
                 if flank and not np.any(history.side == flank):
                     continue
                 where = "" if flank == 0 else f" {'positive' if flank > 0 else 'negative'}"
-                yield FreeForm(
+                yield UnnamedShape(
                     "bump at a load",
                     f"near{where} {centre * top:.3g} N m",
                     partial(_bump, centre=centre * top, width=width * top, flank=flank),
@@ -156,15 +189,16 @@ def _bumps(history: History) -> Iterator[FreeForm]:
 
 
 def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
+    """Bell curve about a load, centre and width in N m; flank 0 stands for both."""
     bump = np.exp(-0.5 * ((np.abs(history.applied_nm) - centre) / width) ** 2)
     return (bump * (history.side if flank == 0 else (history.side == flank)))[:, None]
 
 
-def _clips(history: History) -> Iterator[FreeForm]:
+def _clips(history: History) -> Iterator[UnnamedShape]:
     """Sensors at a limit, of the reading or of the load, on both flanks or on one."""
     widest = float(np.max(np.abs(history.angle_deg), initial=0.0))
     for share in np.linspace(0.45, 0.97, 14):
-        yield FreeForm(
+        yield UnnamedShape(
             "saturation at the end of the range",
             f"beyond {share * widest:.3g} deg",
             partial(_clipped, limit=float(share) * widest),
@@ -175,7 +209,7 @@ def _clips(history: History) -> Iterator[FreeForm]:
         for flank in (0, 1, -1):
             if flank and not np.any(history.side == flank):
                 continue
-            yield FreeForm(
+            yield UnnamedShape(
                 "saturation at the end of the range",
                 f"beyond {(flank or 1) * share * top:.3g} N m",
                 partial(_over, start=share * top, flank=flank),
@@ -184,40 +218,43 @@ def _clips(history: History) -> Iterator[FreeForm]:
 
 
 def _clipped(history: History, limit: float) -> Floats:
+    """What an angle reading that stops at a limit [deg] lacks."""
     # A sensor at its limit shows too little, never too much.
     over = np.maximum(np.abs(history.angle_deg) - limit, 0.0)
     return np.asarray(-np.sign(history.angle_deg) * over)[:, None]
 
 
 def _over(history: History, start: float, flank: int) -> Floats:
+    """Lack of twist in proportion to the load beyond a start [N m]; flank 0 stands for both."""
     over = -np.maximum(np.abs(history.applied_nm) - start, 0.0)
     here = 1.0 if flank == 0 else (history.side == flank)
     return np.asarray(over * history.side * here)[:, None]
 
 
-def _curves(history: History) -> Iterator[FreeForm]:
+def _curves(history: History) -> Iterator[UnnamedShape]:
+    """Smooth functions of load, of load and direction, of the rate, and of earlier loads."""
     top = history.largest_torque_nm
     knots = np.array([0.0, 0.08, 0.2, 0.4, 0.65, 1.0]) * top
-    yield FreeForm(
+    yield UnnamedShape(
         "smooth odd curve",
         "over the whole range of torque",
         lambda h: h.side[:, None] * hats(h.load_nm, knots),
     )
     if np.any(history.side > 0) and np.any(history.side < 0):
-        yield FreeForm(
+        yield UnnamedShape(
             "even curve", "over the whole range of torque", lambda h: hats(h.load_nm, knots)
         )
     rough = np.array([0.0, 0.3, 1.0]) * top
-    yield FreeForm(
+    yield UnnamedShape(
         "hysteresis",
         "loading against unloading",
         lambda h: h.sense[:, None] * hats(h.load_nm, rough),
     )
     if history.time_s is not None and history.usual_step_s > 0:
-        yield FreeForm("loop by rate", "where the rate is high", _rates)
+        yield UnnamedShape("loop by rate", "where the rate is high", _rates)
         longest = float(np.bincount(history.run, _lapse(history)).max())
         delays = np.geomspace(FEWEST_STEPS * history.usual_step_s, max(longest, 1e-9), 5)[:4]
-        yield FreeForm(
+        yield UnnamedShape(
             "relaxation", "at holds and after reversals", partial(_relaxing, delays=delays)
         )
 
@@ -250,7 +287,8 @@ def _relaxing(history: History, delays: Floats) -> Floats:
     )
 
 
-def _cells(history: History) -> Iterator[FreeForm]:
+def _cells(history: History) -> Iterator[UnnamedShape]:
+    """A function of load of its own for each flank and direction."""
     knots = np.linspace(0.0, 1.0, 5) * history.largest_torque_nm
 
     def cells(h: History) -> Floats:
@@ -262,49 +300,52 @@ def _cells(history: History) -> Iterator[FreeForm]:
         ]
         return np.column_stack(parts)
 
-    yield FreeForm("torque and direction", "over torque and direction", cells)
+    yield UnnamedShape("torque and direction", "over torque and direction", cells)
 
 
-def _runs(history: History) -> Iterator[FreeForm]:
+def _runs(history: History) -> Iterator[UnnamedShape]:
+    """A compliance of its own for each run, and single runs apart."""
     if not 3 <= history.run_count <= 60:
         return
     runs = np.arange(history.run_count)
-    yield FreeForm(
+    yield UnnamedShape(
         "compliance by run",
         "from run to run",
         lambda h: (h.run[:, None] == runs) * h.elastic_nm[:, None],
     )
     for number in range(history.run_count):
-        yield FreeForm(
+        yield UnnamedShape(
             "one run apart",
             f"run {number + 1}",
             partial(_one_run, number),
         )
 
 
-def _trends(history: History) -> Iterator[FreeForm]:
+def _trends(history: History) -> Iterator[UnnamedShape]:
+    """Drifts over the recording and within runs."""
     clock = clock_of(history)
     length = max(float(np.ptp(clock)), 1e-12)
     share = (clock - clock[0]) / length
     starts = clock[history.run_starts][history.run]
     since = (clock - starts) / length
-    yield FreeForm("drift in time", "over the recording", lambda h: share[:, None])
-    yield FreeForm(
+    yield UnnamedShape("drift in time", "over the recording", lambda h: share[:, None])
+    yield UnnamedShape(
         "drift in time",
         "over the recording",
         lambda h: np.column_stack([share, share**2, share**3]),
     )
     if history.run_count > 1:
-        yield FreeForm("drift within runs", "over each run", lambda h: since[:, None])
+        yield UnnamedShape("drift within runs", "over each run", lambda h: since[:, None])
     for tau in (0.02, 0.1, 0.3):
-        yield FreeForm(
+        yield UnnamedShape(
             "drift in time",
             "dying out over the recording",
             partial(_constant, np.exp(-share / tau)[:, None]),
         )
 
 
-def _windows(history: History, fitted: Flags) -> Iterator[FreeForm]:
+def _windows(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
+    """An offset of its own for each of many consecutive windows."""
     index = np.flatnonzero(fitted)
     for count in (15, 40):
         if len(index) < 12 * count:
@@ -312,14 +353,15 @@ def _windows(history: History, fitted: Flags) -> Iterator[FreeForm]:
         window = np.zeros(len(history), dtype=np.int64)
         window[index] = np.arange(len(index)) * count // len(index)
         window = np.maximum.accumulate(window)
-        yield FreeForm(
+        yield UnnamedShape(
             "wandering of the zero",
             "over the whole recording",
             partial(_constant, (window[:, None] == np.arange(count)).astype(np.float64)),
         )
 
 
-def _positions(history: History) -> Iterator[FreeForm]:
+def _positions(history: History) -> Iterator[UnnamedShape]:
+    """An offset and a compliance of its own for each position of the mesh."""
     if history.crank_deg is None:
         return
     places = np.unique(np.round(history.crank_deg % 360.0, 1))
@@ -329,7 +371,7 @@ def _positions(history: History) -> Iterator[FreeForm]:
     one = (which[:, None] == np.arange(len(places))).astype(np.float64)
     if len(places) > 7:
         # With fewer positions the first three orders of the mesh say the same.
-        yield FreeForm("position offsets", "from position to position", lambda h: one)
-    yield FreeForm(
+        yield UnnamedShape("position offsets", "from position to position", lambda h: one)
+    yield UnnamedShape(
         "compliance by position", "from position to position", lambda h: one * h.elastic_nm[:, None]
     )

@@ -1,0 +1,117 @@
+"""A candidate explanation: a fitted structure, its evidence and what its residual still shows."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import FAMILIES_ALIKE, UnnamedShape
+from cyclosweep.diagnosis.identify.alarm import Alarm
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.scan import Scan
+from cyclosweep.simulation.effects import Effect, Shape
+
+UNNAMED_PENALTY = 4.0
+"""Log prior odds against an unnamed shape."""
+OTHER_PENALTIES = {"saturation at the end of the range": 0.0} | dict.fromkeys(
+    ("relaxation", "loop by rate", "position offsets", "compliance by position"), 6.0
+)
+"""The same for unnamed shapes as common as the named effects, and for those that can take the whole
+of a named effect: creep, drag, transmission error and phase-dependent compliance need not be exact
+to be named."""
+
+
+def prior_penalty(name: str, effect: Effect | None, shape: Shape) -> float:
+    """Log prior odds against a shape, of an effect or unnamed [nat].
+
+    Parameters
+    ----------
+    name : str
+        Name of the effect, or family of the unnamed shape.
+    effect : Effect or None
+        None for an unnamed shape.
+    shape : mapping of str to float
+        Shape parameters of the effect.
+    """
+    if effect is None:
+        return OTHER_PENALTIES.get(name, UNNAMED_PENALTY)
+    return effect.caution(shape)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A structure with its joint fit and its evidence over the baseline.
+
+    Attributes
+    ----------
+    fit : FittedStructure
+        The structure, fitted jointly with the calibration.
+    gain : float
+        Log evidence over the baseline alone [nat].
+    prior : float
+        Log prior odds of the structure [nat].
+    scan : Scan
+        What the library finds in its residual.
+    sinusoid : tuple
+        Evidence [nat] and columns of the strongest sinusoid in its residual.
+    alarm : Alarm
+        Calibration of the global test.
+    """
+
+    fit: FittedStructure
+    gain: float
+    prior: float
+    scan: Scan
+    sinusoid: tuple[float, UnnamedShape | None]
+    alarm: Alarm
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of the terms."""
+        return frozenset(self.fit.names)
+
+    @property
+    def score(self) -> float:
+        """Log posterior odds over the baseline [nat]."""
+        return self.gain + self.prior
+
+    @cached_property
+    def recognised(self) -> tuple[bool, ...]:
+        """For each term whether it may be called by its effect's name.
+
+        An unnamed shape in the structure takes the name from all effects that look like it.
+        """
+        fitted = self.fit
+        own: list[int] = []
+        doubtful = set[str]()
+        for k, term in enumerate(fitted.terms):
+            effect = term.effect
+            if effect is None:
+                doubtful |= FAMILIES_ALIKE.get(term.name, frozenset())
+            elif not term.slips and not effect.telling(
+                fitted.history, term.shape, fitted.beta[fitted.column_range(k)]
+            ):
+                doubtful.add(effect.family)
+            else:
+                own.append(k)
+        return tuple(
+            k in own and term.effect is not None and term.effect.family not in doubtful
+            for k, term in enumerate(fitted.terms)
+        )
+
+    @property
+    def all_recognised(self) -> bool:
+        """Whether every term may be called by its effect's name."""
+        return all(self.recognised)
+
+    @property
+    def excesses(self) -> dict[str, float]:
+        """How far each hypothesis, in its residual, is beyond what it reaches by chance [nat]."""
+        found = {name: self.alarm.excess(name, v) for name, v in self.scan.by_hypothesis.items()}
+        value, shape = self.sinusoid
+        if shape is not None:
+            found[shape.family] = self.alarm.excess(shape.family, value)
+        return found
+
+    @property
+    def largest_excess(self) -> float:
+        """Largest excess of anything that remains in the residual [nat]."""
+        return max(max(self.excesses.values(), default=0.0), 0.0)

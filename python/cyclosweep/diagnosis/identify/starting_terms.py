@@ -1,0 +1,93 @@
+"""Terms from which the joint fit of one more hypothesis starts."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.library import Signature
+from cyclosweep.diagnosis.hypotheses.sinusoid import FAMILIES
+from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty
+from cyclosweep.diagnosis.identify.scan import Scan, evidence
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.simulation.effects import Shape
+
+DENSE = frozenset({"saturation at the end of the range", "bump at a load"})
+"""Unnamed shapes whose grid stands for what is believed beforehand."""
+MOST_CHOICE_PENALTY = 1.5
+"""What the choice of a shape is charged at most where the grid of shapes is coarse [nat]."""
+
+
+def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, float, float]]:
+    """Terms from which the fit of a structure with one more hypothesis starts.
+
+    Parameters
+    ----------
+    parent : Candidate
+        The structure to which it is added.
+    hypothesis : str
+        Name of an effect, or family of an unnamed shape.
+
+    Yields
+    ------
+    term : Term
+    rank : float
+        Number of amplitudes that the recording tells apart.
+    penalty : float
+        Log evidence that the choice of this shape among others is charged [nat].
+    """
+    if hypothesis in FAMILIES:
+        value, sinusoid = parent.sinusoid
+        assert sinusoid is not None
+        term = Term(None, {}, sinusoid)
+        yield term, 2.0, max(_sinusoid_gain(parent, term) - value, 0.0)
+        return
+    found = parent.scan
+    members = found.groups[hypothesis]
+    each = evidence(found.observed[members], found.ranks[members])
+    average = found.by_hypothesis[hypothesis]
+    signatures = [found.library.signatures[index] for index in members]
+    penalties = np.array([prior_penalty(hypothesis, s.effect, s.shape) for s in signatures])
+    rank = np.argsort(penalties - each)
+    order = members[rank]
+    first = found.library.signatures[order[0]]
+    dense = first.effect.dense if first.effect is not None else hypothesis in DENSE
+    most = np.inf if dense else MOST_CHOICE_PENALTY
+    choice = float(np.clip(each[rank[0]] - average, 0.0, most))
+    slips = first.effect is not None and first.effect.slips
+    tried = 0
+    for index in order:
+        signature = found.library.signatures[index]
+        if tried and not (slips and _far_apart(signature, first)):
+            continue
+        amplitude = _amplitude(found, signature) if slips else 0.0
+        shapes: Sequence[Shape] = [signature.shape]
+        if signature.effect is not None and not tried:
+            shapes = signature.effect.variants(parent.fit.history, signature.shape)
+        for shape in shapes:
+            term = Term(signature.effect, shape, signature.unnamed, amplitude)
+            yield term, float(found.ranks[index]), choice
+        tried += 1
+        if tried >= (2 if slips else 1):
+            return
+
+
+def _sinusoid_gain(parent: Candidate, term: Term) -> float:
+    """Evidence of the sinusoid in a residual before the penalty for its search [nat]."""
+    fitted = parent.fit
+    use, noise = fitted.problem.fitted, fitted.noise
+    _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
+    basis = orthonormal(noise.design(term.columns(fitted.history)[use], weight))
+    return float(evidence(np.sum((basis.T @ fitted.residual) ** 2), 2.0))
+
+
+def _amplitude(found: Scan, signature: Signature) -> float:
+    """Friction limit that a scan suggests for a signature."""
+    column = signature.first
+    inner = found.gram[column, column]
+    return float(max(found.score[column] / inner / signature.scale[0], 1e-6))
+
+
+def _far_apart(signature: Signature, other: Signature) -> bool:
+    """Whether two shapes of one effect are far enough apart to be worth a second start."""
+    return signature.effect is not None and signature.effect.far_apart(signature.shape, other.shape)
