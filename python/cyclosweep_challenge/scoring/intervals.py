@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,10 +48,8 @@ def share(hits: int, count: int, level: float = 0.95) -> Estimate:
     """
     if count == 0:
         return NOTHING
-    tail = 0.5 * (1.0 - level)
-    low = 0.0 if hits == 0 else float(stats.beta.ppf(tail, hits, count - hits + 1))
-    high = 1.0 if hits == count else float(stats.beta.isf(tail, hits + 1, count - hits))
-    return Estimate(hits / count, low, high, count)
+    interval = stats.binomtest(hits, count).proportion_ci(level, "exact")
+    return Estimate(hits / count, float(interval.low), float(interval.high), count)
 
 
 def share_of(flags: ArrayLike) -> Estimate:
@@ -76,26 +75,54 @@ def together(estimates: Sequence[Estimate]) -> Estimate:
     return Estimate(value, value - half, value + half, sum(e.count for e in estimates))
 
 
-def _summary(table: NDArray[np.float64], statistic: str) -> float:
-    """Mean, median, root mean square or 95th percentile of a sample."""
-    if statistic == "late":
-        return float(np.quantile(table, 0.95))
-    if statistic == "rms":
-        return float(np.sqrt(np.mean(table**2)))
-    return float(np.median(table) if statistic == "median" else np.mean(table))
+def _rms(table: NDArray[np.float64], axis: int = -1) -> NDArray[np.float64]:
+    """Root mean square along an axis."""
+    return np.asarray(np.sqrt(np.mean(table**2, axis=axis)))
+
+
+def _late(table: NDArray[np.float64], axis: int = -1) -> NDArray[np.float64]:
+    """95th percentile along an axis."""
+    return np.asarray(np.quantile(table, 0.95, axis=axis))
+
+
+STATISTICS: dict[str, Callable[..., Any]] = {
+    "mean": np.mean,
+    "median": np.median,
+    "rms": _rms,
+    "late": _late,
+}
+"""Summaries of a sample that have a bootstrap interval; ``late`` is the 95th percentile."""
+BATCH = 200_000
+"""Values of resamples that are held at a time."""
 
 
 def bootstrapped(values: ArrayLike, statistic: str = "mean", draws: int = 2000) -> Estimate:
-    """Mean, median, rms or 95th percentile ("late") with a percentile bootstrap interval."""
+    """Summary of a sample with its 95 % interval by the percentile bootstrap.
+
+    Parameters
+    ----------
+    values : array_like
+        The sample; what is not finite is left out.
+    statistic : {"mean", "median", "rms", "late"}
+        Summary, of ``STATISTICS``.
+    draws : int
+        Resamples.
+    """
     table = np.asarray(values, dtype=float)
     table = table[np.isfinite(table)]
     if table.size == 0:
         return NOTHING
-    value = _summary(table, statistic)
-    rng = np.random.default_rng(12345)
-    drawn = [
-        _summary(table[rng.integers(0, table.size, table.size)], statistic)
-        for _ in range(draws if table.size > 1 else 1)
-    ]
-    low, high = np.quantile(drawn, [0.025, 0.975])
-    return Estimate(value, float(low), float(high), int(table.size))
+    summary = STATISTICS[statistic]
+    value = float(summary(table))
+    if table.size == 1:
+        return Estimate(value, value, value, 1)
+    interval = stats.bootstrap(
+        (table,),
+        summary,
+        vectorized=True,
+        n_resamples=draws,
+        batch=max(1, BATCH // table.size),
+        method="percentile",
+        rng=np.random.default_rng(12345),
+    ).confidence_interval
+    return Estimate(value, float(interval.low), float(interval.high), int(table.size))

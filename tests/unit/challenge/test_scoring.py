@@ -13,7 +13,7 @@ from cyclosweep_challenge.scoring.calibration import calibration_error, chance_e
 from cyclosweep_challenge.scoring.confusion import confusion
 from cyclosweep_challenge.scoring.curves import detection_curves
 from cyclosweep_challenge.scoring.figures import Figure, all_figures, contest
-from cyclosweep_challenge.scoring.intervals import bootstrapped, share
+from cyclosweep_challenge.scoring.intervals import Estimate, bootstrapped, share
 from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep_challenge.scoring.power import d_for_power, relative_to_oracle
 from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves
@@ -278,3 +278,18 @@ def test_too_few_recordings_cannot_miss_a_bound_they_could_not_reach() -> None:
 def test_rms_bootstrap() -> None:
     estimate = bootstrapped([3.0, -3.0, 3.0, -3.0], "rms")
     assert estimate.value == estimate.low == estimate.high == 3.0
+
+
+@pytest.mark.parametrize(
+    ("statistic", "low", "high"),
+    [("mean", 1.0, 3.4), ("median", 0.5, 4.0), ("rms", 1.140175425099138, 3.5), ("late", 1.8, 4.0)],
+)
+def test_bootstrap_draws_what_records_before_drew(statistic: str, low: float, high: float) -> None:
+    """Bounds that the loop of earlier versions gave, with the same seed."""
+    estimate = bootstrapped([1.0, 0.5, 2.0, 3.5, 4.0], statistic)
+    assert (estimate.low, estimate.high) == pytest.approx((low, high), rel=1e-9)
+
+
+def test_one_value_has_no_spread_and_none_no_estimate() -> None:
+    assert bootstrapped([2.0, math.nan]) == Estimate(2.0, 2.0, 2.0, 1)
+    assert bootstrapped([math.inf]).count == 0
