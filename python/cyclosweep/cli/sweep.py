@@ -52,9 +52,7 @@ def sweep(
             scheduler=scheduler,
         )
     if as_json:
-        print_json(
-            {"schema": "cyclosweep.sweep.summary/1", "folder": str(out), **summary.to_json()}
-        )
+        print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
     else:
         print_tables(summary.renderables())
         print(f"{summary.rows:,} variants in {out}")
@@ -73,9 +71,7 @@ def shard(
     with interruptible(LEFT):
         summary = run(_study(study, None), out, index=index, of=of)
     if as_json:
-        print_json(
-            {"schema": "cyclosweep.sweep.summary/1", "folder": str(out), **summary.to_json()}
-        )
+        print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
     else:
         print(f"task {index} of {of}: {summary.rows:,} variants in {out}")
 

@@ -24,7 +24,7 @@ __all__ = ["COMPRESSION", "ROWS_PER_PART", "Dataset", "Part", "scan_dataset"]
 ROWS_PER_PART = 2**18
 COMPRESSION: Literal["lz4"] = "lz4"
 _FOOTER = "cyclosweep"
-_FORMAT = "cyclosweep.sweep.dataset/1"
+_FORMAT = "cyclosweep.dataset/1"
 _MANIFEST = "manifest.json"
 
 

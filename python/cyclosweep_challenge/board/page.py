@@ -13,7 +13,7 @@ from cyclosweep_challenge.board.curves import power_chart, power_series
 from cyclosweep_challenge.board.gallery import Exhibit
 from cyclosweep_challenge.board.svg import Series, chart
 from cyclosweep_challenge.board.terminal import as_text, within_reach
-from cyclosweep_challenge.scoring.figures import Figure
+from cyclosweep_challenge.scoring.criterion import Criterion
 from cyclosweep_challenge.scoring.power import PROGRAMMES
 from cyclosweep_challenge.scoring.score import Score
 from cyclosweep_challenge.trial.tiers import TIERS
@@ -37,25 +37,25 @@ td,th{border-color:#333}svg .grid{stroke:#333}}
 """
 
 
-def _state(figure: Figure) -> str:
+def _state(criterion: Criterion) -> str:
     """Cell that says whether a figure is reached."""
-    if figure.met is None:
-        return "<td></td>" if figure.target == "none" else "<td>too few cases</td>"
-    if figure.met:
+    if criterion.met is None:
+        return "<td></td>" if criterion.target == "none" else "<td>too few cases</td>"
+    if criterion.met:
         return '<td class="ok">reached</td>'
-    if figure.met_required:
+    if criterion.met_required:
         return '<td class="part">required only</td>'
     return '<td class="no">missed</td>'
 
 
-def _figures(score: Score) -> str:
+def _criteria(score: Score) -> str:
     """Table of all figures."""
     rows = "".join(
         f"<tr><td>{escape(f.name)}</td><td class=n>{as_text(f.estimate)}</td>"
         f"<td class=n>{f.estimate.count}</td>"
         f"<td>{'' if f.target == 'none' else escape(f.target)}</td>"
         f"<td>{escape(f.required)}</td>{_state(f)}</tr>"
-        for f in score.figures
+        for f in score.criteria
     )
     head = "<th>figure<th>reached [95 %]<th>cases<th>target<th>required<th>"
     return f"<table><tr>{head}</tr>{rows}</table>"
@@ -94,7 +94,7 @@ def _opponents(score: Score) -> str:
 def _calibration(score: Score) -> str:
     """Stated probabilities against frequencies."""
     bins = score.calibration
-    told = Series(
+    explanations = Series(
         "explanations",
         [b.stated for b in bins],
         [b.frequency.value for b in bins],
@@ -106,7 +106,7 @@ def _calibration(score: Score) -> str:
         "Stated probabilities",
         "stated probability",
         "share that was true",
-        [honest, told],
+        [honest, explanations],
         x_range=(0.0, 1.0),
         y_range=(0.0, 1.0),
     )
@@ -192,7 +192,7 @@ def write_page(score: Score, exhibits: Sequence[Exhibit], path: Path) -> None:
         f"<h1>Challenge: {about['cases']} concealed recordings</h1>"
         f"<p>Seed {about['seed']}, mix {escape(str(about['mix']))}. The hashes of the answers were "
         f"published before any diagnosis ran; SHA-256 over them: <code>{about['root']}</code></p>"
-        f"<h2>Figures and targets</h2>{_figures(score)}"
+        f"<h2>Figures and targets</h2>{_criteria(score)}"
         f'<h2>Power, naming, probabilities</h2><div class="row">{charts}</div>'
         f"<h2>Opponents on the same recordings</h2>{_opponents(score)}"
         f"<h2>Who is taken for whom (d above 9)</h2>{matrices}"

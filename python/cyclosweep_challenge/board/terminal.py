@@ -7,7 +7,7 @@ import math
 from rich.console import Console
 from rich.table import Table
 
-from cyclosweep_challenge.scoring.figures import Figure
+from cyclosweep_challenge.scoring.criterion import Criterion
 from cyclosweep_challenge.scoring.intervals import Estimate
 from cyclosweep_challenge.scoring.score import Score
 
@@ -27,13 +27,13 @@ def within_reach(needed: Estimate) -> str:
     return f"{value} [{min(needed.low, 20.0):.3g}, > 20]"
 
 
-def _mark(figure: Figure) -> str:
-    """Words for whether a figure is reached."""
-    if figure.met is None:
-        return "" if figure.target == "none" else "too few cases"
-    if figure.met:
+def _mark(criterion: Criterion) -> str:
+    """Words for whether a criterion is met."""
+    if criterion.met is None:
+        return "" if criterion.target == "none" else "too few cases"
+    if criterion.met:
         return "[green]reached[/green]"
-    if figure.met_required:
+    if criterion.met_required:
         return "[yellow]required only[/yellow]"
     return "[red]missed[/red]"
 
@@ -44,14 +44,14 @@ def print_board(score: Score, console: Console) -> None:
     table = Table(title=f"Challenge: {about['cases']} cases, seed {about['seed']}")
     for heading in ("figure", "reached [95 %]", "cases", "target", "required", ""):
         table.add_column(heading, justify="right" if heading == "cases" else "left")
-    for figure in score.figures:
+    for criterion in score.criteria:
         table.add_row(
-            figure.name,
-            as_text(figure.estimate),
-            str(figure.estimate.count),
-            "" if figure.target == "none" else figure.target,
-            figure.required,
-            _mark(figure),
+            criterion.name,
+            as_text(criterion.estimate),
+            str(criterion.estimate.count),
+            "" if criterion.target == "none" else criterion.target,
+            criterion.required,
+            _mark(criterion),
         )
     console.print(table)
     if score.opponents:

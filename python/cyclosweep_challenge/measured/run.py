@@ -4,37 +4,38 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import polars as pl
 from numpy.typing import NDArray
 from rich.console import Console
 
-from cyclosweep_challenge.measured.effects import (
-    CONDITIONING,
+from cyclosweep_challenge.measured.bench import Bench, Row
+from cyclosweep_challenge.measured.loops import (
     FIRST,
-    INJECTABLE,
     SECOND,
     Loops,
     as_template,
-    injected,
     left_over,
-    one_after_the_other,
-    read_loops,
     repeated_null,
-    repeated_nulls,
     repeats,
     signature,
     with_angle,
-    write_loops,
 )
-from cyclosweep_challenge.runner.diagnosing import diagnose_batch, predict_batch, read_diagnosis
-from cyclosweep_challenge.runner.work import Options, program_of, work
+from cyclosweep_challenge.measured.variants import (
+    Variant,
+    both_ramps,
+    injected_variants,
+    null_variants,
+    plain_variant,
+    shape_rng,
+    short_name,
+    warm_and_cold,
+)
+from cyclosweep_challenge.runner.work import Options
 from cyclosweep_challenge.scoring.outcome import ALARMS
 
 Array = NDArray[np.float64]
@@ -44,170 +45,7 @@ LOADED_NM = 1.0
 UNSHOWN = frozenset({"thermal_drift", "transmission_error", "phase_dependent_compliance"})
 """Effects that these files cannot show: no temperature, and one mesh position each."""
 SIZES_DEG = (0.05, 0.1, 0.2, 0.4)
-
-
-@dataclass(frozen=True)
-class Variant:
-    """One recording made of measured loops.
-
-    Attributes
-    ----------
-    key : str
-        Name of its folder.
-    file, kind, detail : str
-        Measured file, what was done with it, and to what.
-    loops : Loops
-        The recording.
-    conditioning, holdout : tuple of int
-        Ramps that condition the drive, and those kept for the verdict.
-    size_deg : float
-        Size of an injected effect after re-calibration, as rms [deg].
-    without : str
-        Effect that the diagnosis may not use; empty for none.
-    """
-
-    key: str
-    file: str
-    kind: str
-    detail: str
-    loops: Loops
-    conditioning: tuple[int, ...] = (CONDITIONING,)
-    holdout: tuple[int, ...] = ()
-    size_deg: float = 0.0
-    without: str = ""
-
-
-@dataclass(frozen=True)
-class Row:
-    """What was said of one recording.
-
-    Attributes
-    ----------
-    file, kind, detail, size_deg
-        As of `Variant`.
-    verdict : str
-        Verdict of the diagnosis.
-    named : tuple of str
-        Effects it accepted.
-    good : bool or None
-        Whether that is right, as far as one can know: for repeated loops, nothing said to be
-        missing; for a term removed, that term named; for an injected effect, it named where the
-        file as measured does not show it; for several causes confounded, no cause named that
-        the recording cannot show, and no verdict that leaves no doubt. None where nobody knows.
-    rmse_deg : float
-        Error of the repaired model on the readings it was fitted to [deg].
-    numbers : dict
-        Further figures of this row.
-    """
-
-    file: str
-    kind: str
-    detail: str
-    size_deg: float
-    verdict: str
-    named: tuple[str, ...]
-    good: bool | None
-    rmse_deg: float
-    numbers: dict[str, float] = field(default_factory=dict)
-
-
-class Bench:
-    """Folder of a run on measured loops, and how it is worked through."""
-
-    def __init__(self, out: Path, drive: Path, options: Options, console: Console) -> None:
-        self.out, self.drive, self.options, self.console = out, drive, options, console
-        self.recordings, self.results = out / "recordings", out / "diagnoses"
-
-    def diagnose(self, variants: Sequence[Variant]) -> None:
-        """Write recordings and let the diagnosis see them; what is done is not done again."""
-        jobs = []
-        for v in variants:
-            write_loops(
-                v.loops, self.recordings / v.key, self.drive.name, v.conditioning, v.holdout
-            )
-            if (self.results / v.key / "diagnosis.json").exists():
-                continue
-            removal = (self.options.removal_flag, v.without) if v.without else ()
-            flags = (*self.options.diagnose_flags, *removal)
-            some = {v.key: self.recordings / v.key}
-            arguments = (some, self.results, flags, self.options.limit_s)
-            jobs.append((diagnose_batch, (*arguments, program_of(self.options), self.drive)))
-        work(
-            "measured loops",
-            self.options.workers,
-            jobs,
-            self.console,
-            until=self.options.until,
-            processes=False,
-        )
-
-    def said(self, variant: Variant) -> dict[str, Any]:
-        """Diagnosis of a variant."""
-        return read_diagnosis(self.results, variant.key)
-
-    def named(self, variant: Variant) -> tuple[str, ...]:
-        """Effects accepted in a variant."""
-        return tuple(str(e.get("name")) for e in self.said(variant).get("effects") or [])
-
-    def model(self, variant: Variant, only: Sequence[str] | None = None) -> dict[str, Any] | None:
-        """Repaired model of a variant, with some of its effects only; None where there is none."""
-        file = self.results / variant.key / "model.json"
-        if not file.exists():
-            return None
-        content: dict[str, Any] = json.loads(file.read_text())
-        if only is not None:
-            content["effects"] = [e for e in content.get("effects", []) if e["name"] in only]
-        return content
-
-    def calibrated(self, variant: Variant) -> dict[str, Any] | None:
-        """Return the published model with the calibration that the diagnosis began from."""
-        content = self.model(variant, ())
-        parameters = (self.said(variant).get("baseline") or {}).get("parameters") or {}
-        if content is None or not isinstance(content.get("baseline"), dict):
-            return None
-        for name in content["baseline"]:
-            if name in parameters:
-                content["baseline"][name] = parameters[name]["estimate"]
-        return content
-
-    def predict(self, asked: Sequence[tuple[str, dict[str, Any] | None, Variant]]) -> list[Array]:
-        """Angles by models on the programmes of variants, all in few processes [deg]."""
-        folder = self.out / "predictions"
-        folder.mkdir(parents=True, exist_ok=True)
-        waiting = []
-        for name, content, variant in asked:
-            if content is not None:
-                model = folder / f"{name}.json"
-                model.write_text(json.dumps(content))
-                programme = self.recordings / variant.key / "program.csv"
-                waiting.append((model, programme, folder / f"{name}.csv"))
-        predict_batch(waiting, self.options.limit_s, self.options.program)
-        angles = []
-        for name, _, variant in asked:
-            file = folder / f"{name}.csv"
-            count = variant.loops.torque_nm.size
-            angle = np.full(count, np.nan)
-            if file.exists():
-                read = pl.read_csv(file)["angle_deg"].cast(pl.Float64).to_numpy()
-                angle = read if read.size == count else angle
-            angles.append(angle)
-        return angles
-
-    def row(self, variant: Variant, good: bool | None, **numbers: float) -> Row:
-        """Lay what was said beside what was done."""
-        said = self.said(variant)
-        rmse = (said.get("repaired") or {}).get("rmse_deg")
-        return Row(
-            variant.file,
-            variant.kind,
-            variant.detail,
-            variant.size_deg,
-            str(said.get("verdict", "FAILURE")),
-            self.named(variant),
-            good,
-            float(rmse) if isinstance(rmse, (int, float)) else math.nan,
-            numbers,
-        )
+"""Sizes of injected effects after re-calibration, as rms [deg]."""
 
 
 def run_measured(
@@ -264,23 +102,23 @@ def run_measured(
         console or Console(stderr=True),
     )
     chosen = files[:most_files]
-    plain = {f: _plain(f, n) for n, f in enumerate(chosen)}
-    both = {f: _both(f, n) for n, f in enumerate(chosen)}
-    nulls = [v for n, f in enumerate(chosen) for v in _nulls(f, n)]
+    plain = {f: plain_variant(f, n) for n, f in enumerate(chosen)}
+    both = {f: both_ramps(f, n) for n, f in enumerate(chosen)}
+    nulls = [v for n, f in enumerate(chosen) for v in null_variants(f, n)]
     laid = [
         v
         for n, f in enumerate(chosen)
         if repeats(repeated_null(plain[f].loops))
-        for v in _laid_over(f, n, sizes_deg, seed)
+        for v in injected_variants(f, n, sizes_deg, seed)
     ]
-    mixed = _warm_and_cold(files if most_files is None else chosen)
+    mixed = warm_and_cold(files if most_files is None else chosen)
     bench.diagnose([*plain.values(), *both.values(), *nulls, *laid, *mixed])
     rows = [bench.row(v, None) for v in both.values()]
     rows += _predicted(bench, plain)
     rows += [bench.row(v, _silent(bench, v)) for v in nulls]
     rows += _removed(bench, plain)
     rows += _found_again(bench, both, laid, seed)
-    rows += [bench.row(v, doubts(bench.said(v))) for v in mixed]
+    rows += [bench.row(v, doubts(bench.diagnosis(v))) for v in mixed]
     content = [asdict(row) for row in rows]
     (folder / "measured.json").write_text(json.dumps(_plain_numbers(content), indent=1))
     return rows
@@ -295,77 +133,18 @@ def _plain_numbers(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def short(file: Path) -> str:
-    """Name of a measured file without date and endings."""
-    return re.sub(r"^.*torqueramp_+|\.csv(\.gz)?$", "", file.name)
-
-
-def _plain(file: Path, number: int) -> Variant:
-    return Variant(
-        f"file-{number}-plain", short(file), "one ramp", "", read_loops(file), holdout=(SECOND,)
-    )
-
-
-def _both(file: Path, number: int) -> Variant:
-    return Variant(f"file-{number}-both", short(file), "both ramps", "", read_loops(file))
-
-
-def _nulls(file: Path, number: int) -> list[Variant]:
-    return [
-        Variant(f"file-{number}-null-{k:02d}", short(file), "repeated loops", words, loops, ())
-        for k, (words, loops) in enumerate(repeated_nulls(file))
-    ]
-
-
-def _rng(seed: int, number: int, name: str) -> np.random.Generator:
-    """One shape a file and effect, at every size, so that only the size differs."""
-    return np.random.default_rng([seed, number, INJECTABLE.index(name)])
-
-
-def _laid_over(file: Path, number: int, sizes_deg: Sequence[float], seed: int) -> list[Variant]:
-    loops = read_loops(file)
-    return [
-        Variant(
-            f"file-{number}-{name}-{size:g}",
-            short(file),
-            "effect injected",
-            name,
-            injected(loops, name, size, _rng(seed, number, name)),
-            size_deg=size,
-        )
-        for name in INJECTABLE
-        for size in sizes_deg
-    ]
-
-
-def _warm_and_cold(files: Sequence[Path]) -> list[Variant]:
-    """One drive run in, warm, at one position, and cold at another, as one recording."""
-    warm = [f for f in files if "runin1" in f.name and "910" in f.name]
-    cold = [f for f in files if "cold" in f.name and "910" in f.name]
-    if not warm or not cold:
-        return []
-    loops = one_after_the_other(read_loops(warm[0]), read_loops(cold[0]))
-    names = f"{short(warm[0])} and {short(cold[0])}"
-    again = (CONDITIONING, CONDITIONING + 100)
-    alone = read_loops(warm[0])
-    return [
-        Variant("warm-and-cold", names, "several causes at once", "", loops, again),
-        Variant("warm-alone", short(warm[0]), "several causes at once", "warming up", alone),
-    ]
-
-
 def _silent(bench: Bench, variant: Variant) -> bool:
-    verdict = str(bench.said(variant).get("verdict", "FAILURE"))
+    verdict = str(bench.diagnosis(variant).get("verdict", "FAILURE"))
     return verdict not in ALARMS and verdict != "FAILURE"
 
 
-def doubts(said: dict[str, Any]) -> bool:
+def doubts(diagnosis: dict[str, Any]) -> bool:
     """Whether a diagnosis of confounded causes says so and names nothing it cannot know.
 
     That no difference was found would be wrong here, too.
     """
-    named = {str(e.get("name")) for e in said.get("effects") or []}
-    return said.get("verdict") in {"AMBIGUOUS", "UNKNOWN_PHYSICS"} and not named & UNSHOWN
+    named = {str(e.get("name")) for e in diagnosis.get("effects") or []}
+    return diagnosis.get("verdict") in {"AMBIGUOUS", "UNKNOWN_PHYSICS"} and not named & UNSHOWN
 
 
 def _rms(error: Array, loops: Loops, ramp: int, *, free_datum: bool) -> float:
@@ -413,7 +192,7 @@ def _predicted(bench: Bench, plain: dict[Path, Variant]) -> list[Row]:
 
 def _other_position(one: Path, other: Path) -> bool:
     """Whether two files differ in nothing but the locking position, their last digit."""
-    a, b = short(one), short(other)
+    a, b = short_name(one), short_name(other)
     return a != b and a[:-1] == b[:-1] and a[-1].isdigit() and b[-1].isdigit()
 
 
@@ -488,7 +267,7 @@ def _found_again(
         number, plain = reference[v.file]
         # The conditioning ramp is not fitted, so that what a model says of it does not count.
         fitted, use = v.loops.only(FIRST, SECOND), np.isin(v.loops.run, (FIRST, SECOND))
-        laid_on = signature(v.detail, v.loops, _rng(seed, number, v.detail))
+        laid_on = signature(v.detail, v.loops, shape_rng(seed, number, v.detail))
         shape = left_over(fitted, laid_on[use])
         change = angle[f"{v.key}-again"] - angle[f"{plain.key}-again"]
         there = np.isfinite(change)

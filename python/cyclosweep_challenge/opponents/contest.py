@@ -1,4 +1,4 @@
-"""Opponents meet the recordings, in processes of their own, and their words are kept."""
+"""Opponents meet the recordings, in processes of their own, and their replies are stored."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing import Any
 
 from cyclosweep_challenge.opponents.ladder import error_ladder
 from cyclosweep_challenge.opponents.runs_test import runs_test
-from cyclosweep_challenge.opponents.seen import Seen
 from cyclosweep_challenge.opponents.subset import aic_subset, bic_subset
+from cyclosweep_challenge.opponents.view import RecordingView
 from cyclosweep_challenge.trial.plan import Entry
 
 CHEAP = ("runs_test", "ljung_box", "aic_subset", "bic_subset", "stlsq", "error_ladder")
@@ -65,15 +65,15 @@ def _entrants(names: Sequence[str]) -> dict[str, Callable[..., Any]]:
 def meet(recording: Path, results: Path, key: str, names: tuple[str, ...]) -> None:
     """Let opponents see one recording; those that have seen it before are left out."""
     file = results / f"{key}.json"
-    said: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
-    missing = [name for name in names if name not in said]
+    replies: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
+    missing = [name for name in names if name not in replies]
     if not missing:
         return
-    seen = Seen.read(recording)
+    view = RecordingView.read(recording)
     for name, opponent in _entrants(missing).items():
-        said[name] = asdict(opponent(seen))
+        replies[name] = asdict(opponent(view))
     partial = file.with_suffix(".tmp")
-    partial.write_text(json.dumps(said))
+    partial.write_text(json.dumps(replies))
     partial.replace(file)
 
 
@@ -93,7 +93,7 @@ def meet_opponents(
     plan : sequence of Entry
         The challenge's cases.
     recordings, results : pathlib.Path
-        Folder of the recordings, and where the opponents' words go.
+        Folder of the recordings, and where the opponents' replies go.
     who : {"all", "cheap", "none"}
         Which opponents; those whose library is absent stay away.
     costly_limit : int

@@ -8,12 +8,12 @@ import numpy as np
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
-from cyclosweep_challenge.opponents.seen import Said, Seen
+from cyclosweep_challenge.opponents.view import RecordingView, Reply
 
 POINTS = 300
 
 
-def gaussian_process(seen: Seen) -> Said:
+def gaussian_process(view: RecordingView) -> Reply:
     """Gain in log marginal likelihood over white noise, on averages of neighbouring readings.
 
     Inputs are torque, direction, run, time in the recording, position and temperature, each of
@@ -22,20 +22,20 @@ def gaussian_process(seen: Seen) -> Said:
     """
     inputs = np.column_stack(
         [
-            seen.torque_nm,
-            seen.direction * np.std(seen.torque_nm),
-            seen.run,
-            seen.time_s,
-            np.cos(np.deg2rad(seen.crank_deg)),
-            np.sin(np.deg2rad(seen.crank_deg)),
-            seen.temperature_c,
+            view.torque_nm,
+            view.direction * np.std(view.torque_nm),
+            view.run,
+            view.time_s,
+            np.cos(np.deg2rad(view.crank_deg)),
+            np.sin(np.deg2rad(view.crank_deg)),
+            view.temperature_c,
         ]
     )
     spread = inputs.std(axis=0)
     inputs = inputs[:, spread > 1e-9] / spread[spread > 1e-9]
-    blocks = np.array_split(np.arange(seen.residual.size), POINTS)
+    blocks = np.array_split(np.arange(view.residual.size), POINTS)
     x = np.array([inputs[b].mean(axis=0) for b in blocks])
-    y = np.array([seen.residual[b].mean() for b in blocks])
+    y = np.array([view.residual[b].mean() for b in blocks])
     y = (y - y.mean()) / y.std()
     start = ConstantKernel(0.3, (1e-4, 1e2)) * RBF(np.ones(x.shape[1]), (0.05, 1e3))
     kernel = start + WhiteKernel(0.7, (1e-3, 1e1))
@@ -45,4 +45,4 @@ def gaussian_process(seen: Seen) -> Said:
     white = -0.5 * y.size * (np.log(2.0 * np.pi) + 1.0)
     gain = float(process.log_marginal_likelihood_value_ - white)
     # At its defaults the richer kernel is believed if it beats white noise by its parameters.
-    return Said(gain, gain > len(kernel.theta) - 1, None)
+    return Reply(gain, gain > len(kernel.theta) - 1, None)

@@ -7,16 +7,16 @@ import warnings
 import numpy as np
 from sklearn.linear_model import LassoCV
 
-from cyclosweep_challenge.opponents.seen import Said, Seen, effects_of
+from cyclosweep_challenge.opponents.view import RecordingView, Reply, effects_of
 
 
-def lasso_cv(seen: Seen) -> Said:
+def lasso_cv(view: RecordingView) -> Reply:
     """Five-fold LassoCV on the library; its statistic is the fit's share of the variance."""
-    table, names = seen.library
-    scale = float(np.std(seen.residual))
+    table, names = view.library
+    scale = float(np.std(view.residual))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        model = LassoCV(cv=5).fit(table, seen.residual / scale)
+        model = LassoCV(cv=5).fit(table, view.residual / scale)
     chosen = np.flatnonzero(model.coef_)
     share = float(np.var(table @ model.coef_))
-    return Said(share, chosen.size > 0, effects_of(names, list(chosen)))
+    return Reply(share, chosen.size > 0, effects_of(names, list(chosen)))

@@ -7,39 +7,39 @@ import warnings
 import numpy as np
 from pysindy import STLSQ, EnsembleOptimizer
 
-from cyclosweep_challenge.opponents.seen import Said, Seen, effects_of
+from cyclosweep_challenge.opponents.view import RecordingView, Reply, effects_of
 
 THRESHOLDS = np.geomspace(0.005, 2.0, 40)
 
 
-def _prepared(seen: Seen) -> tuple[np.ndarray, np.ndarray, list[str]]:
+def _prepared(view: RecordingView) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Library and residual, both of unit spread."""
-    table, names = seen.library
-    return table, (seen.residual / np.std(seen.residual))[:, None], names
+    table, names = view.library
+    return table, (view.residual / np.std(view.residual))[:, None], names
 
 
-def stlsq(seen: Seen) -> Said:
+def stlsq(view: RecordingView) -> Reply:
     """STLSQ at its default threshold; its statistic is the largest threshold that keeps a term."""
-    table, target, names = _prepared(seen)
+    table, target, names = _prepared(view)
     largest = 0.0
     chosen = np.array([], dtype=int)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         default = STLSQ().fit(table, target).coef_[0]
         for threshold in THRESHOLDS:
-            kept = np.flatnonzero(STLSQ(threshold=threshold).fit(table, target).coef_[0])
-            if kept.size == 0:
+            surviving = np.flatnonzero(STLSQ(threshold=threshold).fit(table, target).coef_[0])
+            if surviving.size == 0:
                 break
-            largest, chosen = float(threshold), kept
+            largest, chosen = float(threshold), surviving
     picked = np.flatnonzero(default)
-    return Said(
+    return Reply(
         largest, picked.size > 0, effects_of(names, list(picked if picked.size else chosen))
     )
 
 
-def bagged_stlsq(seen: Seen) -> Said:
+def bagged_stlsq(view: RecordingView) -> Reply:
     """Twenty bagged fits; its statistic is the largest median coefficient."""
-    table, target, names = _prepared(seen)
+    table, target, names = _prepared(view)
     np.random.seed(0)  # noqa: NPY002 - PySINDy draws its bags from the global state
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -49,4 +49,4 @@ def bagged_stlsq(seen: Seen) -> Said:
     median = np.median(fits, axis=0)
     often = np.mean(fits != 0.0, axis=0)
     chosen = np.flatnonzero(often > 0.6)
-    return Said(float(np.abs(median).max()), chosen.size > 0, effects_of(names, list(chosen)))
+    return Reply(float(np.abs(median).max()), chosen.size > 0, effects_of(names, list(chosen)))

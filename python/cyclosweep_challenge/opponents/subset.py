@@ -6,26 +6,26 @@ from itertools import combinations
 
 import numpy as np
 
-from cyclosweep_challenge.opponents.seen import Said, Seen, effects_of
+from cyclosweep_challenge.opponents.view import RecordingView, Reply, effects_of
 
 LARGEST = 3
 
 
-def best_subset(seen: Seen, price: float) -> Said:
+def best_subset(view: RecordingView, cost: float) -> Reply:
     """Gain of the best subset in an information criterion.
 
     Parameters
     ----------
-    seen : Seen
+    view : RecordingView
         The recording.
-    price : float
+    cost : float
         Cost of a column in deviance: 2 for Akaike's criterion, log N for Schwarz's.
     """
-    table, names = seen.library
-    count = seen.residual.size
+    table, names = view.library
+    count = view.residual.size
     gram = table.T @ table
-    moment = table.T @ seen.residual
-    total = float(seen.residual @ seen.residual)
+    moment = table.T @ view.residual
+    total = float(view.residual @ view.residual)
     best = -np.inf
     chosen: list[int] = []
     for size in range(1, LARGEST + 1):
@@ -34,18 +34,18 @@ def best_subset(seen: Seen, price: float) -> Said:
         sides = moment[index]
         weights = np.linalg.solve(blocks, sides[..., None])[..., 0]
         left = np.maximum(total - np.sum(weights * sides, axis=1), 1e-12)
-        gain = count * np.log(total / left) - price * size
+        gain = count * np.log(total / left) - cost * size
         k = int(np.argmax(gain))
         if gain[k] > best:
             best, chosen = float(gain[k]), [int(j) for j in index[k]]
-    return Said(best, best > 0.0, effects_of(names, chosen))
+    return Reply(best, best > 0.0, effects_of(names, chosen))
 
 
-def aic_subset(seen: Seen) -> Said:
+def aic_subset(view: RecordingView) -> Reply:
     """Best subset by Akaike's criterion."""
-    return best_subset(seen, 2.0)
+    return best_subset(view, 2.0)
 
 
-def bic_subset(seen: Seen) -> Said:
+def bic_subset(view: RecordingView) -> Reply:
     """Best subset by Schwarz's criterion."""
-    return best_subset(seen, float(np.log(seen.residual.size)))
+    return best_subset(view, float(np.log(view.residual.size)))

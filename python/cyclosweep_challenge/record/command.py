@@ -17,7 +17,7 @@ from cyclosweep_challenge.measured.run import SIZES_DEG, run_measured
 from cyclosweep_challenge.record.compare import compare
 from cyclosweep_challenge.record.paper import write_pages, write_paper
 from cyclosweep_challenge.record.parts import CONTEST, CONTEST_POOR, COUNTS, FULL, SUBSET
-from cyclosweep_challenge.record.run import FLAGS, Kept, Record, run_record
+from cyclosweep_challenge.record.run import FLAGS, Record, RecordOptions, run_record
 from cyclosweep_challenge.record.verify import verify_log, verify_record
 from cyclosweep_challenge.runner.folders import alone
 from cyclosweep_challenge.runner.run import RECORD_SEED
@@ -128,8 +128,8 @@ def _make(given: argparse.Namespace, screen: Console) -> None:
         until=until,
     )
     with alone(given.out):
-        kept = Kept(options, given.keep_recordings)
-        record = Record(given.out, given.seed, size, kept, given.fresh)
+        how = RecordOptions(options, given.keep_recordings)
+        record = Record(given.out, given.seed, size, how, given.fresh)
         if not size.is_contest:
             _real_drive(given, options, screen)
         run_record(record, screen)

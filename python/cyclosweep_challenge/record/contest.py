@@ -11,8 +11,8 @@ from cyclosweep_challenge.board.terminal import within_reach
 from cyclosweep_challenge.record.markdown import Plain, table, text
 from cyclosweep_challenge.rig.noise import NOISES
 from cyclosweep_challenge.scoring.intervals import Estimate
+from cyclosweep_challenge.scoring.opponents import OURS
 from cyclosweep_challenge.scoring.power import PROGRAMMES
-from cyclosweep_challenge.scoring.rivals import OURS
 
 EVERY = "every"
 OWN = "own"

@@ -11,7 +11,7 @@ from cyclosweep_challenge.record.real import real_drive
 from cyclosweep_challenge.record.targets import judged, target_tables
 from cyclosweep_challenge.record.together import figures_over_all
 from cyclosweep_challenge.rig.specimen import VOCABULARY
-from cyclosweep_challenge.scoring.figures import OPPONENTS
+from cyclosweep_challenge.scoring.comparison import OPPONENTS
 from cyclosweep_challenge.scoring.power import PROGRAMMES
 
 

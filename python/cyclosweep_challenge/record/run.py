@@ -25,13 +25,14 @@ from cyclosweep_challenge.runner.folders import LOCK, Folders
 from cyclosweep_challenge.runner.stages import (
     diagnose,
     gallery,
-    opponents_said,
+    opponent_replies,
     predict_all,
     prepare,
     reveal_answers,
 )
 from cyclosweep_challenge.runner.work import Options, OutOfTimeError, program_of, work
-from cyclosweep_challenge.scoring.figures import Figure, timing
+from cyclosweep_challenge.scoring.criteria import timing
+from cyclosweep_challenge.scoring.criterion import Criterion
 from cyclosweep_challenge.scoring.outcome import Outcome
 from cyclosweep_challenge.scoring.score import Score, make_score
 from cyclosweep_challenge.trial.plan import Entry, make_entry
@@ -44,19 +45,19 @@ FLAGS = ("--quick",)
 
 
 @dataclass(frozen=True)
-class Kept:
+class RecordOptions:
     """How a record is made, apart from what it is made of.
 
     Attributes
     ----------
-    options : Options
+    run : Options
         Workers, batches, limits and who diagnoses.
-    recordings : bool
+    keep_recordings : bool
         Whether recordings stay on disk once their slice is done; they follow from the seed.
     """
 
-    options: Options = field(default_factory=lambda: Options(diagnose_flags=FLAGS))
-    recordings: bool = False
+    run: Options = field(default_factory=lambda: Options(diagnose_flags=FLAGS))
+    keep_recordings: bool = False
 
 
 class Record:
@@ -70,7 +71,7 @@ class Record:
         Seed; its parts use the numbers after it too.
     size : Size
         What it is made of.
-    kept : Kept, optional
+    options : RecordOptions, optional
         How it is made.
     fresh : bool
         Throw away what the folder holds.
@@ -88,14 +89,15 @@ class Record:
         out: Path,
         seed: int,
         size: Size = FULL,
-        kept: Kept | None = None,
+        options: RecordOptions | None = None,
         fresh: bool = False,
     ) -> None:
         if seed % 10:
             raise ValueError(f"seed: found {seed}, expected a multiple of ten: parts use seed + k")
         if fresh:
             _discard(out)
-        self.out, self.seed, self.size, self.kept = out, seed, size, kept or Kept()
+        self.out, self.seed, self.size = out, seed, size
+        self.options = options or RecordOptions()
         out.mkdir(parents=True, exist_ok=True)
         own = {"schema": "cyclosweep.record/1", "seed": seed, "size": asdict(size)} | dict(code())
         file = out / "record.json"
@@ -141,7 +143,7 @@ class Record:
         OutOfTimeError
             If the time is over; what is done is kept.
         """
-        folders, options = self.folders(part), self.kept.options
+        folders, options = self.folders(part), self.options.run
         plan = self.plan(part, last)
         new = plan[first:last]
         self._publish(part, first, last, new, screen)
@@ -161,7 +163,7 @@ class Record:
             last=last,
             root=diagnoses_hash(new, folders),
         )
-        if not self.kept.recordings:
+        if not self.options.keep_recordings:
             for entry in new:
                 shutil.rmtree(folders.recordings / entry.key, ignore_errors=True)
 
@@ -172,7 +174,7 @@ class Record:
         folders = self.folders(part)
         published = self.ledger.find("sealed", part.name, first)
         if published is None:
-            prepare(new, folders, self.kept.options, screen)
+            prepare(new, folders, self.options.run, screen)
         hashes = folders.hashes()
         root = root_hash((entry.key, hashes[entry.key]) for entry in new)
         if published is None:
@@ -185,7 +187,7 @@ class Record:
 
     def _time(self, some: Sequence[Entry], folders: Folders, screen: Console) -> None:
         """Diagnose some recordings once more with everything, each in a process of its own."""
-        options = self.kept.options
+        options = self.options.run
         program, target = program_of(options), self.out / "whole"
         jobs = [
             (
@@ -198,22 +200,22 @@ class Record:
         work("whole reports", options.workers, jobs, screen, until=options.until, processes=False)
 
     def outcomes(self) -> tuple[list[Outcome], dict[str, Any]]:
-        """Open the answers of all finished slices; return outcomes and the opponents' words."""
+        """Open the answers of all finished slices; return outcomes and the opponents' replies."""
         outcomes: list[Outcome] = []
-        said: dict[str, Any] = {}
+        replies: dict[str, Any] = {}
         for part in self.size.parts():
             folders, done = self.folders(part), self.ledger.done(part.name)
             plan = self.plan(part, done)
-            self._check_said(part, plan, folders)
+            self._check_diagnoses(part, plan, folders)
             for outcome in reveal_answers(plan, folders):
                 outcomes.append(replace(outcome, key=f"{part.name}/{outcome.key}"))
             known = {entry.key for entry in plan}
-            for key, words in opponents_said(folders).items():
+            for key, reply in opponent_replies(folders).items():
                 if key in known:
-                    said[f"{part.name}/{key}"] = words
-        return outcomes, said
+                    replies[f"{part.name}/{key}"] = reply
+        return outcomes, replies
 
-    def _check_said(self, part: Part, plan: Sequence[Entry], folders: Folders) -> None:
+    def _check_diagnoses(self, part: Part, plan: Sequence[Entry], folders: Folders) -> None:
         """Make sure that the kept diagnoses are those that were written down."""
         for line in self.ledger.lines:
             if line["event"] == "diagnosed" and line["part"] == part.name:
@@ -238,12 +240,12 @@ class Record:
             if not (folders.recordings / key / "recording.csv").exists():
                 make_entry(plan[key]).write(folders.recordings / key)
 
-        return gallery(there, folders, self.kept.options, again)
+        return gallery(there, folders, self.options.run, again)
 
-    def score(self, outcomes: list[Outcome], said: dict[str, Any]) -> Score:
+    def score(self, outcomes: list[Outcome], replies: dict[str, Any]) -> Score:
         """Score what is finished."""
         counts = {part.name: self.ledger.done(part.name) for part in self.size.parts()}
-        aside = [o for o in outcomes if o.key.startswith(f"{COLOURED}/")]
+        contest_only = [o for o in outcomes if o.key.startswith(f"{COLOURED}/")]
         main = [o for o in outcomes if not o.key.startswith(f"{COLOURED}/")]
         about = {
             "seed": self.seed,
@@ -251,14 +253,14 @@ class Record:
             "root": self.ledger.head,
             "parts": counts,
         }
-        return make_score(main, said, about, self.timings(main), aside)
+        return make_score(main, replies, about, self.timings(main), contest_only)
 
-    def timings(self, outcomes: Sequence[Outcome]) -> list[Figure]:
+    def timings(self, outcomes: Sequence[Outcome]) -> list[Criterion]:
         """Time of the verdict alone and of everything, and whether both say the same."""
         quick = {o.key.removeprefix("open/"): o for o in outcomes if o.key.startswith("open/")}
         whole = self.out / "whole"
         files = sorted(whole.glob("*/diagnosis.json")) if whole.exists() else []
-        said = {
+        whole_reports = {
             file.parent.name: read_diagnosis(whole, file.parent.name)
             for file in files
             if file.parent.name in quick
@@ -266,9 +268,9 @@ class Record:
         agree = [
             s.get("verdict") == quick[key].verdict
             and tuple(e["name"] for e in s.get("effects") or []) == quick[key].named
-            for key, s in said.items()
+            for key, s in whole_reports.items()
         ]
-        elapsed = [float(s["challenge_elapsed_s"]) for s in said.values()]
+        elapsed = [float(s["challenge_elapsed_s"]) for s in whole_reports.values()]
         return timing([o.elapsed_s for o in outcomes], elapsed, agree)
 
 
@@ -308,7 +310,7 @@ def run_record(record: Record, console: Console | None = None) -> Score:
         If answers, published roots or kept diagnoses were changed.
     """
     screen = console or Console(stderr=True)
-    until = record.kept.options.until
+    until = record.options.run.until
     if absent():
         screen.print(f"without their libraries (extra: challenge): {', '.join(absent())}")
     try:
@@ -319,8 +321,8 @@ def run_record(record: Record, console: Console | None = None) -> Score:
                 record.run_slice(part, first, last, screen)
     except OutOfTimeError:
         screen.print("the time is over; the same command goes on")
-    outcomes, said = record.outcomes()
-    score = record.score(outcomes, said)
+    outcomes, replies = record.outcomes()
+    score = record.score(outcomes, replies)
     _write(
         record.out / "outcomes.json", [asdict(o) | {"recognised": o.recognised} for o in outcomes]
     )

@@ -25,7 +25,7 @@ def tables_of(outcomes: Sequence[Plain]) -> dict[str, list[dict[str, Any]]]:
     }
 
 
-def _part(hits: int, count: int) -> dict[str, Any]:
+def _share(hits: int, count: int) -> dict[str, Any]:
     """Share with its exact interval as plain data."""
     return dict(vars(share(hits, count))) if count else {"value": None, "count": 0}
 
@@ -43,7 +43,7 @@ def _alarm_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
 
 
 def _alarmed(there: Sequence[Plain]) -> dict[str, Any]:
-    return _part(sum(o["verdict"] in ALARMS for o in there), len(there))
+    return _share(sum(o["verdict"] in ALARMS for o in there), len(there))
 
 
 def _right(o: Plain) -> bool:
@@ -59,7 +59,7 @@ def _tier_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
             {
                 "stratum": stratum,
                 "found": _alarmed(there),
-                "named_right": _part(sum(map(_right, there)), len(there)),
+                "named_right": _share(sum(map(_right, there)), len(there)),
                 "said": dict(Counter(o["verdict"] for o in there)),
             }
         )
@@ -86,7 +86,7 @@ def _effect_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
                     and o["causes"] == [cause]
                     and round(o["d"]) == d
                 ]
-                row[f"d{d}"] = _part(sum(map(_right, there)), len(there))
+                row[f"d{d}"] = _share(sum(map(_right, there)), len(there))
             rows.append(row)
     return rows
 
@@ -105,8 +105,8 @@ def _unknown_rows(outcomes: Sequence[Plain], tier: str) -> list[dict[str, Any]]:
             {
                 "cause": cause,
                 "found": _alarmed(here),
-                "recognised": _part(sum(o["recognised"] for o in here), len(here)),
-                "false_name": _part(sum(bool(false_names(o)) for o in here), len(here)),
+                "recognised": _share(sum(o["recognised"] for o in here), len(here)),
+                "false_name": _share(sum(bool(false_names(o)) for o in here), len(here)),
                 "names": dict(wrong.most_common(3)),
             }
         )

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from cyclosweep_challenge.record.contest import OWN
 from cyclosweep_challenge.record.markdown import Plain, table, text
-from cyclosweep_challenge.scoring.figures import ALIKE, share_behind
+from cyclosweep_challenge.scoring.comparison import AT_EQUAL_ALARMS, share_behind
 from cyclosweep_challenge.scoring.intervals import Estimate, together
+from cyclosweep_challenge.scoring.opponents import OURS
 from cyclosweep_challenge.scoring.power import PROGRAMMES
-from cyclosweep_challenge.scoring.rivals import OURS
 
 Key = tuple[str, str, str]
 
@@ -77,7 +77,7 @@ def figures_over_all(content: Plain, others: Sequence[Plain]) -> list[Plain]:
         share_behind(
             f"on {noise} noise",
             f"{programme}, all records",
-            ALIKE,
+            AT_EQUAL_ALARMS,
             [e.low > 0.0 for (n, p, _), e in over.items() if (n, p) == (noise, programme)],
             None,
         ).as_dict()

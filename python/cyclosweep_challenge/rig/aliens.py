@@ -34,7 +34,7 @@ class AlienShape:
     Attributes
     ----------
     moment : float
-        Part of the samples before a sudden change [-].
+        Share of the samples before a sudden change [-].
     load : float
         Torque of the bump over the largest torque, signed [-].
     width : float

@@ -19,7 +19,7 @@ class Bristles:
     Attributes
     ----------
     share : array, shape (COUNT,)
-        Part of the bundle's friction carried by each bristle; sums to one [-].
+        Share of the bundle's friction carried by each bristle; sums to one [-].
     slip_distance_deg : array, shape (COUNT,)
         Input angle a bristle bends before it slips [deg].
 

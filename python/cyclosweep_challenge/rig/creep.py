@@ -21,7 +21,7 @@ class CreepChain:
     retardation_s : array, shape (K,)
         Time in which a cell follows its load [s].
     share : array, shape (K,)
-        Part of the final delayed twist in each cell; sums to one [-].
+        Share of the final delayed twist in each cell; sums to one [-].
     """
 
     retardation_s: Array

@@ -20,7 +20,7 @@ class Datum:
     Attributes
     ----------
     retention : float
-        Part of the displacement that outlives another run [-].
+        Share of the displacement that outlives another run [-].
     last_weight : float
         Weight of the last turning point against the largest extreme of the run [-].
     exponent : float

@@ -43,13 +43,13 @@ class Noise:
     freedom : float
         Degrees of freedom of Student's law; infinite for a normal one [-].
     outlier_share, outlier_size : float
-        Part of the readings that are outliers, and their spread over sigma [-].
+        Share of the readings that are outliers, and their spread over sigma [-].
     resolution_deg : float
         Division of the dial [deg]; zero for none.
     clock_jitter_s : float
         Spread of the time between the torque's and the angle's reading [s].
     gap_share : float
-        Part of the readings lost in a few gaps [-].
+        Share of the readings lost in a few gaps [-].
     """
 
     family: str = "white"

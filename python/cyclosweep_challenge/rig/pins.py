@@ -19,7 +19,7 @@ class Pins:
     Attributes
     ----------
     compliance_share : float
-        Part of the drive's compliance that lies in the contacts rather than the shaft [-].
+        Share of the drive's compliance that lies in the contacts rather than the shaft [-].
     late_share : array, shape (L,)
         Relative stiffness of the contacts that close late, scaled by the take-up amplitude [-].
     late_clearance_deg : array, shape (L,)
@@ -92,7 +92,7 @@ class Pins:
         compliance : float
             Compliance of all contacts together, closed, seen at the input [deg/(N m)].
         take_up : float
-            Part of the stiffness that closes late [-].
+            Share of the stiffness that closes late [-].
         hertz : float
             Approach of the closed contacts at rated torque beyond the linear law [deg].
         phase : float

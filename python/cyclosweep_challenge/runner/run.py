@@ -18,7 +18,7 @@ from cyclosweep_challenge.runner.folders import Folders, alone
 from cyclosweep_challenge.runner.stages import (
     diagnose,
     gallery,
-    opponents_said,
+    opponent_replies,
     predict_all,
     prepare,
     reveal_answers,
@@ -143,7 +143,7 @@ def _run(
     )
     work("opponents", options.workers, meetings, screen, until=options.until)
     outcomes = reveal_answers(plan, folders)
-    score = make_score(outcomes, opponents_said(folders), about | {"root": root})
+    score = make_score(outcomes, opponent_replies(folders), about | {"root": root})
     (folders.out / "outcomes.json").write_text(json.dumps([asdict(o) for o in outcomes]))
     (folders.out / "score.json").write_text(json.dumps(score.as_dict(), indent=1))
     exhibits = gallery(outcomes, folders, options)

@@ -104,8 +104,8 @@ def predict_all(
         model, done = target / "model.json", target / "prediction.csv"
         later = folders.recordings / entry.key / "program.csv"
         if model.exists() and later.exists() and not done.exists():
-            said = read_diagnosis(folders.diagnoses, entry.key)
-            if said.get("verdict") == "IDENTIFIED":
+            diagnosis = read_diagnosis(folders.diagnoses, entry.key)
+            if diagnosis.get("verdict") == "IDENTIFIED":
                 waiting.append((model, later, done))
     jobs = [
         (predict_batch, (batch, options.limit_s, options.program))
@@ -143,8 +143,8 @@ def reveal_answers(plan: Sequence[Entry], folders: Folders) -> list[Outcome]:
     return outcomes
 
 
-def opponents_said(folders: Folders) -> dict[str, Any]:
-    """Return what the opponents said, by key of the case."""
+def opponent_replies(folders: Folders) -> dict[str, Any]:
+    """Return the opponents' replies, by key of the case."""
     return {
         file.stem: json.loads(file.read_text()) for file in sorted(folders.opponents.glob("*.json"))
     }
@@ -161,13 +161,13 @@ def gallery(
     items = []
     for outcome in choose(outcomes):
         make_again(outcome.key)
-        kept = folders.diagnoses / outcome.key
+        folder = folders.diagnoses / outcome.key
         recording = folders.recordings / outcome.key / "recording.csv"
-        again = kept / "again.csv"
-        if (kept / "model.json").exists() and not again.exists():
-            loads = kept / "loads.csv"
+        again = folder / "again.csv"
+        if (folder / "model.json").exists() and not again.exists():
+            loads = folder / "loads.csv"
             pl.read_csv(recording).drop("angle_deg").write_csv(loads)
-            predict(kept / "model.json", loads, again, options.limit_s, program)
+            predict(folder / "model.json", loads, again, options.limit_s, program)
         statement = str(read_diagnosis(folders.diagnoses, outcome.key).get("statement", ""))
         items.append(exhibit(outcome, statement, recording, again))
     return items

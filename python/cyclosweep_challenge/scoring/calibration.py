@@ -16,7 +16,7 @@ BINS = 10
 
 @dataclass(frozen=True)
 class Bin:
-    """Explanations whose stated probabilities are alike.
+    """Explanations with stated probabilities in one step.
 
     Attributes
     ----------
@@ -71,22 +71,22 @@ def chance_error(outcomes: Sequence[Outcome], draws: int = 200) -> Estimate:
     Of every recording at most one of the stated explanations is made true, each with its stated
     probability; the bounds hold 95 % of the draws.
     """
-    told = [
+    by_case = [
         np.array([p for _, p in o.explanations if np.isfinite(p)])
         for o in outcomes
         if any(np.isfinite(p) for _, p in o.explanations)
     ]
-    if not told:
+    if not by_case:
         return NOTHING
-    stated = np.concatenate(told)
+    stated = np.concatenate(by_case)
     place = np.clip((stated * BINS).astype(int), 0, BINS - 1)
-    start = np.cumsum([0, *[len(p) for p in told[:-1]]])
-    reach = np.concatenate([np.cumsum(p) for p in told])
-    owner = np.repeat(np.arange(len(told)), [len(p) for p in told])
+    start = np.cumsum([0, *[len(p) for p in by_case[:-1]]])
+    reach = np.concatenate([np.cumsum(p) for p in by_case])
+    owner = np.repeat(np.arange(len(by_case)), [len(p) for p in by_case])
     rng = np.random.default_rng(77)
     errors = []
     for _ in range(draws):
-        chance = rng.random(len(told))[owner]
+        chance = rng.random(len(by_case))[owner]
         first = np.concatenate([[0.0], reach[:-1]])
         first[start] = 0.0
         true = (chance < reach) & (chance >= first)

@@ -46,12 +46,12 @@ def detection_curves(outcomes: Sequence[Outcome]) -> list[Curve]:
                 o for o in outcomes if (o.tier, o.programme, o.noise) == ("C0", programme, noise)
             ]
             d = [o.d for o in single]
-            told: dict[str, list[bool]] = {
+            flagged: dict[str, list[bool]] = {
                 DETECTED: [o.alarm for o in single],
                 NAMED: [o.named_right for o in single],
                 KNOWING: [abs(o.oracle_z) > threshold for o in single],
             }
-            for who, flags in told.items():
+            for who, flags in flagged.items():
                 needed = NOTHING if who == NAMED else d_for_power(d, flags, LEVEL)
                 curves.append(Curve(who, programme, noise, needed, by_d(single, flags)))
     return curves

@@ -1,4 +1,4 @@
-"""One case's answer beside what the diagnosis said of it, as one flat record."""
+"""One case's answer beside its diagnosis, as one flat row."""
 
 from __future__ import annotations
 
@@ -163,8 +163,8 @@ class Outcome:
         known = {n for n in self.named if n in VOCABULARY}
         if known - set(self.effects):
             return False
-        told = set(self.named) | {name for names, _ in self.explanations for name in names}
-        class_only = self.alarm and bool(told) and not told & set(VOCABULARY)
+        mentioned = set(self.named) | {name for names, _ in self.explanations for name in names}
+        class_only = self.alarm and bool(mentioned) and not mentioned & set(VOCABULARY)
         return self.verdict == "UNKNOWN_PHYSICS" or class_only
 
 
@@ -173,11 +173,11 @@ def _number(value: Any) -> float:
     return float(value) if isinstance(value, (int, float)) else math.nan
 
 
-def _sizes(truth: dict[str, Any], said: dict[str, Any]) -> tuple[Sized, ...]:
+def _sizes(truth: dict[str, Any], diagnosis: dict[str, Any]) -> tuple[Sized, ...]:
     """Sizes of the effects that were named and are at work."""
     true = {c["name"]: c for c in truth["causes"] if c["kind"] == "effect"}
     found = []
-    for effect in said.get("effects") or []:
+    for effect in diagnosis.get("effects") or []:
         size = effect.get("size_deg") or {}
         bounds = size.get("ci95") or [None, None]
         if effect.get("name") in true:
@@ -197,9 +197,9 @@ def _sizes(truth: dict[str, Any], said: dict[str, Any]) -> tuple[Sized, ...]:
     return tuple(found)
 
 
-def _pulls(truth: dict[str, Any], said: dict[str, Any]) -> dict[str, float]:
+def _pulls(truth: dict[str, Any], diagnosis: dict[str, Any]) -> dict[str, float]:
     """Departure of each repaired calibration parameter from its true value, in standard errors."""
-    repaired = (said.get("repaired") or {}).get("parameters") or {}
+    repaired = (diagnosis.get("repaired") or {}).get("parameters") or {}
     pulls = {}
     for name, value in truth["calibration"].items():
         entry = repaired.get(name)
@@ -210,14 +210,14 @@ def _pulls(truth: dict[str, Any], said: dict[str, Any]) -> dict[str, float]:
     return pulls
 
 
-def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: HeldOut) -> Outcome:
+def make_outcome(truth: dict[str, Any], diagnosis: dict[str, Any], held_out: HeldOut) -> Outcome:
     """Lay one answer beside one diagnosis.
 
     Parameters
     ----------
     truth : dict
         The opened answer.
-    said : dict
+    diagnosis : dict
         The diagnosis as read from ``diagnosis.json``, or ``{"failure": message}``.
     held_out : HeldOut
         Held-out error over that of the true model [-].
@@ -230,9 +230,9 @@ def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: HeldOut)
             tuple(sorted([*(e.get("effects") or []), *(e.get("without_name") or [])])),
             _number(e.get("probability")),
         )
-        for e in said.get("explanation_set") or []
+        for e in diagnosis.get("explanation_set") or []
     )
-    mismatch = said.get("mismatch") or {}
+    mismatch = diagnosis.get("mismatch") or {}
     excess = _number(mismatch.get("evidence")) - _number(mismatch.get("threshold"))
     return Outcome(
         key=truth["key"],
@@ -247,16 +247,16 @@ def make_outcome(truth: dict[str, Any], said: dict[str, Any], held_out: HeldOut)
         removed=truth.get("removed", ""),
         d=float(least["d"]) if least else 0.0,
         oracle_z=float(least["oracle_z"]) if least else math.nan,
-        verdict=str(said.get("verdict", "FAILURE")),
-        named=tuple(str(e.get("name")) for e in said.get("effects") or []),
+        verdict=str(diagnosis.get("verdict", "FAILURE")),
+        named=tuple(str(e.get("name")) for e in diagnosis.get("effects") or []),
         explanations=explanations,
-        untestable=tuple(str(e.get("name")) for e in said.get("not_testable") or []),
+        untestable=tuple(str(e.get("name")) for e in diagnosis.get("not_testable") or []),
         p_mismatch=_number(mismatch.get("p_value")),
-        sizes=_sizes(truth, said),
-        pulls=_pulls(truth, said),
+        sizes=_sizes(truth, diagnosis),
+        pulls=_pulls(truth, diagnosis),
         held_out=held_out,
-        elapsed_s=_number(said.get("challenge_elapsed_s")),
-        failure=str(said.get("failure", "")),
+        elapsed_s=_number(diagnosis.get("challenge_elapsed_s")),
+        failure=str(diagnosis.get("failure", "")),
         rivals=truth.get("rivals", {}),
         excess=excess if math.isfinite(excess) else -math.inf,
     )

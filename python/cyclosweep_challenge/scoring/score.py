@@ -10,12 +10,14 @@ from typing import Any
 import polars as pl
 
 from cyclosweep_challenge.scoring.calibration import Bin, calibration_bins
+from cyclosweep_challenge.scoring.comparison import contest
 from cyclosweep_challenge.scoring.confusion import confusion
+from cyclosweep_challenge.scoring.criteria import all_criteria
+from cyclosweep_challenge.scoring.criterion import Criterion
 from cyclosweep_challenge.scoring.curves import Curve, detection_curves
-from cyclosweep_challenge.scoring.figures import Figure, all_figures, contest
+from cyclosweep_challenge.scoring.opponents import OpponentCurve, opponent_curves
 from cyclosweep_challenge.scoring.outcome import Outcome
 from cyclosweep_challenge.scoring.power import PROGRAMMES
-from cyclosweep_challenge.scoring.rivals import OpponentCurve, opponent_curves
 
 
 @dataclass(frozen=True)
@@ -26,8 +28,8 @@ class Score:
     ----------
     about : dict
         Seed, mix, root hash and number of cases.
-    figures : list of Figure
-        The table of figures, none left out.
+    criteria : list of Criterion
+        What was wanted and reached, none left out; under ``figures`` in JSON.
     curves : list of Curve
         Detection, naming and the oracle's detection against visibility.
     opponents : list of OpponentCurve
@@ -41,7 +43,7 @@ class Score:
     """
 
     about: dict[str, Any]
-    figures: list[Figure]
+    criteria: list[Criterion]
     curves: list[Curve]
     opponents: list[OpponentCurve]
     confusion: dict[str, pl.DataFrame]
@@ -51,9 +53,9 @@ class Score:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data that JSON can hold; not-a-number becomes null."""
         plain = {
-            "schema": "cyclosweep_challenge/2",
+            "schema": "cyclosweep.challenge/2",
             "about": self.about,
-            "figures": [figure.as_dict() for figure in self.figures],
+            "figures": [one.as_dict() for one in self.criteria],
             "curves": [
                 {
                     "who": curve.who,
@@ -86,10 +88,10 @@ def _nulled(value: Any) -> Any:
 
 def make_score(
     outcomes: Sequence[Outcome],
-    said: Mapping[str, Any],
+    replies: Mapping[str, Any],
     about: dict[str, Any],
-    further: Sequence[Figure] = (),
-    aside: Sequence[Outcome] = (),
+    further: Sequence[Criterion] = (),
+    contest_only: Sequence[Outcome] = (),
 ) -> Score:
     """Score the outcomes of a challenge.
 
@@ -97,17 +99,17 @@ def make_score(
     ----------
     outcomes : sequence of Outcome
         One for every case.
-    said : mapping
-        What the opponents said, by key of the case and name of the opponent.
+    replies : mapping
+        Replies of the opponents, by key of the case and name of the opponent.
     about : dict
         What the challenge was made of.
-    further : sequence of Figure
-        Figures that do not follow from the outcomes.
-    aside : sequence of Outcome
-        Further cases for the contest with the opponents, in no other figure.
+    further : sequence of Criterion
+        Criteria that do not follow from the outcomes.
+    contest_only : sequence of Outcome
+        Further cases for the contest with the opponents, in no other criterion.
     """
-    curves = detection_curves([*outcomes, *aside])
-    opponents = opponent_curves([*outcomes, *aside], said)
+    curves = detection_curves([*outcomes, *contest_only])
+    opponents = opponent_curves([*outcomes, *contest_only], replies)
     verdicts = (
         pl.DataFrame(
             {
@@ -123,7 +125,7 @@ def make_score(
     named = [o for o in outcomes if o.tier in {"C0", "C1", "C2", "C5-alien"} and o.d > 9.0]
     return Score(
         about=about | {"cases": len(outcomes)},
-        figures=[*all_figures(outcomes, curves), *contest(curves, opponents), *further],
+        criteria=[*all_criteria(outcomes, curves), *contest(curves, opponents), *further],
         curves=curves,
         opponents=opponents,
         confusion={

@@ -23,7 +23,7 @@ def truth(*names: str, tier: str = "C0", kind: str = "effect", **more: object) -
     }
 
 
-def said(verdict: str, *names: str, **more: object) -> dict:
+def diagnosis(verdict: str, *names: str, **more: object) -> dict:
     effects = [
         {"name": n, "rms_deg": 0.33, "size_deg": {"estimate": 0.55, "ci95": [0.45, 0.65]}}
         for n in names

@@ -60,7 +60,7 @@ def other_docstring(source: str) -> str:
         ("python/cyclosweep/sweep/space.py", lambda s: f"{s}\nMORE = 1\n"),
         ("python/cyclosweep/cli/__init__.py", lambda s: f"{s}\nMORE = 1\n"),
         ("python/cyclosweep/__init__.py", lambda s: f"{s}\nMORE = 1\n"),
-        ("python/cyclosweep_challenge/scoring/figures.py", lambda s: f"{s}\nMORE = 1\n"),
+        ("python/cyclosweep_challenge/scoring/criteria.py", lambda s: f"{s}\nMORE = 1\n"),
         ("python/cyclosweep/design/reference_87.toml", lambda s: f"# A remark.\n{s}"),
         ("rust/src/lib.rs", lambda s: f"// A remark.\n/* and /* one */ more */\n{s}"),
     ],

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cyclosweep_challenge.measured.effects import (
+from cyclosweep_challenge.measured.loops import (
     INJECTABLE,
     as_template,
     injected,
@@ -138,7 +138,7 @@ def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("said", "good"),
+    ("diagnosis", "good"),
     [
         ({"verdict": "IDENTIFIED", "effects": [{"name": "creep"}]}, False),
         ({"verdict": "UNKNOWN_PHYSICS", "effects": [{"name": "creep"}]}, True),
@@ -148,8 +148,8 @@ def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: P
         ({"failure": "exit status 1"}, False),
     ],
 )
-def test_confounded_causes_are_answered_right_by_doubt(said: dict, good: bool) -> None:
-    assert doubts(said) is good
+def test_confounded_causes_are_answered_right_by_doubt(diagnosis: dict, good: bool) -> None:
+    assert doubts(diagnosis) is good
 
 
 @pytest.mark.shared

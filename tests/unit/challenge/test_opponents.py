@@ -8,18 +8,18 @@ import pytest
 from cyclosweep_challenge import make_case
 from cyclosweep_challenge.opponents import contest
 from cyclosweep_challenge.opponents.contest import CHEAP, CHEAPEST, COSTLY, NEEDS, meet_opponents
-from cyclosweep_challenge.opponents.seen import Seen
 from cyclosweep_challenge.opponents.subset import best_subset, bic_subset
-from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves, tuned
+from cyclosweep_challenge.opponents.view import RecordingView
+from cyclosweep_challenge.scoring.opponents import OURS, opponent_curves, tuned
 from cyclosweep_challenge.trial.plan import make_plan
-from tests.unit.challenge.challenge_answers import outcome, said, truth
+from tests.unit.challenge.challenge_answers import diagnosis, outcome, truth
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 
-def seen(folder: Path, **more: object) -> Seen:
+def seen(folder: Path, **more: object) -> RecordingView:
     make_case(31, samples=1200, **more).write(folder)  # type: ignore[arg-type]
-    return Seen.read(folder)
+    return RecordingView.read(folder)
 
 
 @pytest.mark.parametrize("name", [*CHEAP, *COSTLY])
@@ -82,10 +82,10 @@ def test_tuned_threshold_lets_one_in_a_hundred_through() -> None:
     rng = np.random.default_rng(8)
     nulls, singles, words = [], [], {}
     for k in range(400):
-        nulls.append(outcome({**truth(tier="C6"), "key": f"n{k}"}, said("NOTHING_MISSING")))
+        nulls.append(outcome({**truth(tier="C6"), "key": f"n{k}"}, diagnosis("NOTHING_MISSING")))
         words[f"n{k}"] = {"x": {"score": rng.normal(), "flagged": True, "named": None}}
     for k in range(100):
-        singles.append(outcome({**truth("creep"), "key": f"s{k}"}, said("NOTHING_MISSING")))
+        singles.append(outcome({**truth("creep"), "key": f"s{k}"}, diagnosis("NOTHING_MISSING")))
         words[f"s{k}"] = {"x": {"score": rng.normal() + 5.0, "flagged": True, "named": None}}
     curve, own = opponent_curves([*nulls, *singles], words)
     assert (curve.who, own.who) == ("x", OURS)

@@ -19,7 +19,7 @@ from cyclosweep_challenge.record.compare import fits, pairs
 from cyclosweep_challenge.record.ledger import Ledger
 from cyclosweep_challenge.record.paper import write_pages, write_paper
 from cyclosweep_challenge.record.parts import COLOURED, CONTEST, CONTEST_POOR, FULL, SUBSET, Size
-from cyclosweep_challenge.record.run import Kept, Record, run_record
+from cyclosweep_challenge.record.run import Record, RecordOptions, run_record
 from cyclosweep_challenge.record.verify import verify_log, verify_record
 from cyclosweep_challenge.rig.noise import NOISES
 from cyclosweep_challenge.runner.folders import LOCK
@@ -38,7 +38,7 @@ def quiet() -> Console:
 
 def make(out: Path, **changes: object) -> dict:
     options = replace(OPTIONS, **changes)
-    run_record(Record(out, 40, SMALL, Kept(options)), quiet())
+    run_record(Record(out, 40, SMALL, RecordOptions(options)), quiet())
     return json.loads((out / "score.json").read_text())
 
 
@@ -96,7 +96,7 @@ def test_a_diagnosis_never_runs_on_what_is_not_published(
 def test_out_of_time_is_scored_and_goes_on_to_the_same_score(tmp_path: Path, whole: Path) -> None:
     empty = make(tmp_path, until=time.monotonic() - 1.0)
     assert empty["about"]["cases"] == 0
-    record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    record = Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS))
     part, first, last = next(SMALL.slices())
     record.run_slice(part, first, last, quiet())
     partial = make(tmp_path, until=time.monotonic() - 1.0)
@@ -111,7 +111,7 @@ def test_a_kill_between_two_diagnoses_costs_nothing(tmp_path: Path, whole: Path)
     # As if killed in the last slice: one diagnosis was there, one was not, and half a line.
     log.write_text("".join(lines[:-1]) + lines[-1][:20])
     shown = tmp_path / "parts" / COLOURED
-    record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    record = Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS))
     last = record.plan(record.size.parts()[-1], 2)[1]
     record_run.make_entry(last).write(shown / "recordings" / last.key)
     (shown / "diagnoses" / last.key / "diagnosis.json").unlink()
@@ -204,9 +204,9 @@ def test_words_of_the_opponents_are_laid_beside_the_right_part(whole: Path, tmp_
         file.write_text(json.dumps({"who": {"score": 1.0, "flagged": True, "named": None}}))
     # A case that is made but not yet part of a finished slice does not count.
     (tmp_path / "parts" / "open" / "opponents" / "case-000099.json").write_text("{}")
-    outcomes, said = Record(tmp_path, 40, SMALL, Kept(OPTIONS)).outcomes()
-    assert set(said) == {"null/case-000001", "open/case-000001"}
-    assert set(said) < {outcome.key for outcome in outcomes}
+    outcomes, diagnosis = Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS)).outcomes()
+    assert set(diagnosis) == {"null/case-000001", "open/case-000001"}
+    assert set(diagnosis) < {outcome.key for outcome in outcomes}
 
 
 def test_recordings_are_gone_and_made_again_for_the_check(whole: Path) -> None:
@@ -234,7 +234,7 @@ def test_page_of_record_holds_every_figure_and_the_notes(whole: Path, tmp_path: 
 
 def test_page_of_record_shows_every_contest(whole: Path, tmp_path: Path) -> None:
     shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
-    record = Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    record = Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS))
     outcomes, _ = record.outcomes()
     [null, *_] = [o for o in outcomes if o.tier == "C6"]
     [white, *_] = [o for o in outcomes if o.key.startswith("open/")]
@@ -249,11 +249,11 @@ def test_page_of_record_shows_every_contest(whole: Path, tmp_path: Path) -> None
         for k in range(24)
     ]
     every = [*nulls, *singles]
-    said = {
+    diagnosis = {
         o.key: {"who": {"score": o.d + 0.01 * k, "flagged": True, "named": None}}
         for k, o in enumerate(every)
     }
-    score = record.score(every, said).as_dict()
+    score = record.score(every, diagnosis).as_dict()
     assert {f["name"] for f in score["figures"]} >= {
         "opponents at 1 % on ar0.6 noise behind the diagnosis as it is, rich",
         "opponents at 1 % over all ten families of noise behind the diagnosis as it is, rich",
@@ -314,8 +314,8 @@ def test_a_contest_alone_has_its_page_beside_the_proof(
     size = replace(size, rich_null=4, poor_null=4, coloured_rich_null=4, coloured_poor_null=4)
     out, docs = tmp_path / "contest", tmp_path / "docs"
     write_paper(whole, docs)
-    kept = Kept(replace(OPTIONS, opponents="cheap", batch=50))
-    run_record(Record(out, 40, size, kept), quiet())
+    options = RecordOptions(replace(OPTIONS, opponents="cheap", batch=50))
+    run_record(Record(out, 40, size, options), quiet())
     page = write_paper(out, docs)
     assert page.name == "contest.md"
     words = page.read_text()
@@ -339,7 +339,7 @@ def test_a_contest_alone_has_its_page_beside_the_proof(
     # A second contest, on one programme, has a page of its own that shows no other.
     poor = replace(CONTEST_POOR, opened=24, coloured=12, samples=400, steps=1)
     poor = replace(poor, poor_null=8, coloured_poor_null=8)
-    run_record(Record(tmp_path / "poor", 60, poor, kept), quiet())
+    run_record(Record(tmp_path / "poor", 60, poor, options), quiet())
     page = write_paper(tmp_path / "poor", docs)
     assert page.name == "contest-poor.md"
     words = page.read_text()
@@ -377,7 +377,7 @@ def test_a_record_begun_before_a_part_was_thought_of_is_the_same_without_it(
     del about["size"]["rich_open"], about["size"]["poor_null"], about["size"]["programme"]
     file.write_text(json.dumps(about))
     before = [f.read_text() for f in (file, tmp_path / "PUBLISHED.jsonl")]
-    Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+    Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS))
     assert [f.read_text() for f in (file, tmp_path / "PUBLISHED.jsonl")] == before
 
 
@@ -388,18 +388,18 @@ def test_a_part_may_be_added_to_a_record_and_is_written_down(whole: Path, tmp_pa
     del about["size"][COLOURED]
     file.write_text(json.dumps(about))
     more = replace(SMALL, coloured=SMALL.coloured + 2)
-    record = Record(tmp_path, 40, more, Kept(OPTIONS))
+    record = Record(tmp_path, 40, more, RecordOptions(OPTIONS))
     assert record.ledger.lines[-1]["event"] == "part added"
     assert record.ledger.lines[-1][COLOURED] == more.coloured
     assert json.loads(file.read_text())["size"][COLOURED] == more.coloured
     with pytest.raises(ValueError, match="size: found"):
-        Record(tmp_path, 40, SMALL, Kept(OPTIONS))
+        Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS))
     # The programme of the effects is nothing that can be added.
     about = json.loads(file.read_text())
     del about["size"]["programme"]
     file.write_text(json.dumps(about))
     with pytest.raises(ValueError, match="size: found"):
-        Record(tmp_path, 40, replace(more, programme="poor"), Kept(OPTIONS))
+        Record(tmp_path, 40, replace(more, programme="poor"), RecordOptions(OPTIONS))
 
 
 def test_notes_on_another_record_say_so(whole: Path, tmp_path: Path) -> None:

@@ -10,27 +10,30 @@ from scipy import stats
 from cyclosweep_challenge.board.terminal import within_reach
 from cyclosweep_challenge.rig.noise import NOISES
 from cyclosweep_challenge.scoring.calibration import calibration_error, chance_error
+from cyclosweep_challenge.scoring.comparison import contest
 from cyclosweep_challenge.scoring.confusion import confusion
+from cyclosweep_challenge.scoring.criteria import all_criteria
+from cyclosweep_challenge.scoring.criterion import Criterion
 from cyclosweep_challenge.scoring.curves import detection_curves
-from cyclosweep_challenge.scoring.figures import Figure, all_figures, contest
 from cyclosweep_challenge.scoring.intervals import Estimate, bootstrapped, share
+from cyclosweep_challenge.scoring.opponents import OURS, opponent_curves
 from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 from cyclosweep_challenge.scoring.power import d_for_power, relative_to_oracle
-from cyclosweep_challenge.scoring.rivals import OURS, opponent_curves
+from cyclosweep_challenge.scoring.score import make_score
 from cyclosweep_challenge.trial.oracle import oracle_d
-from tests.unit.challenge.challenge_answers import outcome, said, truth
+from tests.unit.challenge.challenge_answers import diagnosis, outcome, truth
 
 
-def _table(outcomes: list[Outcome]) -> list[Figure]:
+def _table(outcomes: list[Outcome]) -> list[Criterion]:
     """The table of figures of some outcomes."""
-    return all_figures(outcomes, detection_curves(outcomes))
+    return all_criteria(outcomes, detection_curves(outcomes))
 
 
 def test_named_right_takes_exactly_the_true_set() -> None:
     t = truth("creep", "viscous_drag")
-    assert outcome(t, said("IDENTIFIED", "viscous_drag", "creep")).named_right
-    assert not outcome(t, said("IDENTIFIED", "creep")).named_right
-    assert not outcome(t, said("AMBIGUOUS", "viscous_drag", "creep")).named_right
+    assert outcome(t, diagnosis("IDENTIFIED", "viscous_drag", "creep")).named_right
+    assert not outcome(t, diagnosis("IDENTIFIED", "creep")).named_right
+    assert not outcome(t, diagnosis("AMBIGUOUS", "viscous_drag", "creep")).named_right
 
 
 @pytest.mark.parametrize(
@@ -45,16 +48,16 @@ def test_named_right_takes_exactly_the_true_set() -> None:
     ],
 )
 def test_alarms(verdict: str, alarm: bool) -> None:
-    assert outcome(truth(tier="C6"), said(verdict)).alarm is alarm
+    assert outcome(truth(tier="C6"), diagnosis(verdict)).alarm is alarm
 
 
 def test_unknown_is_recognised_by_its_verdict_or_by_a_class_and_never_with_a_false_name() -> None:
     t = truth("hum", tier="C5-alien", kind="alien")
-    assert outcome(t, said("UNKNOWN_PHYSICS")).recognised
-    assert outcome(t, said("IDENTIFIED", "periodic")).recognised
-    assert not outcome(t, said("UNKNOWN_PHYSICS", "creep")).recognised
-    assert outcome(t, said("IDENTIFIED", "creep")).false_names == ("creep",)
-    assert not outcome(t, said("NOTHING_MISSING")).recognised
+    assert outcome(t, diagnosis("UNKNOWN_PHYSICS")).recognised
+    assert outcome(t, diagnosis("IDENTIFIED", "periodic")).recognised
+    assert not outcome(t, diagnosis("UNKNOWN_PHYSICS", "creep")).recognised
+    assert outcome(t, diagnosis("IDENTIFIED", "creep")).false_names == ("creep",)
+    assert not outcome(t, diagnosis("NOTHING_MISSING")).recognised
 
 
 def test_pulls_and_sizes() -> None:
@@ -64,7 +67,9 @@ def test_pulls_and_sizes() -> None:
             "free_play_deg": {"estimate": 27.2, "std_error": 0.1},
         }
     }
-    done = make_outcome(truth("creep"), said("IDENTIFIED", "creep", repaired=repaired), HeldOut())
+    done = make_outcome(
+        truth("creep"), diagnosis("IDENTIFIED", "creep", repaired=repaired), HeldOut()
+    )
     assert done.pulls["compliance_deg_per_nm"] == pytest.approx(0.0)
     assert done.pulls["free_play_deg"] == pytest.approx(2.0)
     assert done.sizes[0].estimate_deg == 0.55
@@ -99,7 +104,7 @@ def test_power_curve_is_found_again() -> None:
 def test_calibration_error_of_honest_and_boastful_probabilities() -> None:
     def one(probability: float, right: bool) -> Outcome:
         explanation = [{"effects": ["creep" if right else "hum"], "probability": probability}]
-        return outcome(truth("creep"), said("IDENTIFIED", explanation_set=explanation))
+        return outcome(truth("creep"), diagnosis("IDENTIFIED", explanation_set=explanation))
 
     honest = [one(0.8, k % 5 != 0) for k in range(100)]
     boastful = [one(0.99, k % 2 == 0) for k in range(100)]
@@ -113,7 +118,7 @@ def test_honest_probabilities_of_few_cases_show_an_error_by_chance() -> None:
             {"effects": ["creep"], "probability": 0.7},
             {"effects": ["hum"], "probability": 0.3},
         ]
-        return outcome(truth("creep"), said("IDENTIFIED", explanation_set=explanation))
+        return outcome(truth("creep"), diagnosis("IDENTIFIED", explanation_set=explanation))
 
     few, many = (chance_error([one(k) for k in range(n)]) for n in (10, 1000))
     assert few.count == 20
@@ -125,13 +130,13 @@ def test_honest_probabilities_of_few_cases_show_an_error_by_chance() -> None:
 
 def test_an_explanation_with_a_nameless_part_is_not_the_true_set() -> None:
     parts = [{"effects": ["creep"], "without_name": ["smooth odd"], "probability": 1.0}]
-    assert not outcome(truth("creep"), said("UNKNOWN_PHYSICS", explanation_set=parts)).covered
+    assert not outcome(truth("creep"), diagnosis("UNKNOWN_PHYSICS", explanation_set=parts)).covered
     known = [{"effects": ["creep"], "without_name": [], "probability": 1.0}]
-    assert outcome(truth("creep"), said("IDENTIFIED", "creep", explanation_set=known)).covered
+    assert outcome(truth("creep"), diagnosis("IDENTIFIED", "creep", explanation_set=known)).covered
 
 
 def test_an_alarm_without_an_explanation_does_not_cover() -> None:
-    none = [outcome(truth("creep"), said("UNKNOWN_PHYSICS", explanation_set=[]))]
+    none = [outcome(truth("creep"), diagnosis("UNKNOWN_PHYSICS", explanation_set=[]))]
     found = {f.name: f.estimate for f in _table(none)}
     assert found["explanation set covers the truth, rich"].value == 0.0
 
@@ -146,7 +151,7 @@ def test_opponents_are_compared_on_the_same_files_and_ours_is_tuned_alike() -> N
         t = truth(*(["creep"] if d else []), tier=tier) | {"key": f"case-{k}"}
         for cause in t["causes"]:
             cause["d"] = d
-        outcomes.append(outcome(t, said(verdict, mismatch=mismatch)))
+        outcomes.append(outcome(t, diagnosis(verdict, mismatch=mismatch)))
         words[f"case-{k}"] = {"who": {"score": theirs, "flagged": False, "named": None}}
 
     for k in range(200):
@@ -201,11 +206,11 @@ def test_all_families_are_claimed_only_where_enough_of_each_were_seen() -> None:
     for noise in NOISES:
         for k in range(9):
             key = f"{noise}-{k}"
-            case = outcome({**truth(tier="C6"), "key": key}, said("NOTHING_MISSING"))
+            case = outcome({**truth(tier="C6"), "key": key}, diagnosis("NOTHING_MISSING"))
             outcomes.append(replace(case, noise=noise))
             words[key] = {"x": {"score": 0.1 * k, "flagged": False, "named": None}}
     for k in range(20):
-        case = outcome({**truth("creep"), "key": f"s{k}"}, said("NOTHING_MISSING"))
+        case = outcome({**truth("creep"), "key": f"s{k}"}, diagnosis("NOTHING_MISSING"))
         outcomes.append(case)
         words[f"s{k}"] = {"x": {"score": 9.0, "flagged": True, "named": None}}
     assert all(curve.every is None for curve in opponent_curves(outcomes, words))
@@ -216,7 +221,7 @@ def test_who_finds_nothing_needs_more_than_was_tried() -> None:
     for k in range(60):
         effects = ("creep",) if k < 30 else ()
         case = truth(*effects, tier="C0" if effects else "C6") | {"key": f"case-{k}"}
-        outcomes.append(outcome(case, said("NOTHING_MISSING")))
+        outcomes.append(outcome(case, diagnosis("NOTHING_MISSING")))
         words[f"case-{k}"] = {"x": {"score": float(k >= 30), "flagged": False, "named": None}}
     curve = opponent_curves(outcomes, words)[0]
     assert curve.own.needed.value == math.inf
@@ -233,10 +238,10 @@ def test_contest_without_curves_has_too_few_cases() -> None:
 def test_confusion_counts_every_single_cause_once() -> None:
     table = confusion(
         [
-            outcome(truth("creep"), said("IDENTIFIED", "creep")),
-            outcome(truth("creep"), said("IDENTIFIED", "viscous_drag")),
-            outcome(truth("creep"), said("AMBIGUOUS", "creep", "viscous_drag")),
-            outcome(truth("hum", kind="alien"), said("UNKNOWN_PHYSICS")),
+            outcome(truth("creep"), diagnosis("IDENTIFIED", "creep")),
+            outcome(truth("creep"), diagnosis("IDENTIFIED", "viscous_drag")),
+            outcome(truth("creep"), diagnosis("AMBIGUOUS", "creep", "viscous_drag")),
+            outcome(truth("hum", kind="alien"), diagnosis("UNKNOWN_PHYSICS")),
         ]
     )
     assert table["cause"].to_list() == ["creep", "hum"]
@@ -267,12 +272,21 @@ def test_every_figure_of_the_table_is_there_even_without_cases() -> None:
 
 
 def test_too_few_recordings_cannot_miss_a_bound_they_could_not_reach() -> None:
-    few = [outcome(truth(tier="C6"), said("NOTHING_MISSING")) for _ in range(50)]
+    few = [outcome(truth(tier="C6"), diagnosis("NOTHING_MISSING")) for _ in range(50)]
     many = few * 10
     assert _table(few)[0].met is None
     assert _table(many)[0].met is True
-    loud = [*many, *[outcome(truth(tier="C6"), said("IDENTIFIED", "creep")) for _ in range(20)]]
+    loud = [
+        *many,
+        *[outcome(truth(tier="C6"), diagnosis("IDENTIFIED", "creep")) for _ in range(20)],
+    ]
     assert _table(loud)[0].met is False
+
+
+def test_the_format_of_a_score_has_the_name_it_always_had() -> None:
+    plain = make_score([], {}, {"seed": 1}).as_dict()
+    assert plain["schema"] == "cyclosweep.challenge/2"
+    assert {"about", "figures", "curves", "opponents", "confusion", "calibration"} < set(plain)
 
 
 def test_rms_bootstrap() -> None:

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-ALIKE = 0.95
+DUPLICATE = 0.95
 """Correlation above which one of two columns is left out."""
 
 
 @dataclass(frozen=True)
-class Said:
-    """What an opponent says of a recording.
+class Reply:
+    """Reply of an opponent to a recording.
 
     Attributes
     ----------
@@ -37,8 +37,8 @@ class Said:
 
 
 @dataclass(frozen=True)
-class Seen:
-    """A recording as read from its files.
+class RecordingView:
+    """A recording as every opponent sees it, read from its files.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Seen:
     resolution_deg: float
 
     @classmethod
-    def read(cls, folder: Path) -> Seen:
+    def read(cls, folder: Path) -> RecordingView:
         """Read a recording from its folder."""
         table = pl.read_csv(folder / "recording.csv")
         about = tomllib.loads((folder / "recording.toml").read_text())
@@ -119,54 +119,54 @@ class Seen:
             if size[k] <= 1e-3 * max(float(before[k]), 1e-12):
                 continue
             unit = free[:, k] / size[k]
-            alike = [abs(float(np.mean(unit * free[:, j] / size[j]))) for j in chosen]
-            if max(alike, default=0.0) < ALIKE:
+            overlaps = [abs(float(np.mean(unit * free[:, j] / size[j]))) for j in chosen]
+            if max(overlaps, default=0.0) < DUPLICATE:
                 chosen.append(k)
         return free[:, chosen] / size[chosen], [raw[k][0] for k in chosen]
 
 
-def _relaxing(seen: Seen, time_constant_s: float) -> Array:
+def _relaxing(view: RecordingView, time_constant_s: float) -> Array:
     """Torque seen through a first-order lag that starts afresh with each run [N m]."""
-    out = np.zeros_like(seen.torque_nm)
+    out = np.zeros_like(view.torque_nm)
     state = 0.0
     for k in range(out.size):
-        if k == 0 or seen.run[k] != seen.run[k - 1]:
+        if k == 0 or view.run[k] != view.run[k - 1]:
             state = 0.0
         else:
-            decay = np.exp(-(seen.time_s[k] - seen.time_s[k - 1]) / time_constant_s)
-            state = seen.torque_nm[k] + (state - seen.torque_nm[k]) * decay
+            decay = np.exp(-(view.time_s[k] - view.time_s[k - 1]) / time_constant_s)
+            state = view.torque_nm[k] + (state - view.torque_nm[k]) * decay
         out[k] = state
     return out
 
 
-def _last_extreme(seen: Seen) -> Array:
+def _last_extreme(view: RecordingView) -> Array:
     """Last turning point of the run before, zero in the first [N m]."""
-    out = np.zeros_like(seen.torque_nm)
+    out = np.zeros_like(view.torque_nm)
     extreme = 0.0
-    for number in dict.fromkeys(seen.run.tolist()):
-        here = seen.run == number
+    for number in dict.fromkeys(view.run.tolist()):
+        here = view.run == number
         out[here] = extreme
-        torque = seen.torque_nm[here]
+        torque = view.torque_nm[here]
         turns = np.flatnonzero(np.diff(np.sign(np.diff(torque))) != 0)
         extreme = float(torque[turns[-1] + 1]) if turns.size else float(torque[-1])
     return out
 
 
-def _textbook(seen: Seen) -> list[tuple[str, Array]]:
+def _textbook(view: RecordingView) -> list[tuple[str, Array]]:
     """Columns that a careful engineer would offer a regression, with the effect of each."""
-    torque, side, size = seen.torque_nm, np.sign(seen.torque_nm), np.abs(seen.torque_nm)
+    torque, side, size = view.torque_nm, np.sign(view.torque_nm), np.abs(view.torque_nm)
     top = float(size.max())
     rate = np.zeros_like(torque)
-    same = np.diff(seen.run) == 0
-    rate[1:][same] = (np.diff(torque) / np.maximum(np.diff(seen.time_s), 1e-9))[same]
+    same = np.diff(view.run) == 0
+    rate[1:][same] = (np.diff(torque) / np.maximum(np.diff(view.time_s), 1e-9))[same]
     columns: list[tuple[str, Array]] = [
-        ("friction_hysteresis", seen.direction),
-        ("load_dependent_friction", seen.direction * size),
+        ("friction_hysteresis", view.direction),
+        ("load_dependent_friction", view.direction * size),
         ("contact_stiffening", side * size ** (2.0 / 3.0)),
-        ("datum_drift", _last_extreme(seen)),
-        ("creep", _relaxing(seen, 30.0) - torque),
-        ("creep", _relaxing(seen, 300.0) - torque),
-        ("thermal_drift", seen.temperature_c),
+        ("datum_drift", _last_extreme(view)),
+        ("creep", _relaxing(view, 30.0) - torque),
+        ("creep", _relaxing(view, 300.0) - torque),
+        ("thermal_drift", view.temperature_c),
         ("viscous_drag", rate),
         ("load_asymmetry", size),
         ("load_asymmetry", size**2),
@@ -174,16 +174,16 @@ def _textbook(seen: Seen) -> list[tuple[str, Array]]:
     columns += [("clearance_takeup", side * np.minimum(size, f * top)) for f in (0.25, 0.5)]
     columns += [("overload_softening", side * np.maximum(size - f * top, 0.0)) for f in (0.5, 0.7)]
     for order in (1, 2, 3):
-        phase = np.deg2rad(order * seen.crank_deg)
+        phase = np.deg2rad(order * view.crank_deg)
         columns += [("transmission_error", np.cos(phase)), ("transmission_error", np.sin(phase))]
     for order in (1, 2):
-        phase = np.deg2rad(order * seen.crank_deg)
+        phase = np.deg2rad(order * view.crank_deg)
         columns += [
             ("phase_dependent_compliance", torque * np.cos(phase)),
             ("phase_dependent_compliance", torque * np.sin(phase)),
         ]
     # The fitted angle, not the read one: that carries the very noise it would have to explain.
-    turn = np.deg2rad(seen.angle_deg - seen.residual)
+    turn = np.deg2rad(view.angle_deg - view.residual)
     columns += [("dial_eccentricity", np.cos(turn)), ("dial_eccentricity", np.sin(turn))]
     return columns
 

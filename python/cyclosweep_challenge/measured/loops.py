@@ -283,8 +283,8 @@ def write_loops(
     if conditioning:
         lines.append(f"conditioning_runs = {list(conditioning)}")
     # A programme needs no drive, and what is held out is predicted like any other ramp.
-    said = [line for line in lines if not line.startswith("drive")]
-    (folder / "program.toml").write_text("\n".join(said) + "\n")
+    programme_lines = [line for line in lines if not line.startswith("drive")]
+    (folder / "program.toml").write_text("\n".join(programme_lines) + "\n")
     if holdout:
         lines.append(f"holdout_runs = {list(holdout)}")
     if not loops.counts.all():

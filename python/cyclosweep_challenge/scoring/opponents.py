@@ -151,10 +151,10 @@ class _Nulls:
     family: NDArray[np.int64]
 
     @classmethod
-    def of(cls, who: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]) -> _Nulls:
-        """Collect what was said about some recordings."""
+    def of(cls, who: str, outcomes: Sequence[Outcome], replies: Mapping[str, Any]) -> _Nulls:
+        """Collect the replies to some recordings."""
         return cls(
-            np.array([said[o.key][who]["score"] for o in outcomes]),
+            np.array([replies[o.key][who]["score"] for o in outcomes]),
             np.array([o.excess for o in outcomes]),
             np.array([NOISES.index(o.noise) for o in outcomes]),
         )
@@ -210,7 +210,7 @@ def _needed(d: Sequence[float], scores: Array, nulls: _Nulls, draws: int = 60) -
     return Estimate(value, float(low), float(high), x.size)
 
 
-def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, alike: bool) -> Estimate:
+def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, equal_alarms: bool) -> Estimate:
     """Share that the diagnosis finds beyond an opponent's, on the same recordings."""
     if not middle:
         return NOTHING
@@ -218,7 +218,7 @@ def _ahead(middle: Sequence[Outcome], theirs: Array, nulls: _Nulls, alike: bool)
     excess = np.array([o.excess for o in middle])
 
     def difference(pick: NDArray[np.int64], drawn: _Nulls) -> float:
-        ours = excess[pick] > drawn.own_threshold if alike else alarm[pick]
+        ours = excess[pick] > drawn.own_threshold if equal_alarms else alarm[pick]
         return float(np.mean(ours) - np.mean(theirs[pick] > drawn.threshold))
 
     every = np.arange(len(middle))
@@ -233,16 +233,16 @@ def _setting(
     single: Sequence[Outcome],
     nulls: Sequence[Outcome],
     every: Sequence[Outcome],
-    said: Mapping[str, Any],
+    replies: Mapping[str, Any],
 ) -> Setting:
     """Tune one detector on some of all the recordings with nothing missing that it saw."""
-    tuning = _Nulls.of(who, nulls, said)
+    tuning = _Nulls.of(who, nulls, replies)
     limit = tuning.threshold
-    scores = np.array([said[o.key][who]["score"] for o in single])
+    scores = np.array([replies[o.key][who]["score"] for o in single])
     found = scores > limit
     inside = [MIDDLE[0] < o.d < MIDDLE[1] for o in single]
     middle = [o for o, there in zip(single, inside, strict=True) if there]
-    names = [said[o.key][who]["named"] for o in single]
+    names = [replies[o.key][who]["named"] for o in single]
     right = [
         bool(hit) and set(named or ()) == set(o.causes)
         for o, hit, named in zip(single, found, names, strict=True)
@@ -250,55 +250,55 @@ def _setting(
     return Setting(
         threshold=limit,
         alarms=tuple(
-            (family, share_of([said[o.key][who]["score"] > limit for o in there]))
+            (family, share_of([replies[o.key][who]["score"] > limit for o in there]))
             for family in NOISES
             if (there := [o for o in every if o.noise == family])
         ),
         needed=_needed([o.d for o in single], scores, tuning),
-        ahead=_ahead(middle, scores[inside], tuning, alike=False),
-        tuned_ahead=_ahead(middle, scores[inside], tuning, alike=True),
+        ahead=_ahead(middle, scores[inside], tuning, equal_alarms=False),
+        tuned_ahead=_ahead(middle, scores[inside], tuning, equal_alarms=True),
         power=by_d(single, found),
         naming=() if any(named is None for named in names) else by_d(single, right),
     )
 
 
 def _curve(
-    who: str, programme: str, noise: str, outcomes: Sequence[Outcome], said: Mapping[str, Any]
+    who: str, programme: str, noise: str, outcomes: Sequence[Outcome], replies: Mapping[str, Any]
 ) -> OpponentCurve | None:
     """Curve of one opponent, or nothing where it saw no recording."""
-    shown = [o for o in outcomes if o.programme == programme and who in said.get(o.key, {})]
+    shown = [o for o in outcomes if o.programme == programme and who in replies.get(o.key, {})]
     single = [o for o in shown if o.tier == "C0" and o.noise == noise]
     nulls = [o for o in shown if o.tier == "C6"]
     own = [o for o in nulls if o.noise == noise]
     if not own or not single:
         return None
-    saw_all = {o.noise for o in nulls} == set(NOISES) and _Nulls.of(who, nulls, said).fine_enough
+    saw_all = {o.noise for o in nulls} == set(NOISES) and _Nulls.of(who, nulls, replies).fine_enough
     return OpponentCurve(
         who=who,
         programme=programme,
         noise=noise,
-        default_alarms=share_of([said[o.key][who]["flagged"] for o in own]),
-        default_power=by_d(single, [said[o.key][who]["flagged"] for o in single]),
-        own=_setting(who, single, own, nulls, said),
-        every=_setting(who, single, nulls, nulls, said) if saw_all else None,
+        default_alarms=share_of([replies[o.key][who]["flagged"] for o in own]),
+        default_power=by_d(single, [replies[o.key][who]["flagged"] for o in single]),
+        own=_setting(who, single, own, nulls, replies),
+        every=_setting(who, single, nulls, nulls, replies) if saw_all else None,
     )
 
 
 def _own(outcome: Outcome) -> dict[str, Any]:
-    """Words of the diagnosis in the form of an opponent's."""
+    """Reply of the diagnosis in the form of an opponent's."""
     return {"score": outcome.excess, "flagged": outcome.alarm, "named": None}
 
 
-def opponent_curves(outcomes: Sequence[Outcome], said: Mapping[str, Any]) -> list[OpponentCurve]:
+def opponent_curves(outcomes: Sequence[Outcome], replies: Mapping[str, Any]) -> list[OpponentCurve]:
     """Curves of every opponent on rich and poor programmes, under the noise of each."""
-    names = sorted({who for record in said.values() for who in record})
+    names = sorted({who for record in replies.values() for who in record})
     if names:
         # Ours is tuned on, and shown, every recording that any opponent saw.
-        said = {o.key: {**said[o.key], OURS: _own(o)} for o in outcomes if said.get(o.key)}
+        replies = {o.key: {**replies[o.key], OURS: _own(o)} for o in outcomes if replies.get(o.key)}
         names.append(OURS)
     noises = [n for n in NOISES if any(o.tier == "C0" and o.noise == n for o in outcomes)]
     curves = [
-        _curve(who, programme, noise, outcomes, said)
+        _curve(who, programme, noise, outcomes, replies)
         for noise in noises
         for who in names
         for programme in PROGRAMMES
