@@ -253,3 +253,65 @@ def test_other_rows_of_the_same_study_are_refused_by_name(study: Path, tmp_path:
     out = str(tmp_path / "out")
     assert run("sweep", str(study), "--out", out, "--rows", "20").returncode == 0
     assert_one_line(run("sweep", str(study), "--out", out), 2, "0 to 20", "0 to 150", "--fresh")
+
+
+def test_a_challenge_without_its_package_says_what_to_install(tmp_path: Path) -> None:
+    code = (
+        "import sys; sys.modules['cyclosweep_challenge'] = None\n"
+        "from cyclosweep.cli import main\n"
+        "sys.argv = ['cyclosweep', 'challenge', '--cases', '1', '--seed', '1', '--out', 'c']\n"
+        "main()"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=False
+    )
+    assert_one_line(result, 2, "cyclosweep_challenge", "pip install 'cyclosweep[challenge]'")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["diagnose", "loop.csv", "--drive", "reference-87"],
+        ["challenge", "--cases", "1", "--seed", "1"],
+    ],
+)
+def test_results_do_not_go_into_a_file(tmp_path: Path, arguments: list[str]) -> None:
+    (tmp_path / "loop.csv").write_text("torque_nm,angle_deg\n1,30\n2,33\n")
+    (tmp_path / "file").write_text("precious")
+    result = run(*arguments, "--out", "file", cwd=tmp_path)
+    assert_one_line(result, 2, "--out: found file", "expected a folder")
+    assert (tmp_path / "file").read_text() == "precious"
+
+
+def test_a_programme_that_is_a_folder_is_one_line(tmp_path: Path) -> None:
+    result = run("simulate", "reference-87", ".", "--out", "out.csv", cwd=tmp_path)
+    assert_one_line(result, 2, ".: no such file")
+
+
+def test_a_study_nested_too_deeply_is_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "deep.toml"
+    path.write_text("x = " + "[" * 3000)
+    assert_one_line(run("sweep", str(path), "--out", str(tmp_path / "out")), 2, "too deeply")
+
+
+def test_a_number_without_end_is_one_short_line(tmp_path: Path) -> None:
+    path = tmp_path / "long.toml"
+    for axis in (
+        "{ values = [1" + "0" * 400 + "] }",
+        "{ from = 0, to = 1, steps = 1" + "0" * 400 + "}",
+    ):
+        path.write_text(f"[axes]\neccentricity_mm = {axis}\n")
+        result = run("sweep", str(path), "--out", str(tmp_path / "out"))
+        assert_one_line(result, 2, "eccentricity_mm")
+        assert len(result.stderr) < 300
+
+
+def test_loads_in_both_directions(tmp_path: Path) -> None:
+    path = tmp_path / "both.toml"
+    path.write_text("loads_tn = [1, -2.5]\n" + STUDY)
+    out = tmp_path / "out"
+    result = run("sweep", str(path), "--out", str(out))
+    assert result.returncode == 0, result.stderr
+    assert {"twist_1tn_deg", "twist_minus_2p5tn_deg"} < set(
+        cs.scan_dataset(out).collect_schema().names()
+    )

@@ -8,7 +8,7 @@ from typing import Annotated, cast
 import typer
 
 from cyclosweep import __version__
-from cyclosweep.cli import challenge, diagnose, sweep, validate
+from cyclosweep.cli import challenge, diagnose, simulate, sweep, validate
 from cyclosweep.cli.output import fail
 from cyclosweep.errors import DesignError, InputError, SweepError
 
@@ -26,7 +26,7 @@ app = typer.Typer(
 app.command()(validate.validate)
 app.command()(sweep.sweep)
 app.command()(sweep.shard)
-app.command()(diagnose.simulate)
+app.command()(simulate.simulate)
 app.command()(diagnose.diagnose)
 app.command()(challenge.challenge)
 

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import AsJson, interruptible, print_json
+from cyclosweep.cli.output import AsJson, interruptible, print_json, refuse_file
 from cyclosweep.errors import InputError
 
 
@@ -36,21 +36,21 @@ def challenge(
 
     The same command on the same DIR goes on where it stopped; a larger N adds cases.
     """
-    from cyclosweep_challenge.runner.run import run_challenge
-    from cyclosweep_challenge.runner.work import Options
-    from cyclosweep_challenge.trial.seal import SealError
+    try:
+        from cyclosweep_challenge.runner.run import run_challenge
+        from cyclosweep_challenge.runner.work import Options
+        from cyclosweep_challenge.trial.seal import SealError
+    except ModuleNotFoundError as error:
+        raise InputError(
+            f"challenge: {error.name} is not installed, expected: pip install "
+            "'cyclosweep[challenge]'"
+        ) from None
 
+    refuse_file(out)
+    options = Options(opponents=opponents)
     try:
         with interruptible(f"the same command goes on from {out}"):
-            score = run_challenge(
-                cases,
-                seed,
-                out,
-                workers,
-                mix=mix,
-                noise=noise,
-                options=Options(opponents=opponents),
-            )
+            score = run_challenge(cases, seed, out, workers, mix=mix, noise=noise, options=options)
     except SealError as error:
         raise InputError(f"{out}: {error}") from error
     except ValueError as error:

@@ -1,64 +1,45 @@
-"""`cyclosweep simulate` and `cyclosweep diagnose`."""
+"""`cyclosweep diagnose`."""
 
 from __future__ import annotations
 
-import dataclasses
 import json
+import math
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cyclosweep.atomic import unfinished, write_text
-from cyclosweep.cli.output import AsJson, fail, interruptible, print_json
+from cyclosweep.atomic import write_text
+from cyclosweep.cli.output import AsJson, fail, interruptible, print_json, refuse_file
 from cyclosweep.errors import DesignError, InputError
 
 if TYPE_CHECKING:
-    from cyclosweep.design.drive import Drive
-    from cyclosweep.recording import Recording
-    from cyclosweep.simulation.simulate import Model
+    from cyclosweep.diagnosis import Diagnosis
 
 
-def simulate(
-    model: Annotated[
-        str, typer.Argument(metavar="MODEL", help="Built-in drive, drive .toml or model.json.")
-    ],
-    program: Annotated[Path, typer.Argument(metavar="PROGRAM.csv", help="Load programme.")],
-    out: Annotated[Path, typer.Option("--out", metavar="OUT.csv", help="File to write.")],
-    predict: Annotated[
-        Literal["angle", "torque"], typer.Option(help="What to predict from the other.")
-    ] = "angle",
-) -> None:
-    """Predict the twist of a load programme by the published or by a repaired model."""
-    from cyclosweep.recording import Recording
-    from cyclosweep.recording.reading import stem
-    from cyclosweep.simulation.simulate import simulate as run
+@dataclass(frozen=True)
+class _Job:
+    """How every recording of one command is read, diagnosed and written.
 
-    inputs = [program, program.with_name(f"{stem(program)}.toml"), Path(model)]
-    if any(path.exists() and out.exists() and path.samefile(out) for path in inputs):
-        raise InputError(f"--out: found {out}, which is read, expected another file")
-    if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
-    chosen = _model(model)
-    programme = Recording.read(program)
-    if hasattr(chosen, "side") and not program.with_name(f"{stem(program)}.toml").exists():
-        programme = dataclasses.replace(programme, side=chosen.side)
-    table = run(chosen, programme, predict).to_frame()
-    try:
-        with unfinished(out) as file:
-            table.write_csv(file)
-    except OSError as error:
-        fail(f"{out}: {error.strerror or error}", 1)
+    Attributes
+    ----------
+    meta : Path or None
+        How to read the files.
+    png, quick, quiet : bool
+        Write pictures; leave out report and proof; print nothing.
+    options : dict
+        Keyword arguments of :func:`cyclosweep.diagnose`.
+    """
 
-
-def _model(name: str) -> Model | Drive:
-    from cyclosweep.design.drive import Drive
-    from cyclosweep.simulation.simulate import Model
-
-    return Model.from_json(name) if name.endswith(".json") else Drive.load(name)
+    meta: Path | None
+    png: bool
+    quick: bool
+    quiet: bool
+    options: dict[str, Any]
 
 
 def diagnose(
@@ -99,79 +80,80 @@ def diagnose(
     from cyclosweep.design.drive import Drive
     from cyclosweep.recording.reading import stem
 
-    if tolerance is not None and not tolerance > 0:
+    refuse_file(out)
+    if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError(f"tolerance: found {tolerance:g}, expected degrees above zero")
-    known = None if drive is None else Drive.load(drive)
-    folders = [out / stem(path) if len(recordings) > 1 else out for path in recordings]
-    if len(set(folders)) < len(folders):
-        raise InputError("recordings: two of one name, expected a folder for each in DIR")
+    options = {
+        "drive": None if drive is None else Drive.load(drive),
+        "tolerance_deg": tolerance,
+        "seed": seed,
+        "without": without or (),
+    }
+    job = _Job(meta, png, quick, as_json, options)
     contents: dict[str, Any] = {}
     bad = 0
-    for path, folder in zip(recordings, folders, strict=True):
+    for path, folder in _folders(recordings, out).items():
         try:
             with interruptible(f"{len(contents)} of {len(recordings)} recordings diagnosed"):
-                contents[stem(path)] = _diagnose_one(
-                    path,
-                    folder,
-                    meta,
-                    png=png,
-                    quick=quick,
-                    quiet=as_json,
-                    drive=known,
-                    tolerance_deg=tolerance,
-                    seed=seed,
-                    without=without or (),
-                )
+                contents[stem(path)] = _diagnose_one(path, folder, job)
         except (InputError, DesignError) as error:
             if len(recordings) == 1:
                 raise
             bad += 1
             print(f"cyclosweep: {error}", file=sys.stderr)
     if as_json:
-        print_json(
-            next(iter(contents.values())) if len(recordings) == 1 else {"recordings": contents}
-        )
+        single = len(recordings) == 1
+        print_json(next(iter(contents.values())) if single else {"recordings": contents})
     if bad:
         fail(f"{bad} of {len(recordings)} recordings could not be read", 2)
 
 
-def _diagnose_one(
-    path: Path,
-    folder: Path,
-    meta: Path | None,
-    *,
-    png: bool,
-    quick: bool,
-    quiet: bool,
-    **options: Any,
-) -> dict[str, Any]:
+def _folders(recordings: list[Path], out: Path) -> dict[Path, Path]:
+    """Folder of the results of each recording: of its name where there are several."""
+    from cyclosweep.recording.reading import stem
+
+    if len(recordings) == 1:
+        return {recordings[0]: out}
+    folders = {path: out / stem(path) for path in recordings}
+    if len(set(folders.values())) < len(recordings):
+        raise InputError("recordings: two of one name, expected a folder for each in DIR")
+    return folders
+
+
+def _diagnose_one(path: Path, folder: Path, job: _Job) -> dict[str, Any]:
+    """Diagnose one recording, write its results and return the content of diagnosis.json."""
     from cyclosweep.diagnosis import diagnose as run
     from cyclosweep.recording import Recording
 
-    recording: Recording = Recording.read(path, meta)
-    with _saying(recording.name) as say:
-        found = run(recording, progress=say, full=not quick, **options)
-        if quick:
-            folder.mkdir(parents=True, exist_ok=True)
-            write_text(folder / "diagnosis.json", found.to_json())
-            if found.model is not None:
-                write_text(folder / "model.json", found.model.to_json())
+    recording: Recording = Recording.read(path, job.meta)
+    with _status(recording.name) as show:
+        found = run(recording, progress=show, full=not job.quick, **job.options)
+        if job.quick:
+            _write_quick(found, folder)
         else:
-            say("writing the report")
+            show("writing the report")
             found.write(folder)
-        if png:
+        if job.png:
             found.report(folder / "pictures")
-    if not quiet:
+    if not job.quiet:
         from cyclosweep.report import print_summary
 
         print_summary(found.report_data())
-        print(f"Report: {folder / 'report.html'}" if not quick else f"Written: {folder}")
+        print(f"Written: {folder}" if job.quick else f"Report: {folder / 'report.html'}")
     content: dict[str, Any] = json.loads(found.to_json())
     return content
 
 
+def _write_quick(found: Diagnosis, folder: Path) -> None:
+    """Write diagnosis.json and model.json alone."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / "diagnosis.json", found.to_json())
+    if found.model is not None:
+        write_text(folder / "model.json", found.model.to_json())
+
+
 @contextmanager
-def _saying(name: str) -> Iterator[Callable[[str], None]]:
+def _status(name: str) -> Iterator[Callable[[str], None]]:
     """Show the step at work on standard error when that is a terminal."""
     if not sys.stderr.isatty():
         yield lambda text: None

@@ -6,14 +6,17 @@ import contextlib
 import json
 import sys
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from cyclosweep.errors import InputError
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["AsJson", "fail", "interruptible", "print_json", "print_tables"]
+__all__ = ["AsJson", "fail", "interruptible", "print_json", "print_tables", "refuse_file"]
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
@@ -31,6 +34,12 @@ def print_tables(renderables: Iterable[RenderableType]) -> None:
 def print_json(value: dict[str, Any]) -> None:
     """Print one JSON object."""
     print(json.dumps(value, indent=1, allow_nan=False))
+
+
+def refuse_file(folder: Path) -> None:
+    """Refuse a file in the place of a folder that is to be written to."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out: found {folder}, which is a file, expected a folder")
 
 
 def fail(error: object, status: int) -> NoReturn:

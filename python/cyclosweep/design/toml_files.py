@@ -55,6 +55,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"{path}: not a text file in UTF-8, expected TOML") from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise InputError(f"{path}: nested too deeply, expected a flat TOML file") from None
 
 
 def one_line(error: ValidationError) -> str:
@@ -89,6 +91,11 @@ def one_line(error: ValidationError) -> str:
         text = f"{where}: {text}" if where else text
     else:
         wanted = first["msg"].removeprefix("Input should be ").removeprefix("a valid ")
-        text = f"{where}: found {first['input']!r}, expected {wanted}"
+        text = f"{where}: found {_shortened(repr(first['input']))}, expected {wanted}"
     more = len(problems) - 1
     return f"{text} (and {more} more)" if more else text
+
+
+def _shortened(text: str) -> str:
+    """Cut a text that would fill the line."""
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -159,5 +159,3 @@ class Metadata(_Strict):
             return cls.model_validate(read_toml(path))
         except ValidationError as error:
             raise InputError(f"{path}: {one_line(error)}") from None
-        except RecursionError:
-            raise InputError(f"{path}: nested too deeply, expected a flat TOML file") from None

@@ -41,6 +41,7 @@ OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if option
 
 # A longer range over a count cannot be of whole numbers that make sense.
 _LONGEST_COUNT = 2**16
+_MOST_STEPS = 2**63
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,8 @@ class Linspace:
         """Make these values the axis of an input; InputError where it cannot take them."""
         if self.steps < 1:
             raise InputError(f"{name}: found {self.steps} steps, expected at least 1")
+        if self.steps > _MOST_STEPS:
+            raise InputError(f"{name}: found more than 2^63 steps, expected fewer")
         if name == "criterion":
             raise InputError("criterion: expected a list of values, not a range")
         axis = Axis(name, "linspace", np.array([self.start, self.stop, self.steps], float))
