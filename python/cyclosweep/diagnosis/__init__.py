@@ -1,6 +1,6 @@
 """Diagnosis of a recording: where it differs, which physics is missing, and the proof."""
 
 from cyclosweep.diagnosis.diagnose import diagnose
-from cyclosweep.diagnosis.result import Diagnosis
+from cyclosweep.diagnosis.outcome import Diagnosis
 
 __all__ = ["Diagnosis", "diagnose"]

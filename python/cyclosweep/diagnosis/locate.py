@@ -5,49 +5,49 @@ from itertools import pairwise
 
 import numpy as np
 
+from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import clock_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.split import recorded_runs
+from cyclosweep.result.mismatch import Direction, Region
 from cyclosweep.simulation.effects.history import Flags
 
 MOST_REGIONS = 4
 BANDS = 8
 
 
-@dataclass(frozen=True)
-class Region:
-    """A part of the recording whose mean residual is not noise.
-
-    Ranges are (from, to); None where the region is not limited in that respect.
-    """
-
-    torque_nm: tuple[float, float] | None
-    direction: str | None
-    run: tuple[int, int] | None
-    time_s: tuple[float, float] | None
-    crank_deg: tuple[float, float] | None
-    temperature_c: tuple[float, float] | None
-    mean_residual_deg: float
-    share_of_excess: float
-    p_value: float
-
-    def as_dict(self) -> dict[str, object]:
-        """Content for ``diagnosis.json``."""
-        return {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in self.__dict__.items()
-        }
-
-
 @dataclass(frozen=True, eq=False)
 class _Cell:
     rows: Flags
     torque: tuple[float, float] | None = None
-    direction: str | None = None
+    direction: Direction | None = None
     run: tuple[int, int] | None = None
     time: tuple[float, float] | None = None
     crank: tuple[float, float] | None = None
+
+
+def locate(concluded: Conclusion) -> tuple[Region, ...]:
+    """Return where the calibrated model and the recording differ.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the baseline and the accepted structure.
+
+    Returns
+    -------
+    tuple of Region
+        The strongest first; none where nothing is missing. Where something remains without a name
+        beside accepted effects, the regions are those in which these fail.
+    """
+    search, accepted = concluded.search, concluded.accepted
+    found: list[Region] = []
+    if search.baseline.largest_excess >= search.threshold:
+        found = find_regions(search, search.baseline)
+    if concluded.decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
+        found = find_regions(search, accepted) or found
+    return tuple(found)
 
 
 def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list[Region]:
@@ -107,9 +107,16 @@ def _region(search: Search, cell: _Cell, mean: float, share: float, p: float) ->
         part = history.temperature_c[rows]
         temperature = (round(float(part.min()), 2), round(float(part.max()), 2))
     return Region(
-        cell.torque, cell.direction, cell.run, cell.time, cell.crank, temperature,
-        mean, float(np.clip(share, 0.0, 1.0)), p,
-    )  # fmt: skip
+        torque_nm=cell.torque,
+        direction=cell.direction,
+        run=cell.run,
+        time_s=cell.time,
+        crank_deg=cell.crank,
+        temperature_c=temperature,
+        mean_residual_deg=mean,
+        share_of_excess=float(np.clip(share, 0.0, 1.0)),
+        p_value=p,
+    )
 
 
 def _cells(search: Search) -> list[_Cell]:

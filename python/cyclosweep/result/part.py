@@ -1,5 +1,6 @@
 """What all parts of a result have in common: how their fields become JSON and JSON Schema."""
 
+import math
 from typing import Any, ClassVar
 
 from pydantic import ConfigDict
@@ -18,3 +19,14 @@ class Part:
 
     __slots__ = ()
     __pydantic_config__: ClassVar = ConfigDict(use_attribute_docstrings=True)
+
+
+def finite(value: float) -> float | None:
+    """Return a number, or None for one that JSON does not have.
+
+    Examples
+    --------
+    >>> finite(0.5), finite(float("inf"))
+    (0.5, None)
+    """
+    return float(value) if math.isfinite(value) else None

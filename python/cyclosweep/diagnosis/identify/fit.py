@@ -18,6 +18,7 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, folds, restrict
+from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import EffectValue, Model
 
@@ -121,9 +122,9 @@ class ContactFit(FittedStructure):
         """Nothing: on a known flank, drift from run to run is an effect like others."""
         return []
 
-    def findings(self, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+    def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Nothing: a loop is described only where it is predicted as a whole."""
-        return []
+        return ()
 
 
 def fit(

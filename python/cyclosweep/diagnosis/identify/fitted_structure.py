@@ -18,6 +18,7 @@ from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.simulate import Model
 
@@ -212,7 +213,7 @@ class FittedStructure(ABC):
         """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
 
     @abstractmethod
-    def findings(self, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+    def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Return topics and sentences on the measured loop, where the structure predicts it.
 
         Parameters

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import line_design
+from cyclosweep.result import Untestable
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 
@@ -140,18 +141,18 @@ def _recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
     return lambda part: np.asarray(part - basis @ (basis.T @ part))
 
 
-def hidden_effects(search: Search) -> list[dict[str, str]]:
+def hidden_effects(search: Search) -> list[Untestable]:
     """Effects that this recording cannot show, with reason and remedy."""
-    out = [{"name": n, "reason": r, "needs": w} for n, r, w in ALWAYS_HIDDEN]
-    for name, reason in search.library.untestable.items():
-        out.append({"name": name, "reason": reason, "needs": find(name).shown_by})
+    hidden = dict(search.library.untestable)
     shown = set(search.baseline.scan.groups)
-    for name in {b.hypothesis for b in search.library.signatures if b.named} - shown:
-        out.append(
-            {
-                "name": name,
-                "reason": "the calibration of stiffness, play and datum hides all of it",
-                "needs": find(name).shown_by,
-            }
-        )
-    return out
+    named = {b.hypothesis for b in search.library.signatures if b.named}
+    hidden |= dict.fromkeys(
+        sorted(named - shown), "the calibration of stiffness, play and datum hides all of it"
+    )
+    return [
+        *(Untestable(name=n, reason=r, needs=w) for n, r, w in ALWAYS_HIDDEN),
+        *(
+            Untestable(name=name, reason=reason, needs=find(name).shown_by)
+            for name, reason in hidden.items()
+        ),
+    ]

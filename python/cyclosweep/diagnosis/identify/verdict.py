@@ -1,22 +1,13 @@
 """The verdict: what the evidence allows to say, and no more."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability
-
-Verdict = Literal[
-    "IDENTIFIED",
-    "AMBIGUOUS",
-    "UNKNOWN_PHYSICS",
-    "NOTHING_MISSING",
-    "INSUFFICIENT_DATA",
-    "DATA_FAULT",
-]
+from cyclosweep.result import Verdict
 
 SURE = 0.5
 """Posterior probability from which the best explanation is named as the one: more probable than

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.result import NextExperiment
 from cyclosweep.simulation.effects.history import Floats, History
 
 Load = tuple[Floats, Floats, Floats, Floats]
@@ -98,14 +99,24 @@ MENU: tuple[Plan, ...] = (
 
 def next_experiment(
     search: Search, rivals: list[Candidate], weakest: str | None, tolerance_deg: float
-) -> dict[str, object]:
+) -> NextExperiment:
     """Choose the programme that separates the best two explanations, or shows the weakest effect.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated search on the recording.
+    rivals : list of Candidate
+        Explanations, the most probable first.
+    weakest : str or None
+        Effect to show or rule out where there are no two explanations to separate.
+    tolerance_deg : float
+        Size at which that effect is to be seen [deg].
 
     Returns
     -------
-    dict
-        ``program``, ``separates``, ``detectability`` (projected signal-to-noise of what tells the
-        two apart) and ``minutes``.
+    NextExperiment
+        Its detectability is the projected signal-to-noise of what tells the two apart.
     """
     terms = _contested(rivals)
     if terms:
@@ -114,7 +125,7 @@ def next_experiment(
     elif weakest is not None:
         names = [weakest]
     else:
-        return {"program": "none needed", "separates": [], "detectability": None, "minutes": 0}
+        return NextExperiment(program="none needed", minutes=0)
     best: tuple[float, Plan, int] | None = None
     for plan in MENU:
         history = _history(search, plan)
@@ -125,15 +136,14 @@ def next_experiment(
         if np.isfinite(value) and (best is None or value > 1.05 * best[0]):
             best = (value, plan, len(history))
     if best is None:
-        return {"program": MENU[0].words, "separates": names, "detectability": None, "minutes": 20}
+        return NextExperiment(program=MENU[0].words, separates=tuple(names), minutes=20)
     value, plan, rows = best
-    minutes = int(np.ceil(rows * STEP_S / 60.0)) + 5
-    return {
-        "program": plan.words,
-        "separates": names,
-        "detectability": round(float(value), 2),
-        "minutes": minutes,
-    }
+    return NextExperiment(
+        program=plan.words,
+        separates=tuple(names),
+        detectability=round(float(value), 2),
+        minutes=int(np.ceil(rows * STEP_S / 60.0)) + 5,
+    )
 
 
 def _contested(rivals: list[Candidate]) -> list[tuple[str, list[Term], Candidate]]:

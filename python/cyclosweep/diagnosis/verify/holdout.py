@@ -6,60 +6,11 @@ import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure, LeftOutPrediction
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.result import HeldOutBlock
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 REPLICATE = 0.98
 """Correlation of torque from which two runs count as replicates."""
-
-
-@dataclass(frozen=True, slots=True)
-class HeldOutBlock:
-    """Errors on one left-out block [deg].
-
-    Attributes
-    ----------
-    label : str
-    samples : int
-    before_deg, after_deg : float
-        Of the baseline and of the repaired model. For a forecast over all samples, otherwise with
-        the flank in contact read off the recording.
-    told_before_deg, told_after_deg : float or None
-        Beside a forecast: the same models with the flank read off the recording, over the samples
-        in contact.
-    near_before_deg, near_after_deg : float or None
-        Beside a forecast: distance to the measured curve, which a late crossing does not spoil.
-    floor_deg : float or None
-        What another run, taken as the prediction, leaves.
-    """
-
-    label: str
-    samples: int
-    before_deg: float
-    after_deg: float
-    told_before_deg: float | None = None
-    told_after_deg: float | None = None
-    near_before_deg: float | None = None
-    near_after_deg: float | None = None
-    floor_deg: float | None = None
-
-    def as_dict(self) -> dict[str, str | float]:
-        """Entry of ``diagnosis.json``."""
-        own: dict[str, str | float] = {
-            "block": self.label, "before_deg": self.before_deg, "after_deg": self.after_deg,
-        }  # fmt: skip
-        return own | {k: v for k, v in self.beside_forecast().items() if v is not None}
-
-    def beside_forecast(self) -> dict[str, float | None]:
-        """What stands beside a forecast; empty where the flank was not predicted."""
-        if self.told_after_deg is None:
-            return {}
-        return {
-            "told_before_deg": self.told_before_deg,
-            "told_after_deg": self.told_after_deg,
-            "near_before_deg": self.near_before_deg,
-            "near_after_deg": self.near_after_deg,
-            "floor_deg": self.floor_deg,
-        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,14 +46,14 @@ def judge_left_out(structure: FittedStructure) -> HeldOutResult:
     before = float(np.sqrt(np.average([b.before_deg**2 for b in blocks], weights=weight)))
     after = float(np.sqrt(np.average([b.after_deg**2 for b in blocks], weights=weight)))
     evidence = structure.left_out_evidence(predictions, before, after)
-    return HeldOutResult(blocks, before, after, evidence, "; ".join(b.label for b in blocks))
+    return HeldOutResult(blocks, before, after, evidence, "; ".join(b.block for b in blocks))
 
 
 def _block(problem: Problem, prediction: LeftOutPrediction) -> HeldOutBlock:
     """Errors on one block, and where the flank is predicted what stands beside them."""
     rows = prediction.rows
     plain = HeldOutBlock(
-        label=prediction.label,
+        block=prediction.label,
         samples=int(problem.weight[rows].sum()),
         before_deg=problem.rms_error(prediction.baseline_deg, rows),
         after_deg=problem.rms_error(prediction.structure_deg, rows),

@@ -5,37 +5,37 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.scan import likelihood_gain
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.result import SelfCheck
 from cyclosweep.simulation.effects.history import Floats
 
 TWINS = 300
 
 
-def self_check(
-    search: Search, best: Candidate | None, rivals: list[Candidate]
-) -> dict[str, object]:
+def self_check(search: Search, best: Candidate | None, rivals: list[Candidate]) -> SelfCheck:
     """False-alarm rate, power and confusion on twins of the recording.
 
     Twins have this recording's programme and noise, and nothing, the found effect, or a rival
     beyond the baseline. They are drawn on the projected problem, one accepted effect at a time.
 
+    Parameters
+    ----------
+    search : Search
+        The search whose rates are asked for.
+    best : Candidate or None
+        Structure that the verdict rests on.
+    rivals : list of Candidate
+        Other explanations.
+
     Returns
     -------
-    dict
-        ``false_alarm``, ``power`` and ``confusion`` (true name -> named -> share).
+    SelfCheck
     """
     rng = np.random.default_rng([search.seed, 3])
     nothing = search.alarm.null(search.baseline.scan, rng, 2 * TWINS)
-    out: dict[str, object] = {
-        "false_alarm": float(np.mean(nothing > search.threshold)),
-        "power": None,
-        "confusion": {},
-        "twins": TWINS,
-    }
-    if best is None:
-        return out
+    false_alarm = float(np.mean(nothing > search.threshold))
     confusion: dict[str, dict[str, float]] = {}
     powers = []
-    for number, candidate in enumerate([best, *rivals]):
+    for candidate in [] if best is None else [best, *rivals]:
         for index, term in enumerate(candidate.fit.terms):
             parent = search.visited.get(candidate.names - {term.name}, search.baseline)
             if len(candidate.names) > 1 and parent is search.baseline:
@@ -44,11 +44,14 @@ def self_check(
                 continue
             power, row = _twins(search, parent, candidate, index, rng)
             confusion[term.name] = row
-            if number == 0:
+            if candidate is best:
                 powers.append(power)
-    out["power"] = float(min(powers)) if powers else None
-    out["confusion"] = confusion
-    return out
+    return SelfCheck(
+        false_alarm=false_alarm,
+        power=min(powers, default=None),
+        confusion=confusion,
+        twins=TWINS,
+    )
 
 
 def _twins(

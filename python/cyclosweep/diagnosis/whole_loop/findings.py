@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
+from cyclosweep.result import Finding, Untestable
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import elastic_law
 
@@ -18,7 +18,7 @@ LEAST_REPEAT = 0.3
 """Correlation between runs from which a residual is worth naming as a staircase."""
 
 
-def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
     """Topics and sentences, in the order in which a loop is read.
 
     Parameters
@@ -29,6 +29,10 @@ def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> li
         Correlation of the residual between runs.
     unsteady : bool
         Whether the loops drift from run to run.
+
+    Returns
+    -------
+    tuple of Finding
     """
     problem = forecast.problem
     known = forecast.names
@@ -45,10 +49,10 @@ def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> li
         rows.append(("stiffness", "Not reported, for the same reason as the play."))
     if repeats is not None and repeats > LEAST_REPEAT and not unsteady:
         rows.append(_staircase(problem, forecast, repeats))
-    return [{"topic": topic, "text": text} for topic, text in rows]
+    return tuple(Finding(topic=topic, text=text) for topic, text in rows)
 
 
-def limits_of(problem: Problem, drive: Drive) -> list[dict[str, str]]:
+def limits_of(problem: Problem) -> list[Untestable]:
     """What the rig of a recording with structured residual cannot show, besides the aliases."""
     recording = problem.recording
     out = []
@@ -113,8 +117,8 @@ def censored(problem: Problem, forecast: Forecast) -> str | None:
     )
 
 
-def _limit(name: str, reason: str, needs: str) -> dict[str, str]:
-    return {"name": name, "reason": reason, "needs": needs}
+def _limit(name: str, reason: str, needs: str) -> Untestable:
+    return Untestable(name=name, reason=reason, needs=needs)
 
 
 def _angle(value_deg: float) -> str:

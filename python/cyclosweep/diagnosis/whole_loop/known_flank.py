@@ -24,6 +24,7 @@ from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
 from cyclosweep.diagnosis.whole_loop.findings import findings
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, refit
 from cyclosweep.diagnosis.whole_loop.run_comparison import steadiness
+from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.simulate import Model, settle
 
@@ -120,7 +121,7 @@ class WholeLoopFit(FittedStructure):
         """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
         return [(each.own_deg, each.other_deg) for each in steadiness(self.forecast)]
 
-    def findings(self, repeats: float | None, *, unsteady: bool) -> list[dict[str, str]]:
+    def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Return topics and sentences on the measured loop."""
         return findings(self.forecast, repeats, unsteady=unsteady)
 

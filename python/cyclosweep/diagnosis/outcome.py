@@ -1,19 +1,15 @@
-"""What a diagnosis returns: verdict, tables, repaired model, and their files."""
+"""What `cyclosweep.diagnose` returns: the answer, the repaired model, and their files."""
 
-import json
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from cyclosweep.atomic import write_text
 from cyclosweep.recording import Recording
 from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_report
+from cyclosweep.result import Answer, content_of, json_text
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.simulate import Model
-
-SCHEMA = "cyclosweep.diagnosis/1"
+from cyclosweep.simulation.model import Model
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -24,21 +20,28 @@ class Diagnosis:
     ----------
     recording : Recording
         What was diagnosed.
-    content : dict
-        Content of ``diagnosis.json``.
+    answer : Answer
+        Verdict, statement and everything behind them, as one typed value.
     model : Model or None
-        Calibrated baseline and accepted effects; `cyclosweep.simulation.simulate` takes it.
-    before_deg, after_deg : ndarray or None
-        Twist by the calibrated published model and by the repaired one, a value a sample [deg].
+        Calibrated baseline and accepted effects; `cyclosweep.simulate` takes it.
+    before_deg, after_deg : ndarray of float, shape (samples,), or None
+        Twist by the calibrated published model and by the repaired one [deg].
+    hypotheses : tuple of Hypothesis
+        Every effect of the library, as it fared.
+    rated_torque_nm : float or None
+        Rated torque at the measured shaft [N m].
+    ratio : float or None
+        Reduction of the drive.
+    provenance : dict of str to str
+        Version, seed, drive and the recording's hash.
     """
 
     recording: Recording
-    content: dict[str, Any]
+    answer: Answer
     model: Model | None = None
     before_deg: Floats | None = None
     after_deg: Floats | None = None
     hypotheses: tuple[Hypothesis, ...] = ()
-    held_out: tuple[HeldOut, ...] = ()
     rated_torque_nm: float | None = None
     ratio: float | None = None
     provenance: dict[str, str] = field(default_factory=dict)
@@ -46,12 +49,17 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """One of the six verdicts."""
-        return str(self.content["verdict"])
+        return self.answer.verdict
 
     @property
     def statement(self) -> str:
         """One paragraph an engineer can act on."""
-        return str(self.content["statement"])
+        return self.answer.statement
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """Content of ``diagnosis.json`` as plain dictionaries and lists."""
+        return content_of(self.answer)
 
     @property
     def effects(self) -> list[dict[str, Any]]:
@@ -63,22 +71,26 @@ class Diagnosis:
         """Global test and regions where recording and simulation differ."""
         return dict(self.content["mismatch"])
 
+    @property
+    def held_out(self) -> tuple[HeldOut, ...]:
+        """Errors on data that were not used, block by block."""
+        return self.report_data().held_out_rows
+
     def to_json(self) -> str:
-        """Return the content of ``diagnosis.json``."""
-        return json.dumps(plain(self.content), indent=1, ensure_ascii=False, allow_nan=False)
+        """Return the text of ``diagnosis.json``."""
+        return json_text(self.answer)
 
     def report_data(self) -> ReportData:
         """Everything the report shows."""
         return ReportData(
             recording=self.recording,
-            result=plain(self.content),
+            result=self.answer,
             before_deg=self.before_deg,
             after_deg=self.after_deg,
             rated_torque_nm=self.rated_torque_nm,
             ratio=self.ratio,
             compliance_deg_per_nm=None if self.model is None else self.model.compliance_deg_per_nm,
             hypotheses=self.hypotheses,
-            held_out=self.held_out,
             provenance=self.provenance,
         )
 
@@ -104,27 +116,27 @@ class Diagnosis:
         return write_report(self.report_data(), path)
 
     def write(self, folder: str | Path) -> Path:
-        """Write ``diagnosis.json``, ``model.json`` and ``report.html`` into a folder."""
+        """Write ``diagnosis.json``, ``model.json`` and ``report.html``, each whole or not at all.
+
+        Parameters
+        ----------
+        folder : path
+            Where; made if absent.
+
+        Returns
+        -------
+        Path
+            The folder.
+
+        Raises
+        ------
+        OSError
+            A file cannot be written.
+        """
         target = Path(folder)
         target.mkdir(parents=True, exist_ok=True)
-        (target / "diagnosis.json").write_text(self.to_json(), encoding="utf-8")
+        write_text(target / "diagnosis.json", self.to_json())
         if self.model is not None:
-            (target / "model.json").write_text(self.model.to_json(), encoding="utf-8")
+            write_text(target / "model.json", self.model.to_json())
         self.report(target / "report.html")
         return target
-
-
-def plain(value: Any) -> Any:
-    """Turn numpy values, tuples and non-finite numbers into what JSON has."""
-    if isinstance(value, dict):
-        return {str(k): plain(v) for k, v in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(v) for v in value]
-    if isinstance(value, (bool, np.bool_)):
-        return bool(value)
-    if isinstance(value, (int, np.integer)):
-        return int(value)
-    if isinstance(value, (float, np.floating)):
-        number = float(value)
-        return number if math.isfinite(number) else None
-    return value

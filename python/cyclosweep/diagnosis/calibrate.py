@@ -1,0 +1,61 @@
+"""Calibration: the noise of the recording, and the published model fitted to it."""
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
+from cyclosweep.diagnosis.hypotheses.library import Library
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.prepare.noise import Noise, estimate_noise
+from cyclosweep.diagnosis.prepare.problem import Problem
+
+
+def calibrate(problem: Problem, library: Library, seed: int) -> Search:
+    """Estimate the noise, fit stiffness, free play and datum, and calibrate the global test.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    library : Library
+        Hypotheses on that recording.
+    seed : int
+        Seed of every random draw.
+
+    Returns
+    -------
+    Search
+        Its ``baseline`` is the calibrated published model; no effect has been fitted yet.
+    """
+    return Search(problem, noise_beyond(problem, library, None), library, seed)
+
+
+def noise_beyond(problem: Problem, library: Library, known: Candidate | None) -> Noise:
+    """Estimate the noise that a flexible model leaves of a recording.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    library : Library
+        Hypotheses, whose shapes the flexible model contains.
+    known : Candidate or None
+        A structure whose terms it contains as well.
+
+    Returns
+    -------
+    Noise
+    """
+    use = problem.fitted
+    columns = None
+    if known is not None:
+        history = known.fit.history
+        terms = [term.columns(history)[use] for term in known.fit.terms]
+        columns = np.column_stack([history.elastic_nm[use], *terms])
+    return estimate_noise(
+        problem.angle_deg[use],
+        flexible_basis(problem, library, columns),
+        problem.gap[use],
+        problem.resolution_deg,
+        problem.weight[use],
+    )

@@ -1,0 +1,183 @@
+"""Composition: the answer of a diagnosis from what its stages have found."""
+
+from dataclasses import replace
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.effects_found import explanations, found_effects, tried_effects
+from cyclosweep.diagnosis.identify.alarm import probability
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.testability import hidden_effects
+from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.provenance import provenance_of
+from cyclosweep.diagnosis.remainder import remainder
+from cyclosweep.diagnosis.repair import RepairedModel
+from cyclosweep.diagnosis.verification import Verification
+from cyclosweep.diagnosis.whole_loop.findings import limits_of
+from cyclosweep.recording import Recording
+from cyclosweep.result import (
+    Answer,
+    Bound,
+    Finding,
+    Mismatch,
+    NoiseEstimate,
+    Region,
+    Repair,
+    Sufficiency,
+    Untestable,
+)
+from cyclosweep.result.part import finite
+from cyclosweep.result.statement import statement_of
+
+MODEL_FILE = "model.json"
+
+
+def compose(
+    drive: Drive,
+    concluded: Conclusion,
+    regions: tuple[Region, ...],
+    repaired: RepairedModel,
+    verified: Verification,
+) -> Diagnosis:
+    """Put together what the stages have found.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive that was diagnosed.
+    concluded : Conclusion
+        Verdict, accepted structure and bounds.
+    regions : tuple of Region
+        Where the calibrated model and the recording differ.
+    repaired : RepairedModel
+        The model before and after the repair.
+    verified : Verification
+        What data that were not used and synthetic twins say.
+
+    Returns
+    -------
+    Diagnosis
+    """
+    search = concluded.search
+    recording = search.problem.recording
+    answer = _answer(concluded, regions, repaired, verified)
+    hidden = tuple(row.name for row in answer.not_testable)
+    return Diagnosis(
+        recording=recording,
+        answer=answer,
+        model=repaired.model,
+        before_deg=repaired.before_deg,
+        after_deg=repaired.after_deg,
+        hypotheses=tried_effects(concluded, answer.effects, hidden),
+        rated_torque_nm=_rated_torque(drive, recording),
+        ratio=float(drive.ratio),
+        provenance=provenance_of(recording, drive, search.seed),
+    )
+
+
+def _answer(
+    concluded: Conclusion,
+    regions: tuple[Region, ...],
+    repaired: RepairedModel,
+    verified: Verification,
+) -> Answer:
+    """Fill every part of the answer; the statement comes last, from all others."""
+    recording = concluded.search.problem.recording
+    answer = Answer(
+        tolerance_deg=concluded.tolerance_deg,
+        verdict=verified.decision.verdict,
+        noise=_noise(concluded.search),
+        baseline=replace(repaired.before, holdout_rmse_deg=finite(verified.held_out.before_deg)),
+        mismatch=_mismatch(concluded.search, regions),
+        effects=found_effects(concluded, verified.held_out.e_value),
+        explanation_set=explanations(concluded),
+        ruled_out=_bounds(concluded, excluded=True),
+        undecided=_bounds(concluded, excluded=False),
+        not_testable=_not_testable(concluded),
+        sufficiency=_sufficiency(concluded),
+        repaired=_repair(repaired, verified),
+        self_check=verified.self_check,
+        next_experiment=verified.next_experiment,
+        model=MODEL_FILE,
+        notes=(*recording.notes, *(fault.reason for fault in recording.faults)),
+        unknown=remainder(concluded, verified, regions),
+        stationary=verified.drift is None,
+        drift=verified.drift,
+        findings=_findings(concluded, verified),
+    )
+    return replace(answer, statement=statement_of(answer))
+
+
+def _noise(search: Search) -> NoiseEstimate:
+    """Noise that the search assumed."""
+    noise = search.noise
+    return NoiseEstimate(
+        sigma_deg=noise.spread_deg,
+        autocorrelation=noise.best_correlation,
+        autocorrelation_upper=noise.correlation,
+        tail_degrees_of_freedom=finite(noise.tail),
+        resolution_deg=search.problem.resolution_deg,
+    )
+
+
+def _mismatch(search: Search, regions: tuple[Region, ...]) -> Mismatch:
+    """Global test of the calibrated published model."""
+    left = search.baseline.largest_excess
+    return Mismatch(
+        p_value=search.alarm.p_value(left),
+        evidence=left,
+        threshold=search.threshold,
+        regions=regions,
+    )
+
+
+def _bounds(concluded: Conclusion, *, excluded: bool) -> tuple[Bound, ...]:
+    """Upper bounds of the effects that are ruled out, or of those that are not."""
+    return tuple(
+        Bound(name=bound.name, upper95_deg=bound.upper95_deg)
+        for bound in concluded.beyond_accepted
+        if (bound.name in concluded.excluded) is excluded
+    )
+
+
+def _not_testable(concluded: Conclusion) -> tuple[Untestable, ...]:
+    """What the recording cannot show, by calibration and by its rig."""
+    rows = hidden_effects(concluded.search)
+    if concluded.search.noise.structured:
+        rows += limits_of(concluded.search.problem)
+    if concluded.accepted.fit.torque_zero is not None:
+        rows = [row for row in rows if row.name != "torque_offset"]
+    return tuple(rows)
+
+
+def _sufficiency(concluded: Conclusion) -> Sufficiency:
+    """Whether the best structure leaves anything beyond noise, or anything that repeats."""
+    repeats = concluded.repetition
+    if repeats is not None:
+        return Sufficiency(residual_repeats_between_runs=repeats.correlation, cells=repeats.cells)
+    best = concluded.best
+    return Sufficiency(p_value=probability(concluded.search.null(best), best.largest_excess))
+
+
+def _repair(repaired: RepairedModel, verified: Verification) -> Repair:
+    """Parameters and errors of the repaired model."""
+    held = verified.held_out
+    return Repair(
+        parameters=repaired.after.parameters,
+        rmse_deg=repaired.after.rmse_deg,
+        holdout_rmse_deg=finite(held.after_deg),
+        holdout=held.label,
+        blocks=held.blocks,
+    )
+
+
+def _findings(concluded: Conclusion, verified: Verification) -> tuple[Finding, ...]:
+    """What the measured loops show."""
+    repeats = None if concluded.repetition is None else concluded.repetition.correlation
+    return concluded.accepted.fit.findings(repeats, unsteady=verified.drift is not None)
+
+
+def _rated_torque(drive: Drive, recording: Recording) -> float:
+    """Rated torque at the measured shaft [N m]."""
+    at_input = recording.side == "input"
+    return float(drive.nominal_torque_nm if at_input else drive.output_torque_nm)

@@ -1,0 +1,201 @@
+"""The accepted effects with size, interval, parameters and evidence."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.identify.alarm import DRAWS
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.testability import Testability, size_of, spread_of_size
+from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.result import EffectParameter, Explanation, FoundEffect, Hypothesis, Size
+from cyclosweep.result.effects import Outcome
+from cyclosweep.result.part import finite
+
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval in standard errors."""
+
+
+def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, ...]:
+    """Describe the effects of the accepted structure.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+    e_value : float
+        Evidence for that structure from data that were not fitted.
+
+    Returns
+    -------
+    tuple of FoundEffect
+    """
+    terms = concluded.accepted.fit.terms
+    return tuple(
+        _effect(concluded.search, concluded.accepted, index, e_value) for index in range(len(terms))
+    )
+
+
+def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> FoundEffect:
+    """Describe one term of the accepted structure."""
+    fitted = accepted.fit
+    effect = fitted.terms[index].effect
+    assert effect is not None
+    twist = size_of(fitted, index)
+    size = float(np.max(np.abs(twist), initial=0.0))
+    strength = _strength(search, fitted, index)
+    if fitted.follows_path(index):
+        spread = size / max(strength, 1e-9)
+    else:
+        spread = spread_of_size(fitted, index)
+    half = NORMAL_95 * spread
+    return FoundEffect(
+        name=effect.name,
+        physics=effect.physics,
+        source=effect.source,
+        parameters=_parameters(fitted, index),
+        size_deg=Size(estimate=size, ci95=(max(size - half, 0.0), size + half)),
+        size_arcmin=60.0 * size,
+        size_nm=finite(size / fitted.history.compliance_deg_per_nm),
+        rms_deg=float(np.sqrt(np.mean(twist**2))),
+        p_value=_p_value(search, accepted, effect.name),
+        e_value=finite(e_value),
+        detectability=strength,
+    )
+
+
+def _p_value(search: Search, accepted: Candidate, name: str) -> float:
+    """Probability of as much evidence for an effect by chance, all other accepted ones known."""
+    without = search.visited.get(accepted.names - {name})
+    if without is None and len(accepted.names) == 1:
+        without = search.baseline
+    if without is None:
+        return 1.0 / (DRAWS + 1)
+    return search.alarm.p_value(without.excesses.get(name, 0.0))
+
+
+def _strength(search: Search, fitted: FittedStructure, index: int) -> float:
+    """Projected signal-to-noise of a term, the other terms and the calibration taken out."""
+    use = search.problem.fitted
+    _, weight = search.noise.residual(search.problem.angle_deg[use], fitted.mean_deg[use])
+    signal = search.noise.design(fitted.contribution(index)[use], weight)
+    known = list(range(search.problem.line_columns))
+    for k, term in enumerate(fitted.terms):
+        if k != index and not term.slips:
+            known += fitted.amplitude_places(k)
+    for k, nonlinear in enumerate(fitted.fit_parameters):
+        if nonlinear.term != index:
+            known.append(len(fitted.beta) + k)
+    basis = orthonormal(fitted.sensitivity[:, known], 1e-8)
+    left = signal - basis @ (basis.T @ signal)
+    return float(np.linalg.norm(left)) * float(np.sqrt(fitted.independent_share))
+
+
+def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParameter]:
+    """Amplitudes and shape parameters of a term with standard errors."""
+    term = fitted.terms[index]
+    assert term.effect is not None
+    errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    amplitudes = term.effect.amplitudes(term.shape)
+    found: dict[str, EffectParameter] = {}
+    if not term.slips:
+        for quantity, place in zip(amplitudes, fitted.amplitude_places(index), strict=False):
+            found[quantity.name] = EffectParameter(
+                estimate=float(fitted.beta[place]),
+                std_error=finite(errors[place]),
+                unit=quantity.unit,
+                meaning=quantity.meaning,
+            )
+    for k, nonlinear in enumerate(fitted.fit_parameters):
+        if nonlinear.term != index:
+            continue
+        name, value = nonlinear.name, term.amplitude
+        if name == "amplitude":
+            name = amplitudes[0].name
+        else:
+            value = float(term.shape[name])
+        error = float(errors[len(fitted.beta) + k])
+        found[name] = EffectParameter(
+            estimate=value,
+            std_error=finite(error * value if nonlinear.quantity.logarithmic else error),
+            unit=nonlinear.quantity.unit,
+            meaning=nonlinear.quantity.meaning,
+        )
+    return found
+
+
+def explanations(concluded: Conclusion) -> tuple[Explanation, ...]:
+    """Return the explanations with their probabilities, the most probable first."""
+    return tuple(_explanation(each, p) for each, p in concluded.decision.explanations)
+
+
+def _explanation(candidate: Candidate, probability: float) -> Explanation:
+    """One structure with its probability."""
+    terms = list(zip(candidate.fit.terms, candidate.recognised, strict=True))
+    return Explanation(
+        effects=tuple(term.name for term, named in terms if named),
+        without_name=tuple(
+            term.name if term.effect is None else term.effect.family
+            for term, named in terms
+            if not named
+        ),
+        probability=probability,
+    )
+
+
+def tried_effects(
+    concluded: Conclusion, found: tuple[FoundEffect, ...], hidden: tuple[str, ...]
+) -> tuple[Hypothesis, ...]:
+    """Return every effect of the library, as it fared.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With bounds of what was not found.
+    found : tuple of FoundEffect
+        The accepted effects.
+    hidden : tuple of str
+        What the recording cannot show.
+
+    Returns
+    -------
+    tuple of Hypothesis
+        Accepted ones first, then those with a bound, then what cannot be tested.
+    """
+    at_baseline = {bound.name: bound for bound in concluded.beyond_baseline}
+    return (
+        *(_accepted(effect, at_baseline.get(effect.name)) for effect in found),
+        *(_bounded(bound, bound.name in concluded.excluded) for bound in concluded.beyond_accepted),
+        *(Hypothesis(name=name, outcome="not testable") for name in hidden),
+    )
+
+
+def _accepted(effect: FoundEffect, bound: Testability | None) -> Hypothesis:
+    """Row of an accepted effect."""
+    return Hypothesis(
+        name=effect.name,
+        outcome="accepted",
+        absorbed_share=None if bound is None else bound.absorbed_share,
+        size_deg=effect.size_deg.estimate,
+        ci95_deg=effect.size_deg.ci95,
+        p_value=effect.p_value,
+        e_value=effect.e_value,
+        smallest_detectable_deg=None if bound is None else bound.smallest_detectable_deg,
+    )
+
+
+def _bounded(bound: Testability, excluded: bool) -> Hypothesis:
+    """Row of an effect that was not found."""
+    outcome: Outcome = "ruled out" if excluded else "undecided"
+    return Hypothesis(
+        name=bound.name,
+        outcome=outcome,
+        absorbed_share=bound.absorbed_share,
+        size_deg=bound.estimate_deg,
+        ci95_deg=(0.0, bound.upper95_deg),
+        p_value=bound.p_value,
+        smallest_detectable_deg=bound.smallest_detectable_deg,
+    )

@@ -1,0 +1,56 @@
+"""Identification: structures are fitted until none explains the recording better."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cyclosweep.diagnosis.calibrate import noise_beyond
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.whole_loop import stepwise
+
+RESTARTS = 2
+"""Times the search starts over because the noise turned out to be another."""
+SAME_NOISE = 0.04
+"""Change of correlation, and of the logarithm of the size, up to which noise is the same."""
+
+
+def identify(search: Search, say: Callable[[str], None]) -> Search:
+    """Fit structures with more and more effects.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    say : callable
+        Called with a few words before each long step.
+
+    Returns
+    -------
+    Search
+        With all visited structures. Another one where the best of them showed the noise to be
+        another: the search then starts over with that noise.
+    """
+    if search.noise.structured:
+        say("adding effects one at a time")
+        search.chosen = stepwise.choose_effects(search)
+        return search
+    for _ in range(RESTARTS):
+        search.run(say)
+        best = search.best()
+        if best is None:
+            return search
+        noise = noise_beyond(search.problem, search.library, best)
+        if _is_same(noise, search.noise):
+            return search
+        say("starting over with better-known noise")
+        search = Search(search.problem, noise, search.library, search.seed)
+    search.run(say)
+    return search
+
+
+def _is_same(first: Noise, second: Noise) -> bool:
+    """Whether two estimates of the noise agree."""
+    correlation = abs(first.correlation - second.correlation)
+    size = abs(np.log(first.sigma_deg / second.sigma_deg))
+    return bool(correlation < SAME_NOISE and size < SAME_NOISE)

@@ -1,0 +1,67 @@
+"""What a diagnosis starts from: the drive of a recording, and the effects that are considered."""
+
+from collections.abc import Collection
+from pathlib import Path
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.errors import InputError
+from cyclosweep.recording import Recording
+from cyclosweep.simulation.effects import Effect
+from cyclosweep.simulation.effects import effects as all_effects
+
+
+def check_measured(recording: Recording) -> None:
+    """Raise `InputError` where the recording is a load programme without a measured angle."""
+    if recording.angle_deg is None:
+        raise InputError(
+            f"{recording.path or recording.name}: column angle_deg: missing, "
+            "expected in a recording"
+        )
+
+
+def drive_of(recording: Recording) -> Drive:
+    """Load the drive that the metadata of a recording name.
+
+    Parameters
+    ----------
+    recording : Recording
+        Its ``drive`` is a built-in name, or a drive file beside it.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    InputError
+        No drive is named, or it cannot be loaded.
+    """
+    if recording.drive is None:
+        raise InputError(f"{recording.name}: drive: missing, expected in the metadata or as option")
+    beside = None if recording.path is None else Path(recording.path).parent
+    return Drive.load(recording.drive, beside)
+
+
+def considered_effects(without: Collection[str]) -> tuple[Effect, ...]:
+    """Return all known effects but those that are left out.
+
+    Parameters
+    ----------
+    without : collection of str
+        Names to leave out.
+
+    Returns
+    -------
+    tuple of Effect
+
+    Raises
+    ------
+    InputError
+        A name is of no effect.
+    """
+    known = all_effects()
+    names = {effect.name for effect in known}
+    for name in without:
+        if name not in names:
+            raise InputError(f"without: found {name!r}, expected one of {', '.join(sorted(names))}")
+    return tuple(effect for effect in known if effect.name not in without)

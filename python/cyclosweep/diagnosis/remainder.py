@@ -1,0 +1,90 @@
+"""Shape, place and size of what is missing from the model and belongs to no listed effect."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.verification import Verification
+from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition
+from cyclosweep.result import Region, Remainder
+
+STRONG_WAVE = 5.0
+"""Log evidence from which a sinusoid in the residual is worth naming."""
+STEP_QUANTILE = 0.95
+"""Quantile of the residual that is given as the size of a staircase."""
+
+
+def remainder(
+    concluded: Conclusion, verified: Verification, regions: Sequence[Region]
+) -> Remainder | None:
+    """Describe what is left without a name; None where nothing is.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the best structure.
+    verified : Verification
+        With the drift between the runs, if there is one.
+    regions : sequence of Region
+        Where the calibrated model and the recording differ.
+
+    Returns
+    -------
+    Remainder or None
+    """
+    if not verified.decision.unexplained or verified.decision.best is None:
+        return None
+    if verified.drift is not None:
+        return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
+    if concluded.repetition is not None:
+        return _staircase(concluded.accepted, concluded.repetition)
+    return _unnamed_term(concluded.best) or _unfitted(concluded, regions)
+
+
+def _unnamed_term(best: Candidate) -> Remainder | None:
+    """Describe the first term without a name: a free shape, or an effect like many others."""
+    fitted = best.fit
+    for index, term in enumerate(fitted.terms):
+        if term.unnamed is not None:
+            size = float(np.max(np.abs(size_of(fitted, index))))
+            return Remainder(shape=term.unnamed.family, place=term.unnamed.place, size_deg=size)
+    for index, (term, named) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
+        if not named and term.effect is not None:
+            size = float(np.max(np.abs(size_of(fitted, index))))
+            return Remainder(shape=term.effect.family, place="all along", size_deg=size)
+    return None
+
+
+def _unfitted(concluded: Conclusion, regions: Sequence[Region]) -> Remainder:
+    """Describe the strongest hypothesis in the residual of the best structure."""
+    best = concluded.best
+    excesses = best.excesses
+    name = max(excesses, key=lambda key: excesses[key])
+    wave = best.sinusoid[1]
+    place = wave.place if wave is not None and wave.family == name else ""
+    if name in best.scan.groups:
+        signature = best.scan.library.signatures[best.scan.best_signature(name)]
+        place = signature.unnamed.place if signature.unnamed is not None else "all along"
+    size = max(
+        (abs(region.mean_residual_deg) for region in regions),
+        default=concluded.accepted.fit.rmse_deg,
+    )
+    return Remainder(shape=name, place=place, size_deg=size)
+
+
+def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
+    """Describe a residual that repeats from run to run, as steps tied to the mesh do."""
+    fitted = accepted.fit
+    left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
+    place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
+    evidence, wave = accepted.sinusoid
+    if wave is not None and evidence > STRONG_WAVE:
+        place += f", strongest {wave.place}"
+    return Remainder(
+        shape="staircase tied to the position of the mesh",
+        place=place,
+        size_deg=float(np.quantile(np.abs(left), STEP_QUANTILE)),
+    )

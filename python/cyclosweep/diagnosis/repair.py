@@ -1,0 +1,122 @@
+"""Repair: the published model with the accepted effects, its parameters and its predictions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.result import Baseline, CalibratedParameter
+from cyclosweep.result.part import finite
+from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.model import Model
+
+
+@dataclass(frozen=True, eq=False)
+class RepairedModel:
+    """The published model before and after the repair.
+
+    Attributes
+    ----------
+    model : Model
+        Calibrated baseline and accepted effects, as a simulation.
+    before, after : Baseline
+        Calibrated parameters and error on the fitted data, without and with the effects.
+    before_deg, after_deg : ndarray of float, shape (samples,)
+        Twist of every sample of the recording by both [deg].
+    """
+
+    model: Model
+    before: Baseline
+    after: Baseline
+    before_deg: Floats
+    after_deg: Floats
+
+
+def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
+    """Turn the accepted structure into a simulation that can be compared with the published one.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+    drive : Drive
+        The drive, whose name the model carries.
+
+    Returns
+    -------
+    RepairedModel
+    """
+    problem = concluded.search.problem
+    base, fitted = concluded.search.baseline.fit, concluded.accepted.fit
+    before, after = fitted.baseline_prediction(base), fitted.prediction
+    return RepairedModel(
+        model=fitted.model(drive.name),
+        before=Baseline(
+            parameters=calibrated_parameters(base, problem), rmse_deg=finite(before.error_deg)
+        ),
+        after=Baseline(
+            parameters=calibrated_parameters(fitted, problem), rmse_deg=finite(after.error_deg)
+        ),
+        before_deg=_at_samples(problem, before.angle_deg, base),
+        after_deg=_at_samples(problem, after.angle_deg, fitted),
+    )
+
+
+def calibrated_parameters(
+    fitted: FittedStructure, problem: Problem
+) -> Mapping[str, CalibratedParameter]:
+    """Return stiffness, free play and datum of a fit against nominal.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        Baseline or repaired model.
+    problem : Problem
+        The prepared recording, with the nominal values.
+
+    Returns
+    -------
+    mapping of str to CalibratedParameter
+        By name; with the torque read without load where that is fitted.
+    """
+    errors = fitted.line_errors
+    nominal = problem.nominal_compliance
+    compliance = float(fitted.beta[1])
+    found = {
+        "compliance_scale": CalibratedParameter(
+            nominal=1.0, estimate=compliance / nominal, std_error=finite(errors[1] / nominal)
+        ),
+        "compliance_deg_per_nm": CalibratedParameter(
+            nominal=nominal, estimate=compliance, std_error=finite(errors[1]), unit="deg/(N m)"
+        ),
+        "free_play_deg": CalibratedParameter(
+            nominal=problem.nominal_free_play,
+            estimate=fitted.history.free_play_deg,
+            std_error=None if problem.one_sided else finite(errors[2]),
+            unit="deg",
+        ),
+        "datum_deg": CalibratedParameter(
+            nominal=0.0,
+            estimate=fitted.history.datum_deg,
+            std_error=finite(errors[0]),
+            unit="deg",
+        ),
+    }
+    zero = fitted.torque_zero
+    if zero is not None:
+        found["torque_zero_nm"] = CalibratedParameter(
+            nominal=0.0, estimate=zero.value_nm, std_error=finite(zero.std_error_nm), unit="N m"
+        )
+    return found
+
+
+def _at_samples(problem: Problem, angle_deg: Floats, fitted: FittedStructure) -> Floats:
+    """Twist given by rows, a value for every sample of the recording [deg]."""
+    row = problem.rows
+    # Within an averaged row the line's own slope carries the torque's deviation from its mean.
+    torque = problem.recording.torque_nm - problem.history.applied_nm[row]
+    return np.asarray(angle_deg[row] + fitted.history.compliance_deg_per_nm * torque)

@@ -1,0 +1,108 @@
+"""Verification: data that were not used, synthetic twins, and what to record next."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.identify.verdict import Decision
+from cyclosweep.diagnosis.verify.experiment import next_experiment
+from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
+from cyclosweep.diagnosis.verify.self_check import self_check
+from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
+from cyclosweep.result import NextExperiment, RunToRunDrift, SelfCheck
+
+NOTHING_HELD_OUT = HeldOutResult((), 0.0, 0.0, 1.0, "")
+MOST_RIVALS = 2
+"""Other explanations of which synthetic twins are made."""
+EXAMPLE_EFFECT = "friction_hysteresis"
+"""Effect that the next experiment is to show where the cause has no name."""
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """Whether the accepted structure holds.
+
+    Attributes
+    ----------
+    decision : Decision
+        The verdict, changed where the drive was not the same in all runs.
+    held_out : HeldOutResult
+        Errors on data that were not fitted.
+    drift : RunToRunDrift or None
+        How far a model of some runs fails on others, where the drive changed between them.
+    self_check : SelfCheck or None
+        Rates on synthetic twins; None where they were not asked for.
+    next_experiment : NextExperiment or None
+        What to record next; None where it was not asked for.
+    """
+
+    decision: Decision
+    held_out: HeldOutResult
+    drift: RunToRunDrift | None
+    self_check: SelfCheck | None
+    next_experiment: NextExperiment | None
+
+
+def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> Verification:
+    """Try the accepted structure on data that were not used, and on synthetic twins.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    full : bool
+        False looks for a drift between the runs alone.
+    say : callable
+        Called with a few words before each long step.
+
+    Returns
+    -------
+    Verification
+    """
+    held = judge_left_out(concluded.accepted.fit) if full else NOTHING_HELD_OUT
+    drift = _drift(concluded, held) if concluded.search.noise.structured else None
+    decision = concluded.decision
+    if drift is not None:
+        decision = replace(decision, verdict="UNKNOWN_PHYSICS", unexplained=True)
+    if not full:
+        return Verification(decision, held, drift, None, None)
+    say("checking on synthetic twins")
+    checked = _self_check(concluded)
+    say("choosing the next experiment")
+    return Verification(decision, held, drift, checked, _next_experiment(concluded, decision))
+
+
+def _drift(concluded: Conclusion, held: HeldOutResult) -> RunToRunDrift | None:
+    """Find the pair of runs on which a model of one fails most on the other."""
+    fitted = concluded.accepted.fit
+    span = float(np.ptp(concluded.search.problem.angle_deg))
+    pairs = [(fitted.prediction.error_deg, held.after_deg), *fitted.run_to_run_errors()]
+    compared = [Steadiness(own, other) for own, other in pairs]
+    drifts = [each for each in compared if each.is_drift(span)]
+    worst = max(drifts, key=lambda each: each.other_deg / each.own_deg, default=None)
+    return (
+        None if worst is None else RunToRunDrift(own_deg=worst.own_deg, other_deg=worst.other_deg)
+    )
+
+
+def _self_check(concluded: Conclusion) -> SelfCheck:
+    """Rates on twins with nothing, with the best structure, and with its rivals."""
+    decision = concluded.decision
+    rivals = [each for each, _ in decision.explanations if each is not decision.best]
+    return self_check(concluded.search, decision.best, rivals[:MOST_RIVALS])
+
+
+def _next_experiment(concluded: Conclusion, decision: Decision) -> NextExperiment:
+    """Programme that separates the explanations, or shows the effect that is least bounded."""
+    rivals = [each for each, _ in decision.explanations]
+    if decision.verdict not in ("AMBIGUOUS", "IDENTIFIED"):
+        rivals = []
+    weakest = None
+    bounds = concluded.beyond_baseline
+    if decision.verdict == "INSUFFICIENT_DATA" and bounds:
+        weakest = max(bounds, key=lambda bound: bound.upper95_deg).name
+    elif decision.verdict == "UNKNOWN_PHYSICS":
+        weakest = EXAMPLE_EFFECT
+    return next_experiment(concluded.search, rivals, weakest, concluded.tolerance_deg)
