@@ -7,6 +7,7 @@ from pathlib import Path
 
 import polars as pl
 
+from cyclosweep._moved import MOVED, RENAMED
 from cyclosweep.design.units import INPUTS, OUTPUTS, Quantity
 from cyclosweep.reference.facts import COUNTED, KINDS
 from cyclosweep.reference.rows import broken_rows, broken_table, tally, validate
@@ -78,6 +79,22 @@ def nomenclature() -> str:
         + "\n`twist_1tn_deg`, `twist_4p5tn_deg`, ...: twist at the input [deg] under 1, 4.5, ... "
         "nominal torques, Eq. (13);\n`twist_minus_4p5tn_deg` under a load of -4.5: in the other "
         "direction, the negative of the twist under 4.5.\n"
+    )
+
+
+def moved() -> str:
+    """Return the page of what is imported from elsewhere now."""
+    modules = ((f"`{old}`", f"`{new}`") for old, new in sorted(MOVED.items()))
+    names = ((f"`{old}`", f"`{new}`") for old, new in sorted(RENAMED.items()))
+    return (
+        "# What moved since version 0.1\n\n"
+        "Written by `make docs` from `python/cyclosweep/_moved.py`. What `import cyclosweep as cs` "
+        "gives has not moved: the\nnames in `cs`, the commands and their options, the files and "
+        "their keys. What moved are modules inside the package.\nImporting one by its old name "
+        "still works and gives a `DeprecationWarning` that says the new one.\n\n## Modules\n\n"
+        + _grid(("old", "now"), modules)
+        + "\n## Names that did not go where their module went, or are called otherwise\n\n"
+        + _grid(("old", "now"), names)
     )
 
 
@@ -184,6 +201,8 @@ def validation() -> str:
     )
 
 
+PAGES = {"nomenclature": nomenclature, "validation": validation, "moved": moved}
+
 if __name__ == "__main__":
-    for name, page in (("nomenclature", nomenclature), ("validation", validation)):
+    for name, page in PAGES.items():
         Path(__file__).with_name(f"{name}.md").write_text(page(), encoding="utf-8")

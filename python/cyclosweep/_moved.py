@@ -24,7 +24,26 @@ _SWEEP = {
 }
 _SIMULATION = {"cyclosweep.simulate": "simulation.simulate"} | {
     f"cyclosweep.effects{part}": f"simulation.effects{part}"
-    for part in ("", ".base", ".history", ".orders", ".slip")
+    for part in (
+        "",
+        ".base",
+        ".clearance_takeup",
+        ".contact_stiffening",
+        ".creep",
+        ".datum_drift",
+        ".dial_eccentricity",
+        ".friction_hysteresis",
+        ".history",
+        ".load_asymmetry",
+        ".load_dependent_friction",
+        ".orders",
+        ".overload_softening",
+        ".phase_dependent_compliance",
+        ".slip",
+        ".thermal_drift",
+        ".transmission_error",
+        ".viscous_drag",
+    )
 }
 MOVED: dict[str, str] = {
     old: f"cyclosweep.{new}" for old, new in (_DESIGN | _SWEEP | _SIMULATION).items()
@@ -40,9 +59,14 @@ MOVED: dict[str, str] = {
 """Where the modules of version 0.1 stand now, by their old names."""
 
 RENAMED: dict[str, str] = {
+    "cyclosweep.drive.NonNegative": "cyclosweep.design.shaft.NonNegative",
+    "cyclosweep.drive.Positive": "cyclosweep.design.shaft.Positive",
+    "cyclosweep.drive.Segment": "cyclosweep.design.shaft.Segment",
+    "cyclosweep.shards.ENGINES": "cyclosweep.sweep.executors.ENGINES",
     "cyclosweep.shards.write_part": "cyclosweep.sweep.attempts.write_part",
     "cyclosweep.shards.write_parts": "cyclosweep.sweep.attempts.write_parts",
     "cyclosweep.space.is_count": "cyclosweep.sweep.axes.is_count",
+    "cyclosweep.simulate.LAW_POINTS": "cyclosweep.simulation.elastic_law.LAW_POINTS",
     "cyclosweep.summary.Record": "cyclosweep.sweep.summary.PartSummary",
     "cyclosweep.summary.record_of": "cyclosweep.sweep.summary.summary_of_part",
 }

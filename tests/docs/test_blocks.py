@@ -76,10 +76,11 @@ def test_the_study_on_the_files_page_is_one_and_its_statuses_are_all(tmp_path: P
     assert {label for label in labels if not label.startswith("limit_")} - {"ok"} <= named
 
 
-def test_nomenclature_is_up_to_date() -> None:
+def test_nomenclature_and_list_of_moves_are_up_to_date() -> None:
     spec = importlib.util.spec_from_file_location("generate", ROOT / "docs" / "generate.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    assert (ROOT / "docs" / "nomenclature.md").read_text("utf-8") == module.nomenclature()
+    for name in ("nomenclature", "moved"):
+        assert (ROOT / "docs" / f"{name}.md").read_text("utf-8") == module.PAGES[name](), name

@@ -138,6 +138,19 @@ def test_the_column_of_a_negative_load_has_a_name_of_its_own(reference: cs.Drive
     assert "under -4.5 T_N" in quantity("twist_minus_4p5tn_deg").meaning
 
 
+@pytest.mark.parametrize("load", [0.5, 1, 4.5])
+def test_a_negative_load_twists_as_far_the_other_way(reference: cs.Drive, load: float) -> None:
+    frame = cs.sweep(cs.Space.grid(reference, output_pin_count=[6, 8]), loads_tn=[load, -load])
+    forth, back = (name for name in frame.columns if name.startswith("twist"))
+    assert back == forth.replace("twist_", "twist_minus_")
+    assert frame[back].to_list() == (-frame[forth]).to_list()
+    assert all(value > reference.free_play_deg for value in frame[forth])
+    alone = reference.evaluate((load, -load))
+    assert alone[back] == -alone[forth]  # type: ignore[operator]
+    unit = quantity(back)
+    assert (unit.unit, f" -{load:g} T_N" in unit.meaning) == ("deg", True)
+
+
 def test_numbers_of_numpy_make_the_same_study(reference: cs.Drive) -> None:
     axes = {"eccentricity_mm": (0.3, 0.8), "output_pin_count": (6, 12)}
     plain = cs.Space.sobol(reference, 16, seed=3, **axes)

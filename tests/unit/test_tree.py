@@ -167,6 +167,14 @@ def test_a_stage_imports_only_from_stages_before_it(path: Path) -> None:
             assert stage == own or stage in STAGES[own], f"imports {module_of(other)}"
 
 
+def test_contributing_lists_every_folder() -> None:
+    page = (ROOT.parent / "CONTRIBUTING.md").read_text("utf-8")
+    for folder in (ROOT / "cyclosweep").iterdir():
+        if (folder / "__init__.py").exists():
+            assert f"| `{folder.name}/` |" in page, folder.name
+            assert folder.name in MAY_IMPORT
+
+
 def test_the_product_knows_the_challenge_by_one_command_alone() -> None:
     knowing = {
         path.relative_to(ROOT).as_posix()
