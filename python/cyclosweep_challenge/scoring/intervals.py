@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ class Estimate:
 NOTHING = Estimate(float("nan"), float("nan"), float("nan"), 0)
 
 
+@lru_cache(maxsize=4096)
 def share(hits: int, count: int, level: float = 0.95) -> Estimate:
     """Share with its exact two-sided interval [1]_.
 

@@ -29,7 +29,7 @@ from cyclosweep_challenge.trial.seal import SealError
 PROOF = Path(__file__).parents[3] / "proof"
 STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
-SMALL = Size(null=4, opened=4, concealed=2, tuning=2, coloured=2, samples=400, steps=2)
+SMALL = Size(null=4, opened=4, concealed=2, tuning=2, coloured=2, samples=300, steps=2)
 
 
 def quiet() -> Console:
@@ -310,7 +310,7 @@ def test_a_contest_alone_has_its_page_beside_the_proof(
 ) -> None:
     # The slowest of the cheap opponents has tests of its own and no row that is looked at here.
     monkeypatch.setattr(opponents_contest, "CHEAP", opponents_contest.CHEAPEST)
-    size = replace(CONTEST, opened=24, coloured=12, rich_open=12, samples=400, steps=1)
+    size = replace(CONTEST, opened=24, coloured=12, rich_open=12, samples=200, steps=1)
     size = replace(size, rich_null=4, poor_null=4, coloured_rich_null=4, coloured_poor_null=4)
     out, docs = tmp_path / "contest", tmp_path / "docs"
     write_paper(whole, docs)
@@ -337,7 +337,7 @@ def test_a_contest_alone_has_its_page_beside_the_proof(
     assert not (out / "measured").exists()
 
     # A second contest, on one programme, has a page of its own that shows no other.
-    poor = replace(CONTEST_POOR, opened=24, coloured=12, samples=400, steps=1)
+    poor = replace(CONTEST_POOR, opened=24, coloured=12, samples=200, steps=1)
     poor = replace(poor, poor_null=8, coloured_poor_null=8)
     run_record(Record(tmp_path / "poor", 60, poor, options), quiet())
     page = write_paper(tmp_path / "poor", docs)
