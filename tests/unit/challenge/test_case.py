@@ -31,7 +31,7 @@ def test_oracle_has_the_mean_and_spread_it_claims(noise: str) -> None:
         make_case(s, effects=("load_asymmetry",), d=4.0, programme="poor", noise=noise).truth[
             "causes"
         ][0]["oracle_z"]
-        for s in range(150)
+        for s in range(60)
     ]
     assert np.mean(z) == pytest.approx(4.0, abs=0.35)
     assert np.std(z) == pytest.approx(1.0, abs=0.25)

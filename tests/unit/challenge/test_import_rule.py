@@ -65,5 +65,42 @@ def test_nothing_that_predicts_or_diagnoses_knows_of_the_challenge() -> None:
     assert knowing == ["cli/challenge.py"]
 
 
+ORDER = ("rig", "trial", "opponents", "scoring", "board", "runner", "measured", "record")
+"""Folders, each of which imports from those before it alone."""
+
+
+def module_of(path: Path) -> str:
+    """Name of a file's module."""
+    return ".".join(path.relative_to(ROOT.parent).with_suffix("").parts).removesuffix(".__init__")
+
+
+def own_imports(path: Path) -> set[str]:
+    """Modules of the challenge that a file imports."""
+    modules = {module_of(file) for file in FILES}
+    return {name for name in imported(path) if name in modules}
+
+
+def test_no_folder_imports_one_after_it() -> None:
+    folders = {path.relative_to(ROOT).parts[0] for path in FILES if path.parent != ROOT}
+    assert folders == set(ORDER)
+    places = {name: k for k, name in enumerate(ORDER)}
+    upward = [
+        (module_of(path), name)
+        for path in FILES
+        if path.parent != ROOT
+        for name in own_imports(path)
+        if name.count(".") and places[name.split(".")[1]] > places[path.parent.name]
+    ]
+    assert upward == []
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    imports = {module_of(path): own_imports(path) for path in FILES}
+    assert sum(map(len, imports.values())) > 100
+    while leaves := {name for name, needed in imports.items() if not needed & set(imports)}:
+        imports = {name: needed for name, needed in imports.items() if name not in leaves}
+    assert imports == {}
+
+
 def test_rule_sees_the_rig() -> None:
     assert {"rig.py", "balance.py", "pins.py", "creep.py"} <= {path.name for path in FILES}

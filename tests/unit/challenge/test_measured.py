@@ -154,7 +154,9 @@ def test_confounded_causes_are_answered_right_by_doubt(diagnosis: dict, good: bo
 
 @pytest.mark.shared
 def test_all_real_files_repeat_but_the_one_that_drifts(shared_recordings: Path) -> None:
-    for path in sorted((shared_recordings / "cycloidal-13-to-1").glob("*.csv.gz")):
+    files = sorted((shared_recordings / "cycloidal-13-to-1").glob("*.csv.gz"))
+    assert len(files) == 5
+    for path in files:
         null = repeated_null(read_loops(path))
         assert null.torque_nm.size > 400
         assert repeats(null) is ("910_unr_runin1" not in path.name)
