@@ -49,8 +49,7 @@ def _no_reflection(drive: Drive, results: Results) -> Results:
 
 
 def _no_efficiency(drive: Drive, results: Results) -> Results:
-    eta = results["torque_transfer_efficiency"]
-    return assembled(drive, results, efficiency=1 / eta)
+    return assembled(drive, results, efficiency=1 / results["compliance_factor"])
 
 
 def _arc_tangent(drive: Drive, results: Results) -> Results:
@@ -65,6 +64,13 @@ def _one_disc_carries_all(drive: Drive, results: Results) -> Results:
     factor = drive.disc_count
     moved = {"pin_force_max_n", "pin_bending_stress_mpa"}
     return {name: value * (factor if name in moved else 1) for name, value in results.items()}
+
+
+def _force_of_even_pins(drive: Drive, results: Results) -> Results:
+    contacts = drive.disc_count * drive.output_pin_count
+    force = 4e3 * drive.output_torque_nm / (contacts * drive.output_pin_circle_radius_mm)
+    stress = results["pin_bending_stress_mpa"] * force / results["pin_force_max_n"]
+    return {**results, "pin_force_max_n": force, "pin_bending_stress_mpa": stress}
 
 
 def _circular_frequency(_: Drive, results: Results) -> Results:
@@ -143,6 +149,11 @@ BROKEN_MODELS: tuple[Model, ...] = (
         "one disc carries all",
         "the pin's force as if one disc carried the whole torque",
         change_results=_one_disc_carries_all,
+    ),
+    Model(
+        "odd pins as even",
+        "the pin's force as 4 T_O / (n N_OP R_OP) for odd numbers of pins too",
+        change_results=_force_of_even_pins,
     ),
     Model(
         "frustum as a cylinder",

@@ -149,7 +149,7 @@ def assembled(
     reflection : float
         Factor on the reflection of Eq. (12) [1].
     efficiency : float
-        Factor on the twist of Eq. (13) [1].
+        Factor on the compliance of Eq. (13) [1].
 
     Returns
     -------
@@ -162,13 +162,16 @@ def assembled(
         more = (pin_compliance - results["pin_compliance_rad_per_nm"]) / drive.output_pin_count
         share = results["pin_participation_statics"]
         moved["pin_compliance_rad_per_nm"] = pin_compliance
-        moved["output_compliance_rad_per_nm"] = output + more
+        by_statics = drive.criterion == "statics"
+        moved["output_compliance_rad_per_nm"] = output + (more / share if by_statics else more)
         moved["output_compliance_statics_rad_per_nm"] += more / share
     at_output = moved["output_compliance_rad_per_nm"] / output
     at_input = at_output * reflection
     moved["output_stiffness_nm_per_arcmin"] /= at_output
     moved["reflected_compliance_rad_per_nm"] *= at_input
     moved["reflected_stiffness_nm_per_rad"] /= at_input
+    moved["compliance_factor"] *= efficiency
+    moved["natural_frequency_with_efficiency_hz"] /= math.sqrt(efficiency)
     for name in results:
         if name.startswith("natural_frequency"):
             moved[name] /= math.sqrt(at_input)
