@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.verify.holdout import distance_to_curve, replicate_floor
 from cyclosweep.simulation.simulate import EffectValue, Model, elastic_law
 from tests.support.arrays import Floats
+from tests.support.published_schema import check_content
 
 SLIDE = {"slip_deg": 0.05, "scatter": 0.8, "slack": 0.0, "growth": 0.6, "reference_nm": 8.0}
 
@@ -138,6 +139,7 @@ def test_calibration_of_a_loop_is_found(found: cs.Diagnosis) -> None:
 
 
 def test_loop_is_described(found: cs.Diagnosis) -> None:
+    check_content(found.content)
     topics = {row["topic"] for row in found.content["findings"]}
     assert {
         "play", "friction hysteresis", "friction that grows with load", "stiffness", "staircase",
@@ -172,6 +174,7 @@ def test_drift_between_fitted_runs_is_seen(changes: bool) -> None:
     half = first.run >= 102
     loops = first.with_angle(np.where(half, second.angle_deg, first.angle_deg))
     found = cs.diagnose(loops, drive(), full=False)
+    check_content(found.content)
     assert found.content["stationary"] is not changes
     assert ("unfit for a stiffness" in found.statement) is changes
 

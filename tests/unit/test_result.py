@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -13,14 +12,7 @@ import cyclosweep as cs
 from cyclosweep.result import Answer, answer_of, content_of
 from cyclosweep.result.json_form import json_text
 from cyclosweep.result.schema import json_schema
-
-PUBLISHED = Path(__file__).parents[2] / "docs" / "diagnosis.schema.json"
-
-
-def check(content: dict[str, Any]) -> None:
-    """Hold a content against the published schema, and read it back."""
-    jsonschema.Draft202012Validator(json.loads(PUBLISHED.read_text("utf-8"))).validate(content)
-    assert content_of(answer_of(content)) == content
+from tests.support.published_schema import PUBLISHED, check_content
 
 
 def test_the_published_schema_is_that_of_the_types() -> None:
@@ -37,7 +29,7 @@ def test_every_key_has_a_description() -> None:
 
 def test_an_answer_of_defaults_has_every_key_and_keeps_the_schema() -> None:
     content = content_of(Answer(verdict="DATA_FAULT"))
-    check(content)
+    check_content(content)
     left_out = {"unknown", "drift"}
     assert set(content) == {entry.name for entry in dataclasses.fields(Answer)} - left_out
     assert content["self_check"] == content["next_experiment"] == {}
@@ -56,7 +48,7 @@ def test_a_wrong_value_is_named(change: dict[str, Any], where: str) -> None:
     with pytest.raises(cs.InputError, match=where):
         answer_of(content)
     with pytest.raises(jsonschema.ValidationError):
-        check(content)
+        check_content(content)
 
 
 def test_a_missing_verdict_is_named() -> None:
