@@ -9,14 +9,15 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any, cast
 
 import polars as pl
 import pytest
 
 import cyclosweep as cs
 from cyclosweep.sweep.attempts import write_parts
+from cyclosweep.sweep.dataset import Dataset
 from cyclosweep.sweep.executors import dask_executor
-from cyclosweep.sweep.shards import Dataset
 
 distributed = pytest.importorskip("distributed", reason="the dask extra is not installed")
 pytestmark = pytest.mark.filterwarnings("default")
@@ -49,7 +50,7 @@ def first_part_in(folder: Path, seconds: float = 60.0) -> None:
 def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path: Path, alone: pl.DataFrame) -> None:
     folder = tmp_path / "study"
     with dask_executor(2, None) as executor:
-        pids = list(executor._client.run(os.getpid).values())
+        pids = list(cast("Any", executor)._client.run(os.getpid).values())
         assert len(pids) == 2
 
         def kill() -> None:
@@ -74,13 +75,13 @@ def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(
 ) -> None:
     folder = tmp_path / "study"
     address = tmp_path / "scheduler.json"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     scheduler = subprocess.Popen(
         [
             *(sys.executable, "-m", "distributed.cli.dask_scheduler"),
             *("--port", "0", "--no-dashboard", "--scheduler-file", str(address)),
         ],
-        **quiet,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
     worker = subprocess.Popen(
         [
@@ -88,7 +89,8 @@ def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(
             *("--scheduler-file", str(address), "--no-nanny", "--nthreads", "1"),
             "--no-dashboard",
         ],
-        **quiet,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
     try:
         end = time.monotonic() + 60

@@ -9,7 +9,8 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.sweep import shards
-from cyclosweep.sweep.dataset import Part, PartSummary
+from cyclosweep.sweep.dataset import Dataset, Part
+from cyclosweep.sweep.summary import PartSummary
 
 COUNT, ROWS = 2**14, 2**11
 
@@ -18,7 +19,7 @@ def space() -> cs.Space:
     return cs.Space.sobol(cs.Drive.reference_87(), COUNT, eccentricity_mm=(0.3, 0.8))
 
 
-class KillsItsWorker(shards.Dataset):
+class KillsItsWorker(Dataset):
     """Kills the process that computes one part, once or always."""
 
     def write(self, part: Part) -> PartSummary:
@@ -51,7 +52,7 @@ def test_a_part_that_always_kills_its_worker_is_named_and_the_rest_kept(
     assert len(list(folder.glob("part-*.parquet"))) == 7
 
 
-class FailsAlways(shards.Dataset):
+class FailsAlways(Dataset):
     tried = 0
 
     def write(self, part: Part) -> PartSummary:

@@ -22,7 +22,7 @@ def solve_slip(
     anchor = np.full(len(slip), start[0])
 
     def elastic(twist: float) -> float:
-        return np.sign(twist) * max(abs(twist) - play, 0.0) / compliance
+        return float(np.sign(twist)) * max(abs(twist) - play, 0.0) / compliance
 
     def force(at: float, base: float) -> float:
         state = float(np.sum(share * np.clip((at - anchor) / slip, -1, 1)))

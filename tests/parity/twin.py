@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cyclosweep as cs
@@ -295,7 +296,7 @@ def frequency(compliance: float | None, inertia: float | None) -> float | None:
     return math.sqrt(1 / (compliance * inertia)) / (2 * math.pi)
 
 
-def refusals(values: dict[str, float], kinds: list[str]) -> set[str]:
+def refusals(values: dict[str, float], kinds: Sequence[str]) -> set[str]:
     """Every status that a variant's inputs deserve, whichever is met first; empty when none.
 
     ``values`` in the user's units as :meth:`cyclosweep.Drive.values` names them.

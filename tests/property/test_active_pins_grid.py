@@ -40,7 +40,8 @@ def counted(drive: cs.Drive) -> dict[Criterion, npt.NDArray[np.int16]]:
     def is_inside(angle: float) -> npt.NDArray[np.bool_]:
         # |c|^2 of c = e u(theta) + R u(angle - theta / i), by the law of cosines.
         along = ahead * np.cos(angle) + aside * np.sin(angle)
-        return e**2 + radius**2 + 2 * e * radius * along < radius**2
+        inside: npt.NDArray[np.bool_] = e**2 + radius**2 + 2 * e * radius * along < radius**2
+        return inside
 
     for angle in np.radians(twin.hole_angles(drive)):
         for disc in range(drive.disc_count):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 import tracemalloc
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -40,7 +40,8 @@ def points(space: cs.Space, start: int | None = None, stop: int | None = None) -
 
 
 def unit(space: cs.Space, name: str, low: float, high: float) -> npt.NDArray[np.float64]:
-    return (points(space)[name] - low) / (high - low)
+    scaled: npt.NDArray[np.float64] = (points(space)[name] - low) / (high - low)
+    return scaled
 
 
 def test_a_grid_is_the_product_of_its_axes(reference: cs.Drive) -> None:
@@ -223,7 +224,7 @@ def test_a_space_is_cut_in_steps_of_one(reference: cs.Drive) -> None:
         space[::2]
     with pytest.raises(IndexError):
         space[2]
-    assert [drive.output_pin_count for drive in space] == [6, 8]
+    assert [drive.output_pin_count for drive in cast("Iterable[cs.Drive]", space)] == [6, 8]
 
 
 def test_the_one_space_too_large_for_len(reference: cs.Drive) -> None:

@@ -5,6 +5,7 @@ Its laws are chosen to differ in form from those the diagnosis fits.
 
 import itertools
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -49,9 +50,9 @@ def programme(
         run += [r + 1] * n
         crank += [spots[rng.integers(7)] if kind == "rich" else 0.0] * n
         clock += n / scale + rng.uniform(150, 300)
-    torque, time = np.array(torque), np.array(time)
-    warm = 20 + 8 * (1 - np.exp(-time / 3000)) + 1.2 * np.sin(time / 400 + rng.uniform(0, 6))
-    return torque, time, np.array(run), np.array(crank), warm
+    at = np.array(time)
+    warm = 20 + 8 * (1 - np.exp(-at / 3000)) + 1.2 * np.sin(at / 400 + rng.uniform(0, 6))
+    return np.array(torque), at, np.array(run), np.array(crank), warm
 
 
 def _solve(law: Callable[[Floats], Floats], target: Floats) -> Floats:
@@ -73,6 +74,18 @@ def effect(
     warm: Floats,
 ) -> Floats:
     """Extra twist [deg] that an effect makes, of arbitrary size."""
+    return np.asarray(_effect(name, rng, torque, time, run, crank, warm), dtype=np.float64)
+
+
+def _effect(
+    name: str,
+    rng: np.random.Generator,
+    torque: Floats,
+    time: Floats,
+    run: Integers,
+    crank: Floats,
+    warm: Floats,
+) -> Any:
     side = np.where(torque >= 0, 1.0, -1.0)
     load, top = np.abs(torque), np.abs(torque).max()
     starts = np.r_[True, np.diff(run) != 0]
@@ -124,11 +137,11 @@ def effect(
         wave = np.cos(np.radians(m * crank) + rng.uniform(0, 6.3))
         return torque * (wave + 0.2 * wave**2)
     if name == "transmission_error":
-        out = sum(
+        waves = [
             np.cos(np.radians(m * crank) + rng.uniform(0, 6.3)) * rng.uniform(0.2, 1) / m
             for m in range(1, rng.integers(2, 5))
-        )
-        return out * np.ones(len(torque))
+        ]
+        return np.sum(waves, axis=0)
     if name == "thermal_drift":
         return warm - 20.0
     if name == "viscous_drag":
@@ -166,7 +179,7 @@ def noise_of(rng: np.random.Generator, n: int, family: str, sigma: float) -> Flo
             out[i] = rho * out[i - 1] + np.sqrt(1 - rho**2) * white[i]
         return sigma * out
     if family == "t3":
-        return sigma * rng.standard_t(3, n) / np.sqrt(3)
+        return np.asarray(sigma * rng.standard_t(3, n) / np.sqrt(3))
     if family == "outliers":
         out = rng.standard_normal(n)
         out[rng.random(n) < 0.01] *= 12

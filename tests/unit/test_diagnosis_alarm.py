@@ -92,6 +92,7 @@ def test_shapes_grow_and_shrink() -> None:
     assert creep.poorer({"time_constant_s": 9.0}, np.array([True])) is None
     takeup = named("clearance_takeup")
     grown = takeup.richer({"first_nm": 4.0, "range_nm": 2.0}, {"kink_1_nm": 9.0})
+    assert grown is not None
     assert list(grown.values()) == [4.0, 6.0, 9.0]
     waves = named("transmission_error").richer({"order_1": 2.0}, {"order_1": 1.0, "order_2": 2.0})
     assert waves == {"order_1": 1.0, "order_2": 2.0}

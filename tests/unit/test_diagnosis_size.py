@@ -1,7 +1,6 @@
 """Sizes of effects and their intervals."""
 
 from collections.abc import Callable
-from types import SimpleNamespace
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +9,7 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fit import ContactFit, fit
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of, spread_of_size
 from cyclosweep.diagnosis.prepare.noise import estimate_noise
@@ -24,7 +23,7 @@ KNOWN = {effect.name: effect for effect in effects()}
 
 def fitted(
     name: str, shape: Shape, angle: Floats, torque: Floats, run: npt.NDArray[np.int64]
-) -> SimpleNamespace:
+) -> ContactFit:
     recording = cs.Recording.from_arrays(torque, angle, run=run)
     drive = cs.Drive.reference_87()
     problem = prepare(recording, drive.nominal_line("input"), int(drive.output_pin_count))

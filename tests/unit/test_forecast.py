@@ -11,7 +11,7 @@ import cyclosweep as cs
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.verify.holdout import distance_to_curve, replicate_floor
 from cyclosweep.simulation.simulate import EffectValue, Model, elastic_law
-from tests.support.arrays import Floats
+from tests.support.arrays import Floats, present
 from tests.support.published_schema import check_content
 
 SLIDE = {"slip_deg": 0.05, "scatter": 0.8, "slack": 0.0, "growth": 0.6, "reference_nm": 8.0}
@@ -48,7 +48,7 @@ def ramps(top: float = 24.0, runs: int = 3, per_run: int = 500, kept: bool = Tru
 def measured(model: Model, steps_deg: float = 0.1, **programme: Any) -> cs.Recording:
     """Loops of a model with steps tied to the position, as a mesh makes them."""
     load = ramps(**programme)
-    return load.with_angle(with_steps(cs.simulate(model, load).angle_deg, steps_deg))
+    return load.with_angle(with_steps(present(cs.simulate(model, load).angle_deg), steps_deg))
 
 
 def with_steps(angle: Floats, steps_deg: float) -> Floats:
@@ -79,7 +79,8 @@ def test_elastic_law_is_solved_exactly() -> None:
     elastic = (24.0 - 2.0) / 1.2
     expected = 1.5 + 0.8 + 0.09 * elastic + 0.5 * 0.8 * np.log1p(elastic / 0.8)
     assert friction > 0
-    assert angle[-1] == pytest.approx(expected, abs=2e-3)
+    assert present(angle)[-1] == pytest.approx(expected, abs=2e-3)
+    assert law is not None
     assert np.all(np.diff(law.twist_deg) > 0)
 
 
@@ -95,7 +96,7 @@ def test_forecast_and_its_inverse_agree() -> None:
 def test_torque_zero_moves_both_crossings_alike() -> None:
     def crossings(zero_nm: float) -> Floats:
         load = ramps(runs=2)
-        angle = cs.simulate(truth(zero_nm), load).angle_deg
+        angle = present(cs.simulate(truth(zero_nm), load).angle_deg)
         through = np.flatnonzero((np.diff(np.sign(angle - 1.5)) != 0) & (load.run[1:] == 101))
         return load.torque_nm[through]
 
@@ -124,15 +125,17 @@ def test_free_forecast_comes_close_to_what_is_left(found: cs.Diagnosis) -> None:
 def test_written_model_is_the_fitted_one(found: cs.Diagnosis, tmp_path: Path) -> None:
     recording = found.recording
     path = tmp_path / "model.json"
+    assert found.model is not None
     path.write_text(found.model.to_json())
-    angle = cs.simulate(cs.Model.from_json(path), recording).angle_deg
+    angle = present(cs.simulate(cs.Model.from_json(path), recording).angle_deg)
     held = recording.run == 102
-    error = float(np.sqrt(np.mean((recording.angle_deg - angle)[held] ** 2)))
+    error = float(np.sqrt(np.mean((present(recording.angle_deg) - angle)[held] ** 2)))
     assert error == pytest.approx(found.content["repaired"]["holdout_rmse_deg"], rel=0.02)
 
 
 def test_calibration_of_a_loop_is_found(found: cs.Diagnosis) -> None:
     model = found.model
+    assert model is not None
     friction = next(e for e in model.effects if e.name == "friction_hysteresis").amplitudes[0]
     assert friction == pytest.approx(2.0, abs=0.5)
     assert model.torque_zero_nm == pytest.approx(0.6, abs=0.4)
@@ -160,9 +163,9 @@ def test_friction_that_never_breaks_away_gives_no_play() -> None:
 def test_distance_forgives_a_late_crossing() -> None:
     recording = measured(truth(), steps_deg=0.0)
     problem = prepare(recording, drive().nominal_line("output"), 8)
-    late = np.roll(recording.angle_deg, 4)
+    late = np.roll(present(recording.angle_deg), 4)
     rows = problem.whole_held_out
-    rms = float(np.sqrt(np.mean((late - recording.angle_deg)[rows] ** 2)))
+    rms = float(np.sqrt(np.mean((late - present(recording.angle_deg))[rows] ** 2)))
     assert distance_to_curve(problem, late, rows) < 0.5 * rms
 
 
@@ -172,7 +175,7 @@ def test_drift_between_fitted_runs_is_seen(changes: bool) -> None:
     later = replace(truth(), compliance_deg_per_nm=0.16, free_play_deg=2.0, datum_deg=2.5)
     second = measured(later if changes else truth(), runs=4, kept=False)
     half = first.run >= 102
-    loops = first.with_angle(np.where(half, second.angle_deg, first.angle_deg))
+    loops = first.with_angle(np.where(half, present(second.angle_deg), present(first.angle_deg)))
     found = cs.diagnose(loops, drive(), full=False)
     check_content(found.content)
     assert found.content["stationary"] is not changes
@@ -187,14 +190,16 @@ def test_loops_of_another_size_are_no_drift() -> None:
         torque, time_s=large.time_s, run=large.run, side="output", history="continuous",
         conditioning_runs=(100,),
     )  # fmt: skip
-    angle = with_steps(cs.simulate(truth(), loops).angle_deg, 0.1)
+    angle = with_steps(present(cs.simulate(truth(), loops).angle_deg), 0.1)
     assert cs.diagnose(loops.with_angle(angle), drive(), full=False).content["stationary"]
 
 
 def test_floor_needs_a_replicate() -> None:
     recording = measured(truth())
     problem = prepare(recording, drive().nominal_line("output"), 8)
-    assert replicate_floor(problem, problem.whole_held_out) < 0.01
+    floor = replicate_floor(problem, problem.whole_held_out)
+    assert floor is not None
+    assert floor < 0.01
     turned = recording.torque_nm.copy()
     turned[recording.run == 102] *= -1
     other = cs.Recording.from_arrays(

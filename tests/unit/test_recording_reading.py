@@ -10,6 +10,7 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.errors import InputError
 from cyclosweep.recording.signals import angle_lattice
+from tests.support.arrays import present
 
 ROWS = [
     (0.0, 0.5, 29.5, 1),
@@ -36,9 +37,9 @@ def write(folder: Path, content: str | bytes, name: str = "loop.csv", meta: str 
 
 def assert_is_the_loop(recording: cs.Recording) -> None:
     table = np.array(ROWS)
-    np.testing.assert_allclose(recording.time_s, table[:, 0])
+    np.testing.assert_allclose(present(recording.time_s), table[:, 0])
     np.testing.assert_allclose(recording.torque_nm, table[:, 1])
-    np.testing.assert_allclose(recording.angle_deg, table[:, 2])
+    np.testing.assert_allclose(present(recording.angle_deg), table[:, 2])
     np.testing.assert_array_equal(recording.run, table[:, 3])
     assert recording.runs == (1, 2)
 
@@ -116,10 +117,12 @@ abs_max = { COMMAND = 30 }
 same_time = true
 """
     recording = cs.Recording.read(write(tmp_path, text, meta=meta))
-    k = np.arange(4, 31)
-    expected = np.array([pair.mean() for pair in np.split(k, range(2, len(k), 2))])
+    counts = np.arange(4, 31)
+    expected = np.array([pair.mean() for pair in np.split(counts, range(2, len(counts), 2))])
     np.testing.assert_allclose(recording.torque_nm, expected)
-    np.testing.assert_allclose(recording.angle_deg, 360 * (0.004 * expected + 0.001), atol=1e-5)
+    np.testing.assert_allclose(
+        present(recording.angle_deg), 360 * (0.004 * expected + 0.001), atol=1e-5
+    )
     assert recording.side == "output"
     assert recording.history == "continuous"
     assert recording.reset_between_runs
@@ -170,7 +173,7 @@ def test_dial_that_wraps_and_reversed_sign_are_recognised(tmp_path: Path) -> Non
         f"{t},{(-a) % 360:.4f}\n" for t, a in zip(torque, twist, strict=True)
     )
     recording = cs.Recording.read(write(tmp_path, text))
-    np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
+    np.testing.assert_allclose(present(recording.angle_deg), twist, atol=1e-3)
     assert any("wraps at 360" in note for note in recording.notes)
     assert any("sign is reversed" in note for note in recording.notes)
 
@@ -182,7 +185,7 @@ def test_a_wide_twist_is_not_a_wrap(tmp_path: Path) -> None:
         f"{t},{a:.4f}\n" for t, a in zip(torque, twist, strict=True)
     )
     recording = cs.Recording.read(write(tmp_path, text))
-    np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
+    np.testing.assert_allclose(present(recording.angle_deg), twist, atol=1e-3)
     assert not any("wraps" in note for note in recording.notes)
 
 
@@ -312,7 +315,7 @@ def test_a_true_half_turn_is_not_a_wrap(tmp_path: Path) -> None:
         f"{t},{a:.4f}\n" for t, a in zip(torque, twist, strict=True)
     )
     recording = cs.Recording.read(write(tmp_path, text))
-    np.testing.assert_allclose(recording.angle_deg, twist, atol=1e-3)
+    np.testing.assert_allclose(present(recording.angle_deg), twist, atol=1e-3)
 
 
 def test_mostly_missing_is_a_data_fault(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from cyclosweep.recording.checks import find_faults
@@ -38,7 +39,7 @@ def test_arrays_are_copied_and_read_only() -> None:
 
 
 @pytest.mark.parametrize("run", [np.ones(79, dtype=np.int64), np.ones((80, 1), dtype=np.int64)])
-def test_a_column_of_another_shape_is_refused(run: np.ndarray) -> None:  # type: ignore[type-arg]
+def test_a_column_of_another_shape_is_refused(run: npt.NDArray[np.int64]) -> None:
     with pytest.raises(ValueError, match=r"run: found shape .*, expected \(80,\)"):
         Samples(torque_nm=TORQUE, run=run)
 

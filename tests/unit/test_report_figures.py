@@ -71,7 +71,7 @@ def test_noise_alone_stays_inside_the_band(rho: float) -> None:
         noise = rng.normal(size=600)
         for k in range(1, 600 if rho else 0):
             noise[k] = rho * noise[k - 1] + np.sqrt(1 - rho**2) * noise[k]
-        alarms += profile(x, noise, 1.0, rho).outside.any()
+        alarms += int(profile(x, noise, 1.0, rho).outside.any())
     assert alarms <= 12  # 4 expected
 
 

@@ -275,9 +275,9 @@ def test_fresh_replaces_whatever_study_was_there(tmp_path: Path) -> None:
 
 def test_a_file_in_the_folder_s_place(tmp_path: Path) -> None:
     (tmp_path / "study").write_text("mine")
-    for call in (lambda: sink(tmp_path / "study"), lambda: sink(tmp_path / "study" / "deep")):
+    for folder in (tmp_path / "study", tmp_path / "study" / "deep"):
         with pytest.raises((cs.InputError, cs.SweepError), match="study"):
-            call()
+            sink(folder)
     assert (tmp_path / "study").read_text() == "mine"
 
 

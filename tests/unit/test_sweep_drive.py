@@ -147,7 +147,7 @@ def test_an_unknown_built_in_drive() -> None:
 
 def test_drives_are_frozen(reference: cs.Drive) -> None:
     with pytest.raises((ValueError, dataclasses.FrozenInstanceError)):
-        reference.ratio = 3
+        reference.ratio = 3  # type: ignore[misc]
 
 
 def test_replacing_drops_the_mark_of_what_changed(reference: cs.Drive) -> None:

@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
@@ -24,7 +25,7 @@ ROWS = 2000
 
 
 @pytest.fixture(scope="module")
-def whole() -> object:
+def whole() -> pl.DataFrame:
     return cs.sweep(space())
 
 
@@ -67,7 +68,7 @@ def whole_parts(folder: Path) -> int:
 
 
 @pytest.mark.parametrize("engine", ["threads", "processes"])
-def test_killed_in_the_middle(tmp_path: Path, engine: str, whole: object) -> None:
+def test_killed_in_the_middle(tmp_path: Path, engine: str, whole: pl.DataFrame) -> None:
     folder = tmp_path / "study"
     with running(folder, engine) as process:
         os.killpg(process.pid, signal.SIGKILL)
@@ -80,7 +81,7 @@ def test_killed_in_the_middle(tmp_path: Path, engine: str, whole: object) -> Non
     assert {path.suffix for path in folder.iterdir()} == {".parquet", ".json"}
 
 
-def test_killed_again_and_again(tmp_path: Path, whole: object) -> None:
+def test_killed_again_and_again(tmp_path: Path, whole: pl.DataFrame) -> None:
     folder = tmp_path / "study"
     for _ in range(3):
         before = whole_parts(folder)
@@ -94,7 +95,7 @@ def test_killed_again_and_again(tmp_path: Path, whole: object) -> None:
     assert_frame_equal(cs.scan_dataset(folder).collect(), whole, check_exact=True)
 
 
-def test_interrupted_from_the_keyboard(tmp_path: Path, whole: object) -> None:
+def test_interrupted_from_the_keyboard(tmp_path: Path, whole: pl.DataFrame) -> None:
     folder = tmp_path / "study"
     with running(folder, "threads") as process:
         process.send_signal(signal.SIGINT)

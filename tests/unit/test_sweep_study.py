@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import polars as pl
@@ -16,7 +16,7 @@ import cyclosweep as cs
 from cyclosweep.design.units import quantity
 
 DRIVE = cs.Drive.reference_87()
-E = {"eccentricity_mm": (0.3, 0.8)}
+E: dict[str, Any] = {"eccentricity_mm": (0.3, 0.8)}
 
 # A space that makes no sense, and what its line must name.
 WRONG_SPACES: list[tuple[Callable[[], Any], tuple[str, ...]]] = [
@@ -26,8 +26,14 @@ WRONG_SPACES: list[tuple[Callable[[], Any], tuple[str, ...]]] = [
     (lambda: cs.Space.grid(DRIVE, eccentricity_mm=[]), ("eccentricity_mm", "no values")),
     (lambda: cs.Space.grid(DRIVE, eccentricity_mm=["0.5"]), ("eccentricity_mm", "'0.5'", "number")),
     (lambda: cs.Space.grid(DRIVE, eccentricity_mm=[True]), ("eccentricity_mm", "True", "number")),
-    (lambda: cs.Space.grid(DRIVE, eccentricity_mm=[None]), ("eccentricity_mm", "None", "number")),
-    (lambda: cs.Space.grid(DRIVE, eccentricity_mm=0.5), ("eccentricity_mm", "0.5", "list")),
+    (
+        lambda: cs.Space.grid(DRIVE, eccentricity_mm=cast("list[float]", [None])),
+        ("eccentricity_mm", "None", "number"),
+    ),
+    (
+        lambda: cs.Space.grid(DRIVE, eccentricity_mm=cast("list[float]", 0.5)),
+        ("eccentricity_mm", "0.5", "list"),
+    ),
     (lambda: cs.Space.grid(DRIVE, eccentricity_mm="0.5"), ("eccentricity_mm", "'0.5'", "list")),
     (lambda: cs.Space.grid(DRIVE, criterion=["inner"]), ("criterion", "'inner'", "published-map")),
     (lambda: cs.Space.grid(DRIVE, criterion=[0]), ("criterion", "0", "published-map")),
@@ -58,7 +64,10 @@ WRONG_SPACES: list[tuple[Callable[[], Any], tuple[str, ...]]] = [
     (lambda: cs.Space.random(DRIVE, 8, eccentricity_mm=(0.8, 0.3)), ("eccentricity_mm", "0.8")),
     (lambda: cs.Space.random(DRIVE, 8, eccentricity_mm=(0, float("inf"))), ("eccentricity_mm",)),
     (lambda: cs.Space.random(DRIVE, 8, ratio=(3.5, 10)), ("ratio", "whole")),
-    (lambda: cs.Space.random(DRIVE, 8, eccentricity_mm=0.5), ("eccentricity_mm", "0.5")),
+    (
+        lambda: cs.Space.random(DRIVE, 8, eccentricity_mm=cast("list[float]", 0.5)),
+        ("eccentricity_mm", "0.5"),
+    ),
     (lambda: cs.Space.random(DRIVE, 8, eccentricity_mm=("a", "b")), ("eccentricity_mm", "'a'")),
     (lambda: cs.Space.table(DRIVE, pl.DataFrame({"e": [1.0]})), ("e: no such input",)),
     (lambda: cs.Space.table(DRIVE, pl.DataFrame({"ratio": ["a"]})), ("ratio", "String", "numbers")),
@@ -152,16 +161,12 @@ def test_a_negative_load_twists_as_far_the_other_way(reference: cs.Drive, load: 
 
 
 def test_numbers_of_numpy_make_the_same_study(reference: cs.Drive) -> None:
-    axes = {"eccentricity_mm": (0.3, 0.8), "output_pin_count": (6, 12)}
+    axes: dict[str, Any] = {"eccentricity_mm": (0.3, 0.8), "output_pin_count": (6, 12)}
     plain = cs.Space.sobol(reference, 16, seed=3, **axes)
     wrapped = {name: tuple(map(np.int64, v)) for name, v in axes.items() if name.endswith("count")}
     numpy = cs.Space.sobol(reference, np.int32(16), seed=np.uint64(3), **{**axes, **wrapped})  # type: ignore[arg-type]
-    assert (
-        cs.Study.of(numpy, loads_tn=np.array([1, 2])).hash
-        == cs.Study.of(  # type: ignore[arg-type]
-            plain, loads_tn=[1, 2]
-        ).hash
-    )
+    loads: Any = np.array([1, 2])
+    assert cs.Study.of(numpy, loads_tn=loads).hash == cs.Study.of(plain, loads_tn=[1, 2]).hash
     grid = cs.Space.grid(
         reference,
         output_pin_count=np.array([6, 8], dtype=np.uint8),
@@ -169,8 +174,9 @@ def test_numbers_of_numpy_make_the_same_study(reference: cs.Drive) -> None:
     )
     listed = cs.Space.grid(reference, output_pin_count=[6, 8], eccentricity_mm=[0.25, 0.5, 0.75])
     assert_frame_equal(cs.sweep(grid), cs.sweep(listed), check_exact=True)
-    assert grid[np.int64(4)] == grid[4] == grid[np.uint8(4)] == grid[-2]  # type: ignore[index]
-    assert_frame_equal(cs.sweep(grid[np.int16(1) : np.int64(4)]), cs.sweep(grid[1:4]))  # type: ignore[misc]
+    four, other, part = cast("tuple[Any, Any, Any]", (np.int64(4), np.uint8(4), np.int16(1)))
+    assert grid[four] == grid[4] == grid[other] == grid[-2]
+    assert_frame_equal(cs.sweep(grid[part:four]), cs.sweep(grid[1:4]))
     with pytest.raises(TypeError):
         grid[1.0]  # type: ignore[call-overload]
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 import cyclosweep as cs
 
-COMMON = {
+COMMON: dict[str, Any] = {
     "output_pin_length_mm": 6.35,
     "youngs_modulus_gpa": 200.0,
     "poisson_ratio": 0.3,

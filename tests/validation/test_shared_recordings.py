@@ -24,6 +24,7 @@ def test_measured_ramps(shared_recordings: Path, ramp: str) -> None:
     assert recording.drive == str(EXAMPLE / "drive.toml")
     assert recording.blocking_fault is None
     # 12 s a ramp within |command| <= 24 N m at 64 ticks a second
+    assert recording.unscored is not None
     scored = ~recording.unscored
     assert all(750 < np.count_nonzero(scored & (recording.run == r)) < 790 for r in recording.runs)
     assert recording.torque_from == "motor-current"

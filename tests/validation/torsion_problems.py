@@ -32,7 +32,8 @@ def shoulder_extra_length(ratio: float, cells: int) -> float:
     along = (number[i, j], number[i, j + 1], ring[i] / h)
     i, j = np.nonzero(inside[:-1] & inside[1:])
     outward = (number[i, j], number[i + 1, j], faces[i + 1] ** 3)
-    first, second, conductance = map(np.concatenate, zip(along, outward, strict=True))
+    first, second = (np.concatenate([along[k], outward[k]]) for k in (0, 1))
+    conductance: Reals = np.concatenate([along[2], outward[2]])
     count = int(inside.sum())
     diagonal = np.bincount(first, conductance, count) + np.bincount(second, conductance, count)
     load = np.zeros(count)
@@ -40,7 +41,7 @@ def shoulder_extra_length(ratio: float, cells: int) -> float:
     diagonal[number[held, 0]] += 2 * ring[held] / h
     diagonal[number[turned, -1]] += 2 * ring[turned] / h
     load[number[turned, -1]] += 2 * ring[turned] / h
-    twist = _solve(diagonal, first, second, conductance, load, symmetric=True)
+    twist = _solve(diagonal.astype(float), first, second, conductance, load, symmetric=True)
     torque = float((twist[number[held, 0]] * 2 * ring[held] / h).sum())
     plain = 4 * small * h + 4 * large * h / ratio**4
     return (1 / torque - plain) / 8

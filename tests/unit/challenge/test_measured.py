@@ -4,6 +4,7 @@ import gzip
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -148,7 +149,9 @@ def test_whole_run_with_a_stand_in_and_none_without_data(file: Path, tmp_path: P
         ({"failure": "exit status 1"}, False),
     ],
 )
-def test_confounded_causes_are_answered_right_by_doubt(diagnosis: dict, good: bool) -> None:
+def test_confounded_causes_are_answered_right_by_doubt(
+    diagnosis: dict[str, Any], good: bool
+) -> None:
     assert doubts(diagnosis) is good
 
 

@@ -7,6 +7,7 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from filelock import FileLock
@@ -23,7 +24,8 @@ from cyclosweep_challenge.record.run import Record, RecordOptions, run_record
 from cyclosweep_challenge.record.verify import verify_log, verify_record
 from cyclosweep_challenge.rig.noise import NOISES
 from cyclosweep_challenge.runner.folders import LOCK
-from cyclosweep_challenge.runner.work import Options
+from cyclosweep_challenge.runner.work import Options, OutOfTimeError
+from cyclosweep_challenge.trial.plan import make_entry
 from cyclosweep_challenge.trial.seal import SealError
 
 PROOF = Path(__file__).parents[3] / "proof"
@@ -36,10 +38,11 @@ def quiet() -> Console:
     return Console(file=io.StringIO(), width=150)
 
 
-def make(out: Path, **changes: object) -> dict:
+def make(out: Path, **changes: Any) -> dict[str, Any]:
     options = replace(OPTIONS, **changes)
     run_record(Record(out, 40, SMALL, RecordOptions(options)), quiet())
-    return json.loads((out / "score.json").read_text())
+    score: dict[str, Any] = json.loads((out / "score.json").read_text())
+    return score
 
 
 @pytest.fixture(scope="module")
@@ -81,12 +84,12 @@ def test_a_diagnosis_never_runs_on_what_is_not_published(
 ) -> None:
     seen = []
 
-    def look(plan: list, *_: object) -> None:
+    def look(plan: list[Any], *_: object) -> None:
         log = Ledger(tmp_path / "PUBLISHED.jsonl")
         assert log.lines[-1]["event"] == "sealed"
         assert log.lines[-1]["answers"] == len(plan)
         seen.append(len(plan))
-        raise record_run.OutOfTimeError
+        raise OutOfTimeError
 
     monkeypatch.setattr(record_run, "diagnose", look)
     make(tmp_path)
@@ -113,14 +116,14 @@ def test_a_kill_between_two_diagnoses_costs_nothing(tmp_path: Path, whole: Path)
     shown = tmp_path / "parts" / COLOURED
     record = Record(tmp_path, 40, SMALL, RecordOptions(OPTIONS))
     last = record.plan(record.size.parts()[-1], 2)[1]
-    record_run.make_entry(last).write(shown / "recordings" / last.key)
+    make_entry(last).write(shown / "recordings" / last.key)
     (shown / "diagnoses" / last.key / "diagnosis.json").unlink()
     before = untimed(json.loads((whole / "score.json").read_text()))
     assert untimed(make(tmp_path)) == before
     assert verify_record(tmp_path) == []
 
 
-def untimed(score: dict) -> list:
+def untimed(score: dict[str, Any]) -> list[Any]:
     return [f for f in score["figures"] if "time" not in f["name"]]
 
 

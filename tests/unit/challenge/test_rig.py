@@ -24,7 +24,7 @@ def ramp(levels: list[float], seconds: float = 1.0) -> Programme:
     torque = np.array(levels)
     n = torque.size
     return Programme(
-        np.arange(n) * seconds,
+        np.arange(n, dtype=np.float64) * np.float64(seconds),
         torque,
         np.ones(n, dtype=np.int64),
         np.full(n, 30.0),

@@ -4,6 +4,7 @@ import io
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from filelock import FileLock
@@ -19,7 +20,7 @@ STAND_IN = Path(__file__).parent / "stand_in.py"
 OPTIONS = Options(program=(sys.executable, str(STAND_IN)), opponents="none", batch=4)
 
 
-def run(cases: int, out: Path, options: Options = OPTIONS) -> tuple[dict, str]:
+def run(cases: int, out: Path, options: Options = OPTIONS) -> tuple[dict[str, Any], str]:
     text = io.StringIO()
     console = Console(file=text, width=160)
     run_challenge(cases, 17, out, 1, mix="open", samples=500, options=options, console=console)

@@ -1,12 +1,16 @@
 """Contests of the same code, taken together."""
 
+from typing import Any
+
 import pytest
 
 from cyclosweep_challenge.record.together import behind_table, figures_over_all, over_all
 from cyclosweep_challenge.scoring.intervals import Estimate, together
 
 
-def contest(seed: int, code: str, low: float, high: float, programme: str = "poor") -> dict:
+def contest(
+    seed: int, code: str, low: float, high: float, programme: str = "poor"
+) -> dict[str, Any]:
     there = {"value": (low + high) / 2, "low": low, "high": high, "count": 500}
     who = {"who": "bic_subset", "programme": programme, "noise": "white"}
     own = {"own": {"tuned_ahead": there, "ahead": {**there, "value": -0.5, "low": -0.6}}}

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -202,8 +202,8 @@ class FrictionEffect(Effect):
 
     family = "hysteresis"
     shown_by = "loading and unloading"
-    shape_parameters = SLIP_PARAMETERS
-    forms = SLIP_FORMS
+    shape_parameters: ClassVar[tuple[Parameter, ...]] = SLIP_PARAMETERS
+    forms: ClassVar[tuple[ShapeForm, ...]] = SLIP_FORMS
     slips = True
 
     def shapes(self, history: History) -> Sequence[Shape]:
