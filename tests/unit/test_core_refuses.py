@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def test_play_refuses_nan_and_a_negative_width() -> None:
 def test_solve_slip_refuses_nan(name: str) -> None:
     arrays = {"torque": ZERO, "offset": ZERO, "restart": FRESH, "start_angle": ZERO}
     arrays |= {"slip_angle": SLIP, "share": SHARE}
-    numbers = {"free_play": 1.0, "compliance": 2.0, "limit": 0.1}
+    numbers: dict[str, Any] = {"free_play": 1.0, "compliance": 2.0, "limit": 0.1}
     if name in numbers:
         numbers[name] = math.nan
     else:
