@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.prepare.noise import estimate_noise, interval_score, orthonormal
+from cyclosweep.diagnosis.prepare.noise import interval_score, orthonormal
+from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from tests.support.arrays import Floats
 
 

@@ -12,7 +12,7 @@ from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.fit import ContactFit, fit
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of, spread_of_size
-from cyclosweep.diagnosis.prepare.noise import estimate_noise
+from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.simulation.effects import Shape, effects
 from tests.support.arrays import Floats

@@ -6,7 +6,8 @@ from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.prepare.noise import Noise, estimate_noise
+from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import Problem
 
 

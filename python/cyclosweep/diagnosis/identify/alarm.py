@@ -105,7 +105,15 @@ class Alarm:
         return self.largest(scan, scan.null_evidences(draws, rng), null_evidence(draws, rng))
 
     def excess(self, name: str, evidence: float) -> float:
-        """How far the evidence of a hypothesis is beyond the start of its excess [nat]."""
+        """How far the evidence of a hypothesis is beyond the start of its excess [nat].
+
+        Parameters
+        ----------
+        name : str
+            Name of an effect, or family of an unnamed shape.
+        evidence : float
+            In nat.
+        """
         return evidence - self.start.get(name, 0.0)
 
     def p_value(self, excess: float) -> float:

@@ -112,6 +112,12 @@ class ContactFit(FittedStructure):
 
         Valid whatever was searched (universal inference, Wasserman, Ramdas, Balakrishnan, PNAS
         2020). The errors themselves are not needed.
+
+        Parameters
+        ----------
+        predictions : sequence of LeftOutPrediction
+        baseline_deg, structure_deg : float
+            Root mean square errors over all of them [deg].
         """
         if not self.terms:
             return 1.0
@@ -123,7 +129,15 @@ class ContactFit(FittedStructure):
         return []
 
     def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
-        """Nothing: a loop is described only where it is predicted as a whole."""
+        """Nothing: a loop is described only where it is predicted as a whole.
+
+        Parameters
+        ----------
+        repeats : float, optional
+            Not needed.
+        unsteady : bool
+            Not needed.
+        """
         return ()
 
 
@@ -207,6 +221,7 @@ def fit(
 
 
 def _value(term: Term, name: str) -> float:
+    """Value of a nonlinear parameter of a term."""
     return term.amplitude if name == "amplitude" else float(term.shape[name])
 
 

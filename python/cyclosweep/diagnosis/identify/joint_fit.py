@@ -150,6 +150,7 @@ class JointFit:
         return shifted - white @ beta, history, mean, beta
 
     def _calibrated(self, history: History, beta: Floats, mean: Floats) -> History:
+        """Path of the shaft with the fitted line, and with the fitted twist where nothing slips."""
         play = history.free_play_deg if self.problem.one_sided else max(float(beta[2]), 0.0)
         compliance = float(beta[1])
         if compliance <= 0:
@@ -186,7 +187,7 @@ class JointFit:
                     break
 
     def _follow_amplitudes(self, history: History, beta: Floats) -> None:
-        """Let the shapes follow where they depend on the amplitudes."""
+        """Compute shapes anew that depend on the amplitudes."""
         first, terms = self.problem.line_columns, []
         for term in self.terms:
             width = 0 if term.slips else term.columns(history).shape[1]
@@ -222,9 +223,14 @@ def _levels(noise: Noise) -> list[float]:
 
 
 def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
-    """Least squares by normal equations on scaled columns, a whisker of ridge for lost ranks.
+    """Least squares by normal equations on scaled columns, with a little ridge for lost ranks.
 
-    `hold` is the precision with which each parameter is known beforehand to be near zero.
+    Parameters
+    ----------
+    design : ndarray, shape (n, k)
+    target : ndarray, shape (n,)
+    hold : ndarray, shape (k,)
+        Precision with which each parameter is known beforehand to be near zero.
     """
     norm = np.sqrt(np.einsum("ij,ij->j", design, design))
     norm = np.where(norm > 0, norm, 1.0)

@@ -68,7 +68,21 @@ ALWAYS_HIDDEN = (
 def testability(
     search: Search, candidate: Candidate, p_of: "dict[str, float]"
 ) -> list[Testability]:
-    """Judge every testable named effect against the residual of a candidate."""
+    """How well a recording shows each named effect beside a structure.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+        The structure, whose residual is looked at.
+    p_of : dict of str to float
+        p-value of each effect against the baseline.
+
+    Returns
+    -------
+    list of Testability
+        Effects that the recording can show and the structure does not have.
+    """
     fitted = candidate.fit
     raw = _recalibration(fitted)(search.library.columns)
     scan = candidate.scan
@@ -108,12 +122,30 @@ def testability(
 
 
 def size_of(fitted: FittedStructure, index: int) -> Floats:
-    """Twist of a term after re-calibration, on the fitted rows [deg]."""
+    """Twist of a term that no other calibration would take up [deg].
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+    index : int
+        Index of the term.
+
+    Returns
+    -------
+    ndarray, shape (fitted,)
+    """
     return _recalibration(fitted)(fitted.contribution(index)[fitted.problem.fitted])
 
 
 def spread_of_size(fitted: FittedStructure, index: int) -> float:
-    """Standard error of the largest twist of a term: of its amplitudes and its shape [deg]."""
+    """Standard error of the largest twist of a term, by its amplitudes and its shape [deg].
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+    index : int
+        Index of a linear term.
+    """
     use = fitted.problem.fitted
     recalibrated = _recalibration(fitted)
 

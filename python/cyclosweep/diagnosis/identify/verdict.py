@@ -1,4 +1,4 @@
-"""The verdict: what the evidence allows to say, and no more."""
+"""The verdict: which explanation, if any, the evidence supports."""
 
 from dataclasses import dataclass
 
@@ -40,7 +40,18 @@ class Decision:
 def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> Decision:
     """Choose the verdict from the visited structures.
 
-    ``bounds`` are the testable effects at the baseline, for the case that nothing is found.
+    Parameters
+    ----------
+    search : Search
+        After it has run.
+    bounds : list of Testability
+        The testable effects beside the baseline, for the case that nothing is found.
+    tolerance_deg : float
+        Size below which an effect does not matter [deg].
+
+    Returns
+    -------
+    Decision
     """
     if search.baseline.largest_excess < search.threshold:
         clear = bool(bounds) and all(b.upper95_deg < tolerance_deg for b in bounds)
@@ -84,7 +95,15 @@ def decide_whole_loop(chosen: Candidate | None, *, repeats: bool) -> Decision:
 
 
 def unit_slip(ratio: float, gear_ratio: float) -> str | None:
-    """Name the mistake behind a compliance so many times its nominal value."""
+    """Likely mistake of units behind a wrong compliance, in words; None where none fits.
+
+    Parameters
+    ----------
+    ratio : float
+        Measured compliance over the nominal one.
+    gear_ratio : float
+        Ratio of the drive.
+    """
     known = (
         (180 / np.pi, "57.3: angles in rad read as deg, or the reverse"),
         (1000.0, "1000: N mm read as N m, or mrad as rad"),

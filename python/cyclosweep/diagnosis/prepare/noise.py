@@ -3,18 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import gammaln, ndtr
+from scipy.special import ndtr
 
 from cyclosweep.simulation.effects.history import Floats
 
-MODEL_ERROR = 0.945
-"""An autocorrelation above this is taken for structured error of the model, not for noise."""
-
 INDEPENDENT_PIECES = 40.0
 """Rough number of independent pieces of a residual that is error of the model."""
-
-COARSE_STEP = 3.5
-"""Resolution steps above this many standard deviations need the interval likelihood."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +76,17 @@ class Noise:
 
         The residual is the normalised score of the likelihood, so that least squares on it is one
         step of scoring, whatever the tails and the resolution.
+
+        Parameters
+        ----------
+        angle, mean : ndarray, shape (n,)
+            Measured and modelled twist of the fitted rows [deg].
+
+        Returns
+        -------
+        residual : ndarray, shape (n,)
+        weight : ndarray, shape (n,)
+            One over the standard deviation that a row has for this purpose [1/deg].
         """
         if self.step_deg > 0:
             score, information = interval_score(angle, mean, self.sigma_deg, self.step_deg)
@@ -97,7 +102,15 @@ class Noise:
         return white, even
 
     def design(self, columns: Floats, weight: Floats) -> Floats:
-        """Whitened columns in the unit of the residual."""
+        """Whitened columns in the unit of the residual.
+
+        Parameters
+        ----------
+        columns : ndarray, shape (n,) or (n, k)
+            Twist for unit parameters [deg].
+        weight : ndarray, shape (n,)
+            As `residual` gives it [1/deg].
+        """
         return self.whiten(columns * (weight if columns.ndim == 1 else weight[:, None]))
 
     def with_sigma(self, sigma_deg: float) -> "Noise":
@@ -106,7 +119,18 @@ class Noise:
 
 
 def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
-    """Score of rows of unit variance under Student's distribution, and its slope."""
+    """Score of rows of unit variance under Student's distribution, and its slope.
+
+    Parameters
+    ----------
+    white : ndarray, shape (n,)
+    tail : float
+        Degrees of freedom of the distribution.
+
+    Returns
+    -------
+    score, slope : ndarray, shape (n,)
+    """
     scale2 = (tail - 2.0) / tail if tail > 2.05 else 0.09
     spread = tail * scale2 + white**2
     score = (tail + 1.0) * white / spread
@@ -114,19 +138,52 @@ def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
 
 
 def interval_score(angle: Floats, mean: Floats, sigma: float, step: float) -> tuple[Floats, Floats]:
-    """Score and expected information of the mean of a reading rounded to a step."""
+    """Score and expected information of the mean of a reading rounded to a step.
+
+    Parameters
+    ----------
+    angle, mean : ndarray, shape (n,)
+        Reading and mean [deg].
+    sigma : float
+        Standard deviation before rounding [deg].
+    step : float
+        Step of the reading [deg].
+
+    Returns
+    -------
+    score : ndarray, shape (n,)
+        Derivative of the log likelihood by the mean [1/deg].
+    information : ndarray, shape (n,)
+        Mean square of the score [1/deg^2].
+    """
     centre = angle - mean
-    score = _bin_score(centre, sigma, step)[0]
+    score = bin_score(centre, sigma, step)[0]
     nearest = mean - np.round((mean - angle) / step) * step - angle
     information = np.zeros_like(mean)
     for k in (-2, -1, 0, 1, 2):
-        value, probability = _bin_score(-nearest + k * step, sigma, step)
+        value, probability = bin_score(-nearest + k * step, sigma, step)
         information += value**2 * probability
     return score, information
 
 
-def _bin_score(centre: Floats, sigma: float, step: float) -> tuple[Floats, Floats]:
-    """Derivative of the log-probability of a bin centred so far from the mean, and that."""
+def bin_score(centre: Floats, sigma: float, step: float) -> tuple[Floats, Floats]:
+    """Derivative of the log-probability of a bin by the mean, and the probability itself.
+
+    Parameters
+    ----------
+    centre : ndarray, shape (n,)
+        Centre of the bin less the mean [deg].
+    sigma : float
+        Standard deviation [deg].
+    step : float
+        Width of the bin [deg].
+
+    Returns
+    -------
+    score : ndarray, shape (n,)
+        In 1/deg.
+    probability : ndarray, shape (n,)
+    """
     low, high = (centre - step / 2) / sigma, (centre + step / 2) / sigma
     flip = low > 0
     low, high = np.where(flip, -high, low), np.where(flip, -low, high)
@@ -139,190 +196,23 @@ def _bin_score(centre: Floats, sigma: float, step: float) -> tuple[Floats, Float
     return np.where(flip, -score, score), probability
 
 
-def estimate_noise(
-    angle: Floats,
-    rich: Floats,
-    gap: Floats,
-    resolution: float,
-    weight: Floats,
-) -> Noise:
-    """Noise from what a rich model leaves, by restricted maximum likelihood.
+def orthonormal(columns: Floats, tolerance: float = 1e-9) -> Floats:
+    """Orthonormal basis of the columns' span, strongest direction first.
 
     Parameters
     ----------
-    angle : ndarray, shape (n,)
-        Measured twist [deg].
-    rich : ndarray, shape (n, k)
-        Orthonormal columns of a model rich enough to leave hardly anything but noise.
-    gap : ndarray, shape (n,)
-        Steps since the row before, zero where unrelated.
-    resolution : float
-        Step of the angle reading [deg].
-    weight : ndarray, shape (n,)
-        Samples averaged in each row.
+    columns : ndarray, shape (n, k)
+        Linearly dependent ones do no harm.
+    tolerance : float
+        Singular values below this share of the largest are left out.
+
+    Returns
+    -------
+    ndarray, shape (n, rank)
     """
-    count = len(angle)
-    basis = rich
-    limit = max(count // 3, 3)
-    basis = basis[:, :limit]
-    freedom = max(count - basis.shape[1], 1)
-    left = angle - basis @ (basis.T @ angle)
-    scale = max(1.4826 * float(np.median(np.abs(left))), 1e-12)
-    scale *= np.sqrt(count / freedom)
-    clean = np.clip(left, -4 * scale, 4 * scale)
-    best, upper = _correlation(clean, basis, gap)
-    rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
-    sigma, tail, moments = _size(rough, left, basis, freedom)
-    sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
-    averaged = float(np.median(weight)) > 1.5
-    if resolution > 0 and not averaged:
-        if sigma**2 < 0.165 * resolution**2 and count >= 60:
-            fine = _interval_sigma(angle, rich, resolution, sigma)
-            if fine < resolution / COARSE_STEP:
-                known = Noise(fine, 0.0, 0.0, np.inf, resolution, freedom, gap)
-                mean = _scored_mean(angle, rich[:, :12], known, sigma)
-                score, weight = known.residual(angle, mean)
-                best, upper = _correlation(score, basis[:, :1], gap)
-                telling = float(np.sum((weight * fine) ** 2))
-                return replace(
-                    known,
-                    correlation=upper,
-                    best_correlation=best,
-                    freedom=max(telling - 6.0, 4.0),
-                )
-        sigma = max(sigma, resolution / np.sqrt(12.0))
-    if best > MODEL_ERROR:
-        # What is left is not noise but error of the model; filtered, it would be fitted by its
-        # kinks. Rows count equally then.
-        plain = max(float(np.sqrt(left @ left / freedom)), 1e-12)
-        return Noise(plain, 0.0, best, np.inf, 0.0, freedom, gap, plain, structured=True)
-    return Noise(sigma, upper, best, tail, 0.0, freedom, gap, score_moments=moments)
-
-
-def orthonormal(columns: Floats, tolerance: float = 1e-9) -> Floats:
-    """Orthonormal basis of the columns' span, strongest direction first, rank aware."""
     if columns.shape[1] == 0:
         return columns
     norm = np.linalg.norm(columns, axis=0)
     kept = columns[:, norm > 0] / norm[norm > 0]
     left, singular, _ = np.linalg.svd(kept, full_matrices=False)
     return np.asarray(left[:, singular > tolerance * singular[0]])
-
-
-def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float]:
-    """Restricted likelihood of the autocorrelation: its best value and an upper one."""
-    near = np.flatnonzero((gap > 0) & (gap < 1.5))
-    if len(near) < 20:
-        return 0.0, 0.0
-    rows = np.column_stack([basis, left])
-    now, before = rows[near], rows[near - 1]
-    alone = np.ones(len(left), dtype=bool)
-    alone[near] = False
-    current, crossed = now.T @ now, now.T @ before
-    crossed = crossed + crossed.T
-    earlier = before.T @ before
-    start = rows[alone].T @ rows[alone]
-    k = basis.shape[1]
-    freedom = len(left) - k
-    grid = np.r_[0.0:0.985:0.01]
-    value = np.empty(len(grid))
-    for index, rho in enumerate(grid):
-        gram = start + (current - rho * crossed + rho**2 * earlier) / (1 - rho**2)
-        inner, edge = gram[:k, :k], gram[:k, k]
-        sign, determinant = np.linalg.slogdet(inner)
-        rest = gram[k, k] - edge @ np.linalg.solve(inner, edge)
-        spread = len(near) * np.log(1 - rho**2)
-        value[index] = -0.5 * (spread + determinant + freedom * np.log(max(rest, 1e-300)))
-        if sign <= 0:
-            value[index] = -np.inf
-    best = int(np.argmax(value))
-    # The higher it is, the dearer an underestimate.
-    drop = 1.0 + 2.0 * grid[best] ** 2
-    within = np.flatnonzero(value > value[best] - drop)
-    if best == 0 and value[0] - value[1] > 1.0:
-        return 0.0, 0.0
-    return float(grid[best]), float(grid[within[-1]])
-
-
-def _size(
-    noise: Noise, left: Floats, basis: Floats, freedom: float
-) -> tuple[float, float, tuple[float, float]]:
-    """Size of the whitened noise, the tail of its distribution, slope and square of its score."""
-    white = noise.whiten(left)
-    inner = orthonormal(noise.whiten(basis))
-    white = white - inner @ (inner.T @ white)
-    count = len(white)
-    sigma = float(np.sqrt(white @ white / freedom))
-    if count < 100 or sigma <= 0:
-        return max(sigma, 1e-9), np.inf, (1.0, 1.0)
-    inflate = np.sqrt(count / freedom)
-    scale = 1.4826 * float(np.median(np.abs(white))) * inflate
-    best_tail, best_value, best_sigma = np.inf, -np.inf, sigma
-    for tail in (np.inf, 12.0, 7.0, 5.0, 4.0, 3.2, 2.6):
-        if np.isinf(tail):
-            value = -count * (np.log(sigma / inflate) + 0.5 * np.log(2 * np.pi)) - 0.5 * count
-            trial = sigma
-        else:
-            trial = scale
-            for _ in range(30):
-                factor = (tail + 1) / (tail + (white * inflate / trial) ** 2)
-                trial = float(np.sqrt(np.mean(factor * (white * inflate) ** 2)))
-            value = _student_likelihood(white * inflate / trial, tail) - count * np.log(trial)
-            value += count * np.log(inflate) - 3.0
-            trial *= np.sqrt(tail / (tail - 2.0))
-        if value > best_value:
-            best_tail, best_value, best_sigma = tail, value, trial
-    if np.isinf(best_tail):
-        return best_sigma, best_tail, (1.0, 1.0)
-    score, slope = student_score(white * inflate / best_sigma, best_tail)
-    return best_sigma, best_tail, (float(np.mean(slope)), float(np.mean(score**2)))
-
-
-def _student_likelihood(values: Floats, tail: float) -> float:
-    """Log likelihood of values under Student's distribution of unit scale."""
-    front = gammaln(0.5 * (tail + 1)) - gammaln(0.5 * tail) - 0.5 * np.log(np.pi * tail)
-    return float(len(values) * front - 0.5 * (tail + 1) * np.log1p(values**2 / tail).sum())
-
-
-def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float) -> Floats:
-    """One damped Fisher-scoring step of the mean of a coarse reading within a basis."""
-    score, information = interval_score(angle, mean, sigma, step)
-    gram = basis.T @ (basis * information[:, None])
-    gram += (1e-6 * np.trace(gram) / len(gram) + 1e-12) * np.eye(len(gram))
-    change = basis @ np.linalg.solve(gram, basis.T @ score)
-    longest = float(np.abs(change).max(initial=0.0))
-    return mean + change * min(1.0, 0.5 * step / max(longest, 1e-300))
-
-
-def _scored_mean(angle: Floats, basis: Floats, noise: Noise, start_sigma: float) -> Floats:
-    """Mean of a coarse reading by Fisher scoring, from wide noise down to the given one."""
-    mean = basis @ (basis.T @ angle)
-    sigma = max(start_sigma, noise.sigma_deg)
-    while True:
-        for _ in range(5):
-            mean = _scoring_step(angle, basis, mean, sigma, noise.step_deg)
-        if sigma <= noise.sigma_deg:
-            return mean
-        sigma = max(0.6 * sigma, noise.sigma_deg)
-
-
-def _interval_sigma(angle: Floats, rich: Floats, step: float, start: float) -> float:
-    """Standard deviation behind a coarse dial: the largest that the likelihood still allows.
-
-    Only readings near a step tell anything, so the model that is taken out is kept small.
-    """
-    grid = step / np.geomspace(2.0, 60.0, 24)
-    telling = len(angle) * 4.0 * grid / step
-    value = np.empty(len(grid))
-    for width in (3, 12):
-        basis = rich[:, :width]
-        mean = basis @ (basis.T @ angle)
-        for k, sigma in enumerate(grid):
-            if width > 3 and telling[k] < 20 * width:
-                break
-            for _ in range(4):
-                mean = _scoring_step(angle, basis, mean, float(sigma), step)
-            _, probability = _bin_score(angle - mean, float(sigma), step)
-            value[k] = float(np.log(np.maximum(probability, 1e-300)).sum())
-    allowed = np.flatnonzero(value > value.max() - 1.0)
-    return float(grid[allowed[0]])

@@ -116,7 +116,23 @@ def line_design(history: History, torque_nm: Floats, *, one_sided: bool) -> Floa
 def prepare(
     recording: Recording, line: NominalLine, output_pin_count: int, most_rows: int = MOST_ROWS
 ) -> Problem:
-    """Average long recordings, find the flank of every row and what to fit."""
+    """Average a long recording, find the flank in contact of every row, and what to fit.
+
+    Parameters
+    ----------
+    recording : Recording
+        With an angle.
+    line : NominalLine
+        Free play [deg] and compliance [deg/(N m)] of the drive at the recorded shaft.
+    output_pin_count : int
+        Number of output pins of the drive.
+    most_rows : int
+        About the largest number of rows.
+
+    Returns
+    -------
+    Problem
+    """
     assert recording.angle_deg is not None
     rows = _rows(recording, most_rows)
     count = int(rows[-1]) + 1
@@ -179,7 +195,7 @@ def prepare(
 
 
 def _rows(recording: Recording, most_rows: int) -> np.ndarray:
-    """Number the rows that each sample goes to; bins never cross a run, branch or hold."""
+    """Row to which each sample goes; a row never holds samples of two runs, branches or holds."""
     n = len(recording)
     size = int(np.ceil(n / most_rows))
     if size <= 1:
@@ -203,6 +219,19 @@ def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
     """Steps between fitted rows in units of their run's usual step.
 
     Zero across runs and long breaks. Runs may be sampled at different rates.
+
+    Parameters
+    ----------
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+    run : ndarray of int, shape (n,)
+        Run of each row.
+    time : ndarray, shape (n,), optional
+        Time of each row [s]; without it the rows are counted.
+
+    Returns
+    -------
+    ndarray, shape (n,)
     """
     index = np.flatnonzero(fitted)
     gap = np.zeros(len(fitted))
@@ -226,11 +255,23 @@ def find_flanks(
 ) -> tuple[Floats, Flags, float, float, float, float]:
     """Tell the flank in contact from the dead zone, by a robust line through the loaded rows.
 
-    Where only some rows are ``scored``, the line goes through those.
+    Parameters
+    ----------
+    torque, angle : ndarray, shape (n,)
+        Torque [N m] and twist [deg].
+    line : NominalLine
+        Line of the uncalibrated model, for what the recording does not show.
+    scored : ndarray of bool, shape (n,), optional
+        Rows through which the line goes; default: all.
 
     Returns
     -------
-    side, contact, datum, compliance, free_play, loop_width
+    side : ndarray, shape (n,)
+        +1 or -1, the flank in contact.
+    contact : ndarray of bool, shape (n,)
+        Whether a flank is in contact.
+    datum, compliance, free_play, loop_width : float
+        In deg, deg/(N m), deg, deg.
     """
     from scipy.optimize import least_squares
 

@@ -15,7 +15,20 @@ KEPT_RUNS = "the runs kept for it"
 
 
 def restrict(problem: Problem, noise: Noise, rows: Flags) -> tuple[Problem, Noise]:
-    """Return the problem and its noise with only these of the fitted rows fitted."""
+    """Leave rows of a problem out of the fit.
+
+    Parameters
+    ----------
+    problem : Problem
+    noise : Noise
+        Noise of its fitted rows.
+    rows : ndarray of bool, shape (n,)
+        Rows that may still be fitted; all other fitted rows are held out.
+
+    Returns
+    -------
+    Problem, Noise
+    """
     kept = problem.fitted & rows
     gap = gaps(kept, problem.history.run, problem.history.time_s)
     part = replace(problem, fitted=kept, held_out=problem.fitted & ~rows, gap=gap)
@@ -44,7 +57,19 @@ def folds(problem: Problem) -> list[tuple[str, Flags]]:
 
 
 def stretches(problem: Problem, each: int) -> list[tuple[str, Flags]]:
-    """Blocks to leave out in turn, each of so many consecutive stretches of the recording."""
+    """Blocks to leave out in turn, each of some stretches of the fitted rows.
+
+    Parameters
+    ----------
+    problem : Problem
+    each : int
+        Stretches in a block.
+
+    Returns
+    -------
+    list of (str, ndarray of bool)
+        Label and rows of each block.
+    """
     use = problem.fitted
     index = np.flatnonzero(use)
     count = each * FOLDS
@@ -61,7 +86,19 @@ def stretches(problem: Problem, each: int) -> list[tuple[str, Flags]]:
 
 
 def whole_stretches(problem: Problem, each: int = 4) -> list[tuple[str, Flags]]:
-    """Stretches of the fitted runs to leave out in turn, crossings of the dead zone included."""
+    """Blocks to leave out in turn, crossings of the dead zone included.
+
+    Parameters
+    ----------
+    problem : Problem
+    each : int
+        Stretches of the fitted runs in a block.
+
+    Returns
+    -------
+    list of (str, ndarray of bool)
+        Label and rows of each block.
+    """
     index = np.flatnonzero(problem.whole_fitted)
     block = np.full(len(problem.whole_fitted), -1)
     block[index] = np.arange(len(index)) * (each * FOLDS) // max(len(index), 1)

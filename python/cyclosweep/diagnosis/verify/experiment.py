@@ -160,6 +160,7 @@ def _contested(rivals: list[Candidate]) -> list[tuple[str, list[Term], Candidate
 
 
 def _history(search: Search, plan: Plan) -> History:
+    """Load history of a programme, with the path of the calibrated line alone."""
     base = search.baseline.fit.history
     torque, run, crank, warm = plan.make(base.largest_torque_nm)
     side = np.where(torque < 0, -1.0, 1.0)
@@ -186,6 +187,7 @@ def _detectability(
     weakest: str | None,
     tolerance_deg: float,
 ) -> float:
+    """Signal-to-noise ratio of what separates two explanations, or of the weakest effect."""
     base = np.column_stack([np.ones(len(history)), history.applied_nm, history.side])
     sigma = search.noise.sigma_deg
     if terms:

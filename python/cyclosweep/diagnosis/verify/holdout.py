@@ -76,6 +76,14 @@ def distance_to_curve(problem: Problem, angle_deg: Floats, rows: Flags) -> float
 
     Torque counts by the chord of the loop, so that a crossing a little too early or too late is a
     small distance.
+
+    Parameters
+    ----------
+    problem : Problem
+    angle_deg : ndarray, shape (n,)
+        Predicted twist of all rows [deg].
+    rows : ndarray of bool, shape (n,)
+        Readings that count.
     """
     torque, measured = problem.history.applied_nm, problem.angle_deg
     chord = float(np.ptp(measured[rows])) / max(float(np.ptp(torque[rows])), 1e-12)
@@ -99,7 +107,16 @@ def distance_to_curve(problem: Problem, angle_deg: Floats, rows: Flags) -> float
 def replicate_floor(problem: Problem, rows: Flags) -> float | None:
     """Error that the latest fitted run leaves as a prediction of the held-out ones [deg].
 
-    Only where the programmes agree: then the runs are replicates of each other.
+    Parameters
+    ----------
+    problem : Problem
+    rows : ndarray of bool, shape (n,)
+        Held-out rows.
+
+    Returns
+    -------
+    float or None
+        None where no fitted run followed the same programme.
     """
     run, torque = problem.history.run, problem.history.applied_nm
     known = np.unique(run[problem.whole_fitted])[::-1]

@@ -1,6 +1,6 @@
 """Fit of a model that predicts the whole loop, the crossings of the dead zone included.
 
-Everywhere else the flank in contact is told by the recording. A forecast has to find it: the shaft
+Everywhere else the flank in contact is read off the recording. A forecast has to find it: the shaft
 leaves a flank where the torque no longer overcomes friction, and that place, not the slope, decides
 most of a forecast's error. Here the simulation itself is fitted to all rows, so that what is
 written to ``model.json`` is what was fitted.
@@ -23,16 +23,17 @@ from cyclosweep.diagnosis.whole_loop.model_parameters import (
     with_values,
 )
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.simulate import EffectValue, Model, settle
+from cyclosweep.simulation.simulate import Model, settle
 
 ROUNDS = 4
 """Rounds of effects that depend on more than the elastic torque, while fitting."""
 BLUR = 0.01
 """Blur of the last stage, see `fit_forecast`."""
 STEP = 0.02
-"""Step of a difference quotient in units of a parameter's scale: over several rows of a crossing,
-which a smaller step would see either jump or stand."""
+"""Step of a difference quotient in units of a parameter's scale. A crossing of the dead zone moves
+by whole rows, so the step has to reach over several."""
 LEAST = 1e-6
+"""Least distance of a starting value from its bounds, as a share of the room between them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,17 +42,22 @@ class Forecast:
 
     Attributes
     ----------
+    problem : Problem
+        The recording.
     model : Model
+        The simulation.
     terms : tuple of Term
         Its effects as terms of a structure.
+    parameters : tuple of ModelParameter
+        What was fitted.
     history : History
         All rows with the predicted path.
     values : ndarray
         Parameters in the fit's own scale, in the order of ``parameters``.
     jacobian : ndarray, shape (rows, p)
         Derivative of the prediction on the fitted rows [deg].
-    error_deg : float
-        Root mean square on the fitted rows [deg].
+    rows : ndarray of bool, shape (n,)
+        Rows that were fitted.
     """
 
     problem: Problem
@@ -87,14 +93,27 @@ class Forecast:
         return np.asarray(inner * self.error_deg**2 * repeated)
 
     def slope(self, parameter: int, path: Callable[[Problem, Model], History]) -> Floats:
-        """Derivative by a parameter of the twist along a path of all rows."""
+        """Derivative of the twist by a parameter, in the fit's own scale.
+
+        Parameters
+        ----------
+        parameter : int
+            Index among ``parameters``.
+        path : callable
+            From problem and simulation to the path of the shaft.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            For all rows [deg].
+        """
         step = STEP * self.parameters[parameter].scale
         if self.values[parameter] + step > self.parameters[parameter].upper:
             step = -step
         ahead = self.values.copy()
         ahead[parameter] += step
-        turned, _ = with_values(self.parameters, ahead, self.model, self.terms)
-        there, here = path(self.problem, turned), path(self.problem, self.model)
+        moved, _ = with_values(self.parameters, ahead, self.model, self.terms)
+        there, here = path(self.problem, moved), path(self.problem, self.model)
         return np.asarray((there.angle_deg - here.angle_deg) / step)
 
     @property
@@ -108,53 +127,48 @@ class Forecast:
         return frozenset(term.name for term in self.terms)
 
 
-def model_of(
-    problem: Problem,
-    terms: Sequence[Term],
-    amplitudes: Sequence[Sequence[float]],
-    *,
-    compliance: float,
-    play: float,
-    datum: float,
-    zero: float = 0.0,
-) -> Model:
-    """Model of a structure with these parameters."""
-    return Model(
-        compliance_deg_per_nm=compliance,
-        free_play_deg=play,
-        datum_deg=datum,
-        torque_zero_nm=zero,
-        side=problem.recording.side,
-        effects=tuple(
-            EffectValue(t.name, dict(t.shape), tuple(map(float, a)))
-            for t, a in zip(terms, amplitudes, strict=True)
-        ),
-        output_pin_count=problem.history.output_pin_count,
-    )
-
-
-def start(problem: Problem) -> Model:
-    """Spring and play as read off the recording."""
+def starting_model(problem: Problem) -> Model:
+    """Spring and free play as read off the recording, without effects."""
     history = problem.history
-    return model_of(
-        problem,
-        (),
-        (),
-        compliance=history.compliance_deg_per_nm,
-        play=max(history.free_play_deg, 0.0),
-        datum=history.datum_deg,
+    return Model(
+        compliance_deg_per_nm=history.compliance_deg_per_nm,
+        free_play_deg=max(history.free_play_deg, 0.0),
+        datum_deg=history.datum_deg,
+        side=problem.recording.side,
+        output_pin_count=history.output_pin_count,
     )
 
 
-def run(problem: Problem, model: Model, rounds: int = ROUNDS) -> History:
-    """Path of the shaft by a model along all rows of a problem."""
+def predicted_path(problem: Problem, model: Model, rounds: int = ROUNDS) -> History:
+    """Path of the shaft by a simulation along all rows of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+    model : Model
+    rounds : int
+        Most rounds of effects that depend on more than the elastic torque.
+
+    Returns
+    -------
+    History
+    """
     return settle(model, at_start(problem.history, model), rounds)
 
 
 def at_start(history: History, model: Model, side: Floats | None = None) -> History:
     """Load history with the torque's zero taken out, in the state of the model's line alone.
 
-    ``side`` is the flank in contact, where a recording tells it.
+    Parameters
+    ----------
+    history : History
+    model : Model
+    side : ndarray, shape (n,), optional
+        Flank in contact, where it is read off a recording; default: by the sign of the torque.
+
+    Returns
+    -------
+    History
     """
     applied = history.applied_nm - model.torque_zero_nm
     side = np.where(applied >= 0, 1.0, -1.0) if side is None else side
@@ -185,8 +199,11 @@ def fit_forecast(
 
     Parameters
     ----------
+    problem : Problem
     model : Model
         Starting values, its effects in the order of ``terms``.
+    terms : sequence of Term
+        Its effects with their shapes.
     zero : bool
         Whether the reading of torque without load is fitted.
     rows : ndarray of bool, optional
@@ -196,6 +213,10 @@ def fit_forecast(
     blur : float
         Share of the largest torque by which the torque is also shifted up and down: a crossing
         that fits by the accident of one row then counts for less.
+
+    Returns
+    -------
+    Forecast
     """
     rows = problem.whole_fitted if rows is None else rows
     terms = tuple(terms)
@@ -212,11 +233,11 @@ def fit_forecast(
     shifts = (0.0,) if blur == 0.0 else (0.0, -blur * top, blur * top)
 
     def residual(values: Floats) -> Floats:
-        turned, _ = with_values(parameters, values, model, terms)
+        moved, _ = with_values(parameters, values, model, terms)
         parts = []
         for shift in shifts:
-            shifted = replace(turned, torque_zero_nm=turned.torque_zero_nm + shift)
-            parts.append((run(problem, shifted).angle_deg[rows] - measured) * weight)
+            shifted = replace(moved, torque_zero_nm=moved.torque_zero_nm + shift)
+            parts.append((predicted_path(problem, shifted).angle_deg[rows] - measured) * weight)
         return np.asarray(np.concatenate(parts) / np.sqrt(len(shifts)))
 
     def slopes(values: Floats) -> Floats:
@@ -235,21 +256,35 @@ def fit_forecast(
         residual, first, jac=slopes, bounds=(lower, upper), x_scale=scale, max_nfev=most,
         ftol=1e-4, xtol=1e-4,
     )  # fmt: skip
-    turned, shaped = with_values(parameters, found.x, model, terms)
+    moved, shaped = with_values(parameters, found.x, model, terms)
     return Forecast(
         problem=problem,
-        model=turned,
+        model=moved,
         terms=shaped,
         parameters=parameters,
         values=found.x,
-        history=run(problem, turned, 12),
+        history=predicted_path(problem, moved, 12),
         jacobian=np.asarray(found.jac)[: len(weight)] * np.sqrt(len(shifts)) / weight[:, None],
         rows=rows,
     )
 
 
 def refit(known: Forecast, *, rows: Flags | None = None, most: int) -> Forecast:
-    """Fit the same structure again, on other rows or for longer."""
+    """Fit the same structure again, on other rows or for longer.
+
+    Parameters
+    ----------
+    known : Forecast
+        From which the fit starts.
+    rows : ndarray of bool, shape (n,), optional
+        Rows to fit; default: all that count, crossings included.
+    most : int
+        Most iterations.
+
+    Returns
+    -------
+    Forecast
+    """
     return fit_forecast(
         known.problem, known.model, known.terms, zero=known.has_zero, rows=rows, most=most
     )

@@ -67,7 +67,7 @@ class WholeLoopFit(FittedStructure):
 
     @property
     def torque_zero(self) -> TorqueZero | None:
-        """Torque read without load, told by where the dead zone is crossed."""
+        """Torque read without load, as the crossings of the dead zone show it."""
         if not self.forecast.has_zero:
             return None
         parameters = self.forecast.parameters
@@ -112,7 +112,12 @@ class WholeLoopFit(FittedStructure):
     ) -> float:
         """Likelihood ratio of as many independent errors as such a residual has pieces.
 
-        The single ``predictions`` are not needed.
+        Parameters
+        ----------
+        predictions : sequence of LeftOutPrediction
+            Not needed.
+        baseline_deg, structure_deg : float
+            Root mean square errors over all of them [deg].
         """
         ratio = float(np.log(baseline_deg / max(structure_deg, 1e-12)))
         return float(np.exp(min(INDEPENDENT_PIECES * ratio, 200.0)))
@@ -122,7 +127,15 @@ class WholeLoopFit(FittedStructure):
         return [(each.own_deg, each.other_deg) for each in steadiness(self.forecast)]
 
     def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
-        """Return topics and sentences on the measured loop."""
+        """Return topics and sentences on the measured loop.
+
+        Parameters
+        ----------
+        repeats : float, optional
+            Correlation of the residual between runs.
+        unsteady : bool
+            Whether the loops drift from run to run.
+        """
         return findings(self.forecast, repeats, unsteady=unsteady)
 
     @cached_property
@@ -159,13 +172,38 @@ class WholeLoopFit(FittedStructure):
 
 
 def known_flank_path(problem: Problem, model: Model) -> History:
-    """Path by a model on all rows when the flank is told by the recording."""
+    """Path of the shaft by a simulation, the flank in contact read off the recording.
+
+    Parameters
+    ----------
+    problem : Problem
+    model : Model
+
+    Returns
+    -------
+    History
+        All rows.
+    """
     side = problem.history.side
     return settle(model, at_start(problem.history, model, side), told_side=side)
 
 
 def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeLoopFit:
-    """Turn a forecast, and the one of the baseline, into a structure of the search."""
+    """Offer a fitted simulation as a fitted structure.
+
+    Parameters
+    ----------
+    forecast : Forecast
+        The simulation.
+    before : Forecast
+        That of the published model, calibrated in the same way.
+    noise : Noise
+        Noise by which residual and sensitivities are whitened.
+
+    Returns
+    -------
+    WholeLoopFit
+    """
     problem = forecast.problem
     history = known_flank_path(problem, forecast.model)
     use = problem.fitted

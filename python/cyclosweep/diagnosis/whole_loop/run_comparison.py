@@ -94,7 +94,19 @@ def _same_range(first: Floats, second: Floats) -> bool:
 
 
 def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
-    """Compare the residuals of runs over the same torque, flank and direction."""
+    """Compare the residuals of runs over the same torque, flank and direction.
+
+    Parameters
+    ----------
+    problem : Problem
+    fitted : FittedStructure
+        The structure that leaves the residual.
+
+    Returns
+    -------
+    Repetition
+        The median over all pairs of runs.
+    """
     history = fitted.history
     rows = problem.fitted | problem.held_out
     residual = problem.angle_deg - fitted.mean_deg

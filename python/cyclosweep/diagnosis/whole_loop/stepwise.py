@@ -22,7 +22,7 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     Forecast,
     fit_forecast,
     refit,
-    start,
+    starting_model,
 )
 from cyclosweep.diagnosis.whole_loop.known_flank import whole_loop_fit
 from cyclosweep.simulation.effects import Effect
@@ -49,7 +49,7 @@ def choose_effects(search: Search) -> Candidate:
         The baseline where the usual effects do not predict left-out stretches much better.
     """
     problem = search.problem
-    base = fit_forecast(problem, start(problem), (), zero=False, most=10)
+    base = fit_forecast(problem, starting_model(problem), (), zero=False, most=10)
     usual = _usual(search, base)
     if usual is None or not _predicts_better(usual, base):
         return search.baseline

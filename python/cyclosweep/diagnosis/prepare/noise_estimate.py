@@ -1,0 +1,205 @@
+"""Estimate of a recording's noise from what a flexible basis of twist leaves."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import t as student_t
+
+from cyclosweep.diagnosis.prepare.noise import (
+    Noise,
+    bin_score,
+    interval_score,
+    orthonormal,
+    student_score,
+)
+from cyclosweep.simulation.effects.history import Floats
+
+MODEL_ERROR = 0.945
+"""An autocorrelation above this is taken for structured error of the model, not for noise."""
+COARSE_STEP = 3.5
+"""Resolution steps above this many standard deviations need the interval likelihood."""
+
+
+def estimate_noise(
+    angle: Floats,
+    basis: Floats,
+    gap: Floats,
+    resolution: float,
+    weight: Floats,
+) -> Noise:
+    """Noise from what a flexible basis leaves, by restricted maximum likelihood.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Measured twist [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns, flexible enough to leave hardly anything but noise, strongest first.
+    gap : ndarray, shape (n,)
+        Steps since the row before, zero where unrelated.
+    resolution : float
+        Step of the angle reading [deg].
+    weight : ndarray, shape (n,)
+        Samples averaged in each row.
+
+    Returns
+    -------
+    Noise
+    """
+    count = len(angle)
+    whole, basis = basis, basis[:, : max(count // 3, 3)]
+    freedom = max(count - basis.shape[1], 1)
+    left = angle - basis @ (basis.T @ angle)
+    scale = max(1.4826 * float(np.median(np.abs(left))), 1e-12)
+    scale *= np.sqrt(count / freedom)
+    clean = np.clip(left, -4 * scale, 4 * scale)
+    best, upper = _correlation(clean, basis, gap)
+    rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
+    sigma, tail, moments = _size(rough, left, basis, freedom)
+    sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
+    averaged = float(np.median(weight)) > 1.5
+    if resolution > 0 and not averaged:
+        if sigma**2 < 0.165 * resolution**2 and count >= 60:
+            coarse = _coarse_noise(angle, whole, gap, resolution, sigma)
+            if coarse is not None:
+                return coarse
+        sigma = max(sigma, resolution / np.sqrt(12.0))
+    if best > MODEL_ERROR:
+        # What is left is not noise but error of the model; filtered, it would be fitted by its
+        # kinks. Rows count equally then.
+        plain = max(float(np.sqrt(left @ left / freedom)), 1e-12)
+        return Noise(plain, 0.0, best, np.inf, 0.0, freedom, gap, plain, structured=True)
+    return Noise(sigma, upper, best, tail, 0.0, freedom, gap, score_moments=moments)
+
+
+def _coarse_noise(
+    angle: Floats, basis: Floats, gap: Floats, resolution: float, start_sigma: float
+) -> Noise | None:
+    """Noise below a reading so coarse that its intervals count; None where it is fine enough."""
+    count = len(angle)
+    inner = basis[:, : max(count // 3, 3)]
+    fine = _interval_sigma(angle, basis, resolution, start_sigma)
+    if fine >= resolution / COARSE_STEP:
+        return None
+    freedom = max(count - inner.shape[1], 1)
+    known = Noise(fine, 0.0, 0.0, np.inf, resolution, freedom, gap)
+    mean = _scored_mean(angle, basis[:, :12], known, start_sigma)
+    score, weight = known.residual(angle, mean)
+    best, upper = _correlation(score, inner[:, :1], gap)
+    telling = float(np.sum((weight * fine) ** 2))
+    return replace(known, correlation=upper, best_correlation=best, freedom=max(telling - 6.0, 4.0))
+
+
+def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float]:
+    """Restricted likelihood of the autocorrelation: its best value and an upper one."""
+    near = np.flatnonzero((gap > 0) & (gap < 1.5))
+    if len(near) < 20:
+        return 0.0, 0.0
+    rows = np.column_stack([basis, left])
+    now, before = rows[near], rows[near - 1]
+    alone = np.ones(len(left), dtype=bool)
+    alone[near] = False
+    current, crossed = now.T @ now, now.T @ before
+    crossed = crossed + crossed.T
+    earlier = before.T @ before
+    start = rows[alone].T @ rows[alone]
+    k = basis.shape[1]
+    freedom = len(left) - k
+    grid = np.r_[0.0:0.985:0.01]
+    value = np.empty(len(grid))
+    for index, rho in enumerate(grid):
+        gram = start + (current - rho * crossed + rho**2 * earlier) / (1 - rho**2)
+        inner, edge = gram[:k, :k], gram[:k, k]
+        sign, determinant = np.linalg.slogdet(inner)
+        rest = gram[k, k] - edge @ np.linalg.solve(inner, edge)
+        spread = len(near) * np.log(1 - rho**2)
+        value[index] = -0.5 * (spread + determinant + freedom * np.log(max(rest, 1e-300)))
+        if sign <= 0:
+            value[index] = -np.inf
+    best = int(np.argmax(value))
+    # The higher it is, the dearer an underestimate.
+    drop = 1.0 + 2.0 * grid[best] ** 2
+    within = np.flatnonzero(value > value[best] - drop)
+    if best == 0 and value[0] - value[1] > 1.0:
+        return 0.0, 0.0
+    return float(grid[best]), float(grid[within[-1]])
+
+
+def _size(
+    noise: Noise, left: Floats, basis: Floats, freedom: float
+) -> tuple[float, float, tuple[float, float]]:
+    """Size of the whitened noise, the tail of its distribution, slope and square of its score."""
+    white = noise.whiten(left)
+    inner = orthonormal(noise.whiten(basis))
+    white = white - inner @ (inner.T @ white)
+    count = len(white)
+    sigma = float(np.sqrt(white @ white / freedom))
+    if count < 100 or sigma <= 0:
+        return max(sigma, 1e-9), np.inf, (1.0, 1.0)
+    inflate = np.sqrt(count / freedom)
+    scale = 1.4826 * float(np.median(np.abs(white))) * inflate
+    best_tail, best_value, best_sigma = np.inf, -np.inf, sigma
+    for tail in (np.inf, 12.0, 7.0, 5.0, 4.0, 3.2, 2.6):
+        if np.isinf(tail):
+            value = -count * (np.log(sigma / inflate) + 0.5 * np.log(2 * np.pi)) - 0.5 * count
+            trial = sigma
+        else:
+            trial = scale
+            for _ in range(30):
+                factor = (tail + 1) / (tail + (white * inflate / trial) ** 2)
+                trial = float(np.sqrt(np.mean(factor * (white * inflate) ** 2)))
+            value = float(student_t.logpdf(white * inflate / trial, tail).sum()) - count * np.log(
+                trial
+            )
+            value += count * np.log(inflate) - 3.0
+            trial *= np.sqrt(tail / (tail - 2.0))
+        if value > best_value:
+            best_tail, best_value, best_sigma = tail, value, trial
+    if np.isinf(best_tail):
+        return best_sigma, best_tail, (1.0, 1.0)
+    score, slope = student_score(white * inflate / best_sigma, best_tail)
+    return best_sigma, best_tail, (float(np.mean(slope)), float(np.mean(score**2)))
+
+
+def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float) -> Floats:
+    """One damped Fisher-scoring step of the mean of a coarse reading within a basis."""
+    score, information = interval_score(angle, mean, sigma, step)
+    gram = basis.T @ (basis * information[:, None])
+    gram += (1e-6 * np.trace(gram) / len(gram) + 1e-12) * np.eye(len(gram))
+    change = basis @ np.linalg.solve(gram, basis.T @ score)
+    longest = float(np.abs(change).max(initial=0.0))
+    return mean + change * min(1.0, 0.5 * step / max(longest, 1e-300))
+
+
+def _scored_mean(angle: Floats, basis: Floats, noise: Noise, start_sigma: float) -> Floats:
+    """Mean of a coarse reading by Fisher scoring, from wide noise down to the given one."""
+    mean = basis @ (basis.T @ angle)
+    sigma = max(start_sigma, noise.sigma_deg)
+    while True:
+        for _ in range(5):
+            mean = _scoring_step(angle, basis, mean, sigma, noise.step_deg)
+        if sigma <= noise.sigma_deg:
+            return mean
+        sigma = max(0.6 * sigma, noise.sigma_deg)
+
+
+def _interval_sigma(angle: Floats, basis: Floats, step: float, start: float) -> float:
+    """Standard deviation behind a coarse dial: the largest that the likelihood still allows.
+
+    Only readings near a step tell anything, so the model that is taken out is kept small.
+    """
+    grid = step / np.geomspace(2.0, 60.0, 24)
+    telling = len(angle) * 4.0 * grid / step
+    value = np.empty(len(grid))
+    for width in (3, 12):
+        part = basis[:, :width]
+        mean = part @ (part.T @ angle)
+        for k, sigma in enumerate(grid):
+            if width > 3 and telling[k] < 20 * width:
+                break
+            for _ in range(4):
+                mean = _scoring_step(angle, part, mean, float(sigma), step)
+            _, probability = bin_score(angle - mean, float(sigma), step)
+            value[k] = float(np.log(np.maximum(probability, 1e-300)).sum())
+    allowed = np.flatnonzero(value > value.max() - 1.0)
+    return float(grid[allowed[0]])
