@@ -28,8 +28,9 @@ _LATER = {
     "Recording": "recording",
     "diagnose": "diagnosis",
     "simulate": "simulation.simulate",
-    "validate": "reference.validation",
+    "validate": "reference.rows",
 }
+_FOLDERS = {"diagnosis", "recording", "reference", "report", "result", "simulation"}
 
 __version__ = _core.__version__
 _moved.register()
@@ -71,10 +72,11 @@ if not _TYPE_CHECKING:  # so that a wrong name stays an error to a type checker
 
     def __getattr__(name: str) -> _Any:
         """Import what is asked for later, and keep it."""
-        if name not in _LATER:
+        path = f"{__name__}.{_LATER.get(name, name)}"
+        if name not in _LATER and name not in _FOLDERS and path not in _moved.MOVED:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        module = _importlib.import_module(f"{__name__}.{_LATER[name]}")
-        value = globals()[name] = getattr(module, name)
+        module = _importlib.import_module(path)
+        value = globals()[name] = getattr(module, name) if name in _LATER else module
         return value
 
     def __dir__() -> list[str]:

@@ -1,4 +1,4 @@
-"""What can go wrong by the user's input, as one clear line."""
+"""Errors that end in one clear line: bad input, a design that cannot be built, a failed sweep."""
 
 from cyclosweep._core import DesignError
 

@@ -1,6 +1,8 @@
 """Module names of version 0.1 still import, warn, and hide none of the package's functions."""
 
 import importlib
+import subprocess
+import sys
 from typing import cast
 
 import pytest
@@ -33,6 +35,20 @@ def test_functions_of_the_package_stay_functions_after_old_imports() -> None:
     assert cast("object", Model) is cs.Model
     assert callable(cs.simulate)
     assert callable(cs.scan)
+
+
+def test_old_modules_and_folders_are_attributes_of_the_package() -> None:
+    code = (
+        "import warnings, cyclosweep as cs, cyclosweep.drive\n"
+        "warnings.simplefilter('ignore')\n"
+        "assert cyclosweep.drive.Drive is cs.Drive\n"
+        "assert cs.space.Space is cs.Space\n"
+        "assert cs.recording.Recording is cs.Recording\n"
+        "assert cs.diagnosis.diagnose is cs.diagnose\n"
+        "assert callable(cs.sweep) and callable(cs.simulate) and callable(cs.validate)\n"
+        "assert not hasattr(cs, 'nonsense')\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_a_name_that_never_was_is_refused() -> None:

@@ -14,7 +14,7 @@ from cyclosweep.errors import DesignError, InputError, SweepError
 
 __all__ = ["main"]
 
-# What typer raises for wrong options, wherever it keeps its copy of click.
+# The exception of typer for wrong options; typer may hold its own copy of click.
 _UsageError = cast(type[Exception], typer.BadParameter.__bases__[0])
 
 app = typer.Typer(
@@ -60,7 +60,7 @@ def main() -> None:
     except SweepError as error:
         fail(error, 1)
     except BrokenPipeError:
-        # Whoever read our output has seen enough.
+        # The program that reads our output has ended, as `head` does.
         sys.stderr.close()
         sys.exit(1)
     except OSError as error:

@@ -32,7 +32,7 @@ def challenge(
     ] = "all",
     as_json: AsJson = False,
 ) -> None:
-    """Conceal effects, diagnose them blind, and score what was said against sealed answers.
+    """Conceal effects, diagnose the recordings blind, and score the diagnoses by sealed answers.
 
     The same command on the same DIR goes on where it stopped; a larger N adds cases.
     """

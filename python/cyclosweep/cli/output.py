@@ -25,7 +25,7 @@ def print_tables(renderables: Iterable[RenderableType]) -> None:
     """Print tables, as wide as the terminal."""
     from rich.console import Console
 
-    # What is piped or stored is not cut to the 80 columns of no terminal.
+    # Without a terminal rich would cut the tables to 80 columns.
     console = Console(width=None if sys.stdout.isatty() else 120)
     for renderable in renderables:
         console.print(renderable)
@@ -43,14 +43,14 @@ def refuse_file(folder: Path) -> None:
 
 
 def fail(error: object, status: int) -> NoReturn:
-    """Say in one line what went wrong and end."""
+    """Print in one line what went wrong and exit."""
     print(f"cyclosweep: {error}", file=sys.stderr)
     sys.exit(status)
 
 
 @contextlib.contextmanager
 def interruptible(left: str) -> Iterator[None]:
-    """Say in one line what Ctrl-C leaves behind; typer would end without a word."""
+    """Print in one line what is left after Ctrl-C; typer would print nothing."""
     try:
         yield
     except KeyboardInterrupt:

@@ -1,4 +1,4 @@
-"""Numbers as a caller gives them: plain or of NumPy, checked before the core sees them."""
+"""Checks of numbers that a caller gives, plain or of NumPy, before the core uses them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Foreign text in messages: short, printable, on one line."""
+"""Text from files in messages: short, printable, on one line."""
 
 
 def one_line(text: str) -> str:
@@ -26,5 +26,5 @@ def printable(text: str) -> str:
 
 
 def shown(text: str) -> str:
-    """Quote foreign text, shortened."""
+    """Quote text from a file, shortened."""
     return repr(text if len(text) <= 40 else text[:37] + "...")

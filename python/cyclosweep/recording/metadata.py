@@ -63,7 +63,7 @@ class Merge(_Strict):
 
 
 class Score(_Strict):
-    """Which rows count.
+    """Which rows are fitted and scored.
 
     Attributes
     ----------

@@ -20,23 +20,46 @@ from cyclosweep.sweep.summary import PartSummary
 __all__ = ["run_shards", "write_parts"]
 
 _ATTEMPTS = 3
-# The study that tasks bring to this process over and over.
+# The study of the latest task in this process, which most often is that of the next one.
 _STUDIES: dict[tuple[str, Objective | None], Study] = {}
 
 
 def write_part(dataset: Dataset, part: Part) -> PartSummary:
-    """Write one part unless it is whole already; what a worker runs.
+    """Write one part on a worker, unless it is whole already.
 
-    A lock that dies with its process keeps two writers from the same part.
+    A lock, which ends with its process, keeps two workers from the same part.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Where it belongs.
+    part : Part
+        Which one.
+
+    Returns
+    -------
+    PartSummary
     """
     with dataset.lock(part.stem):
         return dataset.summary(part) or dataset.write(part)
 
 
 def write_parts(dataset: Dataset, parts: Sequence[Part]) -> list[PartSummary | Exception]:
-    """Write several parts, what a worker runs: a summary or the reason for each.
+    """Write several parts on a worker.
 
-    A study's tables are made once a process, however many tasks bring it along.
+    The tables of a study are made once in a process, however many tasks carry it.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Where they belong.
+    parts : sequence of Part
+        Which ones.
+
+    Returns
+    -------
+    list of PartSummary or Exception
+        For each part its summary, or why it could not be written.
     """
     dataset = replace(dataset, study=_study_of_this_process(dataset.study))
     outcomes: list[PartSummary | Exception] = []
@@ -97,7 +120,7 @@ def run_shards(
     ]
     run.waiting.extend(tasks)
     while run.waiting or run.suspects:
-        # What ran while a worker died goes on alone, so that only the culprit dies again.
+        # Parts that ran while a worker died are tried one at a time, to find the one at fault.
         alone = not run.waiting
         if alone:
             run.waiting.append([run.suspects.popleft()])
@@ -114,7 +137,7 @@ def run_shards(
 
 
 class _Run:
-    """The state of one `run_shards`: what waits, what was tried how often, what came of it."""
+    """The state of one `run_shards`: tasks that wait, attempts, failures and summaries."""
 
     def __init__(self, dataset: Dataset, on_done: Callable[[PartSummary], None]) -> None:
         self.dataset = dataset
@@ -126,7 +149,7 @@ class _Run:
         self.summaries: list[PartSummary] = []
 
     def drain(self, executor: Executor, window: int | None) -> None:
-        """Run what waits until nothing does or the executor is broken."""
+        """Run what waits, at most ``window`` tasks at a time, until the executor breaks."""
         if window is None:
             window = 2 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
         running: dict[Future[list[PartSummary | Exception]], list[Part]] = {}
@@ -151,7 +174,7 @@ class _Run:
             raise
 
     def take_outcome(self, task: list[Part], future: Future[list[PartSummary | Exception]]) -> bool:
-        """Take in what became of a task; true when the executor broke under it."""
+        """Keep the results of a task that ended; true when its end broke the executor."""
         if future.cancelled():
             raise SweepError(
                 f"{self.dataset.folder}: the scheduler is gone; {len(self.summaries)} parts "
@@ -170,7 +193,7 @@ class _Run:
         return False
 
     def again(self, task: list[Part], error: BaseException, *, crashed: bool) -> None:
-        """Have parts tried once more, or give them up."""
+        """Put parts in line for another attempt, or give them up."""
         for part in task:
             if _is_hopeless(error):
                 self.failed[part.index] = error
@@ -185,7 +208,7 @@ class _Run:
 
 
 def _is_hopeless(error: BaseException) -> bool:
-    """A full or read-only disk fails every part alike."""
+    """Whether every other part would fail as well, as on a full or read-only disk."""
     if isinstance(error, OSError):
         return True
     return isinstance(error, pl.exceptions.PolarsError) and "os error" in str(error)

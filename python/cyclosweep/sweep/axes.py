@@ -39,7 +39,7 @@ WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
 OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if optional)
 """Inputs that may be left out."""
 
-# A longer range over a count cannot be of whole numbers that make sense.
+# Counts have at most three digits: a longer range is not one of whole numbers.
 _LONGEST_COUNT = 2**16
 _MOST_STEPS = 2**63
 
@@ -86,7 +86,7 @@ class Axis:
         return pl.Float64()
 
     def definition(self) -> dict[str, Any]:
-        """What makes this axis itself, for the study's hash and the manifest."""
+        """Return what identifies this axis in the study's hash and in the manifest."""
         numbers = np.ascontiguousarray(self.numbers)
         if len(numbers) > 64:
             digest = hashlib.sha256(numbers.tobytes()).hexdigest()

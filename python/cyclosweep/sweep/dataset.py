@@ -1,4 +1,4 @@
-"""A study on disk: whole Parquet parts, each carrying what it is, and a manifest made of them."""
+"""A study on disk: Parquet parts, each with its origin in the footer, and a manifest of them."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class Dataset:
             self.write_manifest([])
 
     def _refuse_another_study(self, found: list[Path], manifest: Path) -> None:
-        # Broken files say nothing; the first whole part speaks for the others.
+        # Broken files are passed over; the first whole part stands for the others.
         identities = [read_manifest(manifest), next(filter(None, map(read_footer, found)), None)]
         for identity in filter(None, identities):
             if identity.get("study") != self.study.hash:
@@ -137,7 +137,7 @@ class Dataset:
                 )
 
     def _refuse_another_stretch(self, identity: dict[str, Any]) -> None:
-        """Say so where the folder holds other variants of the same study (`--rows`)."""
+        """Refuse a folder that holds other variants of the same study, as `--rows` makes them."""
         there, here = identity.get("definition"), self.study.definition()
         if not isinstance(there, dict) or {**there, "start": 0, "stop": 0} != {
             **here,
@@ -156,7 +156,7 @@ class Dataset:
         return self.summary(part) is not None
 
     def summary(self, part: Part) -> PartSummary | None:
-        """What a part's footer says of its rows; None unless it is whole and of this study."""
+        """Read the summary in a part's footer; None unless the part is whole and of this study."""
         footer = read_footer(self.folder / part.name)
         if footer is None or footer.get("study") != self.study.hash:
             return None
@@ -164,14 +164,14 @@ class Dataset:
         if (summary.start, summary.stop) != (part.start, part.stop):
             return None
         if footer.get("objective") != self._objective():
-            # The objective decides no numbers: only the best variants are others now.
+            # Another objective changes no numbers, only which variants are best.
             rows = pl.read_parquet(self.folder / part.name)
             return summary_of_part(rows, part.start, part.stop, self.study)
         return summary
 
     @contextlib.contextmanager
     def lock(self, part_stem: str, timeout: float = -1) -> Iterator[None]:
-        """Hold a part against other writers; the lock dies with its process.
+        """Keep other writers from a part; the lock ends with its process.
 
         Raises
         ------
@@ -196,7 +196,7 @@ class Dataset:
         Returns
         -------
         PartSummary
-            A summary of its rows, small enough to send home.
+            A summary of its rows, small enough to be sent between processes.
 
         Raises
         ------
@@ -208,7 +208,21 @@ class Dataset:
         return self.put(part, rows, summary)
 
     def put(self, part: Part, rows: pl.DataFrame, summary: PartSummary) -> PartSummary:
-        """Put computed rows in place as a part."""
+        """Write computed rows as a part, whole or not at all.
+
+        Parameters
+        ----------
+        part : Part
+            Which one.
+        rows : polars.DataFrame
+            Its rows.
+        summary : PartSummary
+            Their summary.
+
+        Returns
+        -------
+        PartSummary
+        """
         footer = {
             **self._identity(),
             "objective": self._objective(),
@@ -241,14 +255,14 @@ class Dataset:
         return [summary for part in self.parts() if (summary := self.summary(part)) is not None]
 
     def finish(self, summaries: list[PartSummary]) -> None:
-        """Write the manifest of what is there and sweep up after killed writers."""
+        """Write the manifest of the parts that are there and delete what killed writers left."""
         for path in self.folder.glob("part-*.tmp"):
             with contextlib.suppress(Timeout), self.lock(path.name.split(".")[0], timeout=0):
                 path.unlink(missing_ok=True)
         self.write_manifest(summaries)
 
     def write_manifest(self, summaries: list[PartSummary]) -> None:
-        """Write the manifest of these parts."""
+        """Write the manifest of the parts with these summaries."""
         rows = sum(summary.stop - summary.start for summary in summaries)
         manifest = {
             **self._identity(),
@@ -267,7 +281,7 @@ class Dataset:
 
 
 def read_footer(path: Path) -> dict[str, Any] | None:
-    """What cyclosweep wrote into a Parquet file's footer; None where there is nothing whole."""
+    """Read what cyclosweep wrote into a Parquet footer; None for a broken or foreign file."""
     try:
         text = pl.read_parquet_metadata(path).get(_FOOTER)
         footer = json.loads(text) if text is not None else None
@@ -277,7 +291,7 @@ def read_footer(path: Path) -> dict[str, Any] | None:
 
 
 def read_manifest(path: Path) -> dict[str, Any] | None:
-    """What a manifest says; None where there is none or it is broken."""
+    """Read a manifest; None where there is none or it is broken."""
     try:
         manifest = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

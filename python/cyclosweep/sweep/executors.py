@@ -24,14 +24,14 @@ _ENVIRONMENT = {"RAYON_NUM_THREADS": "1", "POLARS_MAX_THREADS": "1", "OMP_NUM_TH
 
 
 def lend(executor: Executor) -> MakeExecutor:
-    """Give the caller's executor, which stays open, each time one is asked for."""
+    """Return a function that gives the caller's executor and leaves it open."""
     return lambda: contextlib.nullcontext(executor)
 
 
 def executor_of(
     engine: Engine, *, workers: int | None = None, scheduler: str | None = None
 ) -> MakeExecutor:
-    """Give a new executor of an engine each time one is asked for.
+    """Return a function that opens an executor of an engine.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def executor_of(
 
 @contextlib.contextmanager
 def _process_pool(workers: int) -> Iterator[Executor]:
-    """Spawned workers of one thread each: fork hangs with the threads of polars."""
+    """Open spawned processes of one thread each: fork hangs with the threads of polars."""
     threads = {"RAYON_NUM_THREADS": "1", "POLARS_MAX_THREADS": "1"}
     before = {name: os.environ.get(name) for name in threads}
     os.environ.update(threads)
@@ -136,7 +136,7 @@ def dask_executor(workers: int | None, scheduler: str | None) -> Iterator[Execut
 
 @contextlib.contextmanager
 def _closing(executor: Executor) -> Iterator[Executor]:
-    """Wait for what runs after a good end, and for nothing after a bad one."""
+    """Close an executor: wait for its tasks, but not after an error."""
     try:
         yield executor
     except BaseException:

@@ -1,4 +1,4 @@
-"""A progress bar on standard error: how far, how fast, how long still."""
+"""A progress bar on standard error: share done, rate, time left."""
 
 from __future__ import annotations
 

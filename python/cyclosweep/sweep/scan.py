@@ -136,7 +136,12 @@ def sweep(
 ) -> pl.DataFrame:
     """Sweep a space into memory.
 
-    Parameters and columns are those of :func:`scan`.
+    Parameters
+    ----------
+    space : Space or Study
+        What varies.
+    loads_tn, limits : optional
+        As for :func:`scan`.
 
     Returns
     -------
@@ -215,7 +220,7 @@ def frame(
 
 
 def _split(predicate: pl.Expr | None, cheap: set[str]) -> tuple[list[pl.Expr], list[pl.Expr]]:
-    """Terms of a conjunction that need no kernel, and the others."""
+    """Divide a conjunction into terms on ``cheap`` columns alone, and the others."""
     if predicate is None:
         return [], []
     parts = predicate.meta.pop()

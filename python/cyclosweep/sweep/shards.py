@@ -23,7 +23,7 @@ from cyclosweep.sweep.summary import PartSummary, Summary, summarise
 
 __all__ = ["Engine", "run_shards", "shard", "sink"]
 
-# A task on Dask costs a message: it carries about a million variants.
+# Variants of one task on Dask, each of which costs a message.
 _VARIANTS_PER_DASK_TASK = 2**20
 
 
@@ -101,7 +101,7 @@ def sink(
         make = lend(executor)
     parts_per_task = 1
     if engine == "dask":
-        # A worker elsewhere stands in another folder; its tasks cost a message each.
+        # A worker has its own working directory, so the path must be absolute.
         dataset = replace(dataset, folder=dataset.folder.absolute())
         parts_per_task = max(
             1, min(_VARIANTS_PER_DASK_TASK // dataset.rows_per_part, dataset.part_count // 8)
@@ -197,7 +197,7 @@ def _dataset(study: Study, folder: str | Path, rows_per_part: int) -> Dataset:
 
 
 def _finish(dataset: Dataset, summaries: list[PartSummary]) -> None:
-    """Write the manifest; on a full disk the parts themselves still say what is there."""
+    """Write the manifest; SweepError on a full disk, which leaves the parts as they are."""
     try:
         dataset.finish(summaries)
     except OSError as error:
@@ -206,7 +206,7 @@ def _finish(dataset: Dataset, summaries: list[PartSummary]) -> None:
 
 @contextlib.contextmanager
 def _exclusive(dataset: Dataset, *, resume: bool, fresh: bool) -> Iterator[None]:
-    """Hold the folder against a second full sweep while this process lives."""
+    """Keep a second full sweep from the folder while this process lives."""
     folder = dataset.folder
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: is a file, expected a folder")

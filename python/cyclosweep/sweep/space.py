@@ -1,4 +1,4 @@
-"""What is varied: a space of variants in which variant k is a function of k alone."""
+"""A space of variants of a drive, in which variant k is a function of k alone."""
 
 from __future__ import annotations
 
@@ -110,13 +110,44 @@ class Space:
     def latin_hypercube(cls, drive: Drive, count: int, /, *, seed: int = 0, **axes: Any) -> Space:
         """Latin hypercube: on every axis each of ``count`` equal strata is met once.
 
-        Parameters are those of :meth:`sobol`.
+        Parameters
+        ----------
+        drive : Drive
+            What does not vary.
+        count : int
+            Number of variants, up to 2^63.
+        seed : int
+            Seed of the permutations.
+        **axes
+            As for :meth:`sobol`.
+
+        Raises
+        ------
+        InputError
+            As for :meth:`sobol`.
         """
         return cls._sampled(drive, "latin-hypercube", count, seed, axes)
 
     @classmethod
     def random(cls, drive: Drive, count: int, /, *, seed: int = 0, **axes: Any) -> Space:
-        """Independent uniform points. Parameters are those of :meth:`sobol`."""
+        """Independent uniform points.
+
+        Parameters
+        ----------
+        drive : Drive
+            What does not vary.
+        count : int
+            Number of variants, up to 2^63.
+        seed : int
+            Seed of the draws.
+        **axes
+            As for :meth:`sobol`.
+
+        Raises
+        ------
+        InputError
+            As for :meth:`sobol`.
+        """
         return cls._sampled(drive, "random", count, seed, axes)
 
     @classmethod
@@ -177,7 +208,19 @@ class Space:
         loads_tn: Sequence[float] = (),
         limits: Sequence[tuple[str, float, float]] = (),
     ) -> _core.Study:
-        """Return the core's study over the whole space, slices not applied."""
+        """Return the core's study over the whole space, slices not applied.
+
+        Parameters
+        ----------
+        loads_tn : sequence of float
+            Loads [T_N].
+        limits : sequence of (str, float, float)
+            Column, least and greatest value in the column's unit.
+
+        Returns
+        -------
+        cyclosweep._core.Study
+        """
         return _core.Study(
             list(self.drive.values().items()),
             [segment.kind for segment in self.drive.shaft],
@@ -232,7 +275,7 @@ class Space:
         return f"<Space: {count:,} variants of {self.drive.name}, {self.method} over {axes}>"
 
     def definition(self) -> dict[str, Any]:
-        """What makes this space itself, for the study's hash and the manifest."""
+        """Return what identifies this space in the study's hash and in the manifest."""
         drive = {name: repr(value) for name, value in self.drive.values().items()}
         return {
             "drive": drive,

@@ -1,4 +1,4 @@
-"""What a sweep came to: counts by status, ranges of the results, the best variants."""
+"""Summary of a sweep: counts by status, ranges of the results, the best variants."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BEST = 10
 
 @dataclass(frozen=True)
 class PartSummary:
-    """What one part holds, small enough to travel.
+    """Summary of one part, small enough to be sent between processes.
 
     Attributes
     ----------
@@ -55,13 +55,27 @@ class PartSummary:
 
     @classmethod
     def from_json(cls, value: dict[str, Any]) -> PartSummary:
-        """Back from :meth:`to_json`."""
+        """Read what :meth:`to_json` returned."""
         ranges = {name: (low, high) for name, (low, high) in value["ranges"].items()}
         return cls(value["start"], value["stop"], value["status"], ranges, value["best"])
 
 
 def summary_of_part(rows: pl.DataFrame, start: int, stop: int, study: Study) -> PartSummary:
-    """Summarise the rows of one part."""
+    """Summarise the rows of one part.
+
+    Parameters
+    ----------
+    rows : polars.DataFrame
+        All columns of the study.
+    start, stop : int
+        First variant of the part, and the one after its last.
+    study : Study
+        What they belong to; its objective decides which are best.
+
+    Returns
+    -------
+    PartSummary
+    """
     counts = rows["status"].value_counts().sort("status")
     status = dict(zip(counts["status"].to_list(), counts["count"].to_list(), strict=True))
     names = [name for name, kind in study.outputs.items() if kind != "flag"]
@@ -91,7 +105,7 @@ def _best_columns(study: Study) -> list[str]:
 
 @dataclass(frozen=True)
 class Summary:
-    """What a whole sweep came to.
+    """Summary of a whole sweep.
 
     Attributes
     ----------
@@ -157,7 +171,19 @@ def _short(value: object) -> str:
 
 
 def summarise(summaries: Iterable[PartSummary], study: Study) -> Summary:
-    """Put the summaries of a sweep's parts together."""
+    """Put the summaries of a sweep's parts together.
+
+    Parameters
+    ----------
+    summaries : iterable of PartSummary
+        One for each part.
+    study : Study
+        What they belong to; its objective decides which variants are best.
+
+    Returns
+    -------
+    Summary
+    """
     rows = 0
     status: dict[str, int] = {}
     ranges: dict[str, tuple[float, float]] = {}
