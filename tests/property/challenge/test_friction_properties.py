@@ -14,8 +14,8 @@ levels = st.lists(st.floats(3.0, 25.0), min_size=3, max_size=25)
 def path(torque: list[float], seconds: float) -> Programme:
     n = len(torque)
     return Programme(
-        np.arange(n, dtype=np.float64) * np.float64(seconds),
-        np.array(torque),
+        np.linspace(0.0, (n - 1) * seconds, n),
+        np.array(torque, dtype=np.float64),
         np.ones(n, dtype=np.int64),
         np.zeros(n),
         np.full(n, 20.0),

@@ -21,10 +21,10 @@ def programme(name: str = "rich", seed: int = 2, samples: int = 800) -> Programm
 
 
 def ramp(levels: list[float], seconds: float = 1.0) -> Programme:
-    torque = np.array(levels)
+    torque = np.array(levels, dtype=np.float64)
     n = torque.size
     return Programme(
-        np.arange(n, dtype=np.float64) * np.float64(seconds),
+        np.linspace(0.0, (n - 1) * seconds, n),
         torque,
         np.ones(n, dtype=np.int64),
         np.full(n, 30.0),
