@@ -156,7 +156,7 @@ def test_loop_is_described(found: cs.Diagnosis) -> None:
 def test_friction_that_never_breaks_away_gives_no_play() -> None:
     found = cs.diagnose(measured(truth(0.0), steps_deg=0.05, top=4.0), drive())
     rows = {row["topic"]: row["text"] for row in found.content["findings"]}
-    assert "friction-censored" in rows["play"]
+    assert "as friction hides it" in rows["play"]
     assert rows["stiffness"].startswith("Not reported")
 
 

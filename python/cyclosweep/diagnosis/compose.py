@@ -13,7 +13,7 @@ from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
-from cyclosweep.diagnosis.whole_loop.findings import limits_of
+from cyclosweep.diagnosis.whole_loop.rig_limits import rig_limits
 from cyclosweep.recording import Recording
 from cyclosweep.result import (
     Answer,
@@ -144,7 +144,7 @@ def _not_testable(concluded: Conclusion) -> tuple[Untestable, ...]:
     """What the recording cannot show, by calibration and by its rig."""
     rows = hidden_effects(concluded.search)
     if concluded.search.noise.structured:
-        rows += limits_of(concluded.search.problem)
+        rows += rig_limits(concluded.search.problem)
     if concluded.accepted.fit.torque_zero is not None:
         rows = [row for row in rows if row.name != "torque_offset"]
     return tuple(rows)
