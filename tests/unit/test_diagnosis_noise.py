@@ -1,4 +1,4 @@
-"""Noise: size, autocorrelation and tails from a rich model; the interval likelihood."""
+"""Noise: size, autocorrelation and tails from a flexible basis; the interval likelihood."""
 
 import numpy as np
 import pytest

@@ -43,19 +43,19 @@ def test_vector_in_a_direction_that_is_seldom_met_costs_more() -> None:
 
 @pytest.mark.parametrize("noise", [0.0, 15.0, 700.0])
 def test_component_that_does_not_show_costs_nothing(noise: float) -> None:
-    # Whatever noise put into it: the price is that of the other component alone.
+    # Whatever noise put into it: the penalty is that of the other component alone.
     information = np.diag([1e4, 1e-12])
-    price = vector_penalty(np.array([0.2, noise]), information)
-    assert price == pytest.approx(0.5 * (1 + np.log(400.0)), abs=0.02)
+    penalty = vector_penalty(np.array([0.2, noise]), information)
+    assert penalty == pytest.approx(0.5 * (1 + np.log(400.0)), abs=0.02)
     assert vector_penalty(np.array([0.2, noise]), np.zeros((2, 2))) == 0.0
 
 
-def test_choice_costs_the_range_over_the_error_and_nothing_where_it_is_not_told() -> None:
+def test_choice_costs_the_range_over_the_error_and_nothing_where_nothing_is_known() -> None:
     assert shape_choice_penalty(np.array([[100.0**2]]), np.array([1.0])) == pytest.approx(
         np.log(100.0 / np.sqrt(2 * np.pi)), abs=1e-3
     )
     assert shape_choice_penalty(np.zeros((2, 2)), np.array([1.0, 5.0])) == 0.0
-    # Two parameters of which only the sum is told are one.
+    # Two parameters of which only the sum is known are one.
     both = np.full((2, 2), 100.0**2)
     assert shape_choice_penalty(both, np.ones(2)) == pytest.approx(
         shape_choice_penalty(np.array([[2e4]]), np.ones(1)), abs=1e-3

@@ -22,15 +22,17 @@ KNOWN = {effect.name: effect for effect in effects()}
 
 
 def fitted(
-    name: str, shape: Shape, angle: Floats, torque: Floats, run: npt.NDArray[np.int64]
+    name: str, shape: Shape, twist: Floats, torque: Floats, run: npt.NDArray[np.int64]
 ) -> ContactFit:
-    recording = cs.Recording.from_arrays(torque, angle, run=run)
+    recording = cs.Recording.from_arrays(torque, twist, run=run)
     drive = cs.Drive.reference_87()
     problem = prepare(recording, drive.nominal_line("input"), int(drive.output_pin_count))
     library = build_library(problem.history, problem.fitted, tuple(KNOWN.values()))
     use = problem.fitted
-    rich = flexible_basis(problem, library, None)
-    noise = estimate_noise(problem.angle_deg[use], rich, problem.gap[use], 0.0, problem.weight[use])
+    basis = flexible_basis(problem, library, None)
+    noise = estimate_noise(
+        problem.angle_deg[use], basis, problem.gap[use], 0.0, problem.weight[use]
+    )
     return fit(problem, noise, (Term(KNOWN[name], shape),))
 
 
@@ -56,9 +58,9 @@ def test_standard_error_of_a_size_is_its_spread(
     sizes, errors = [], []
     for _ in range(40):
         angle = plain + made(torque, plain) + 0.2 * rng.normal(size=len(torque))
-        node = fitted(name, shape, angle, torque, run)
-        sizes.append(np.max(np.abs(size_of(node, 0))))
-        errors.append(spread_of_size(node, 0))
+        found = fitted(name, shape, angle, torque, run)
+        sizes.append(np.max(np.abs(size_of(found, 0))))
+        errors.append(spread_of_size(found, 0))
     # Forty draws tell a spread within a quarter, nineteen times in twenty.
     assert np.median(errors) == pytest.approx(np.std(sizes), rel=0.35)
 

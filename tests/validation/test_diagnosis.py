@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,19 @@ PRACTICE = {
     7: {"clearance_takeup", "friction_hysteresis"},
     8: {"contact_stiffening"},
 }
+
+
+@pytest.fixture(scope="module")
+def measured(shared_recordings: Path) -> Callable[[str], cs.Diagnosis]:
+    """Diagnosis of a measured ramp by the end of its name; each is made once."""
+
+    @cache
+    def of(stem: str) -> cs.Diagnosis:
+        (path,) = (shared_recordings / "cycloidal-13-to-1").glob(f"*{stem}.csv.gz")
+        recording = cs.Recording.read(path, EXAMPLES / "recording.toml")
+        return cs.diagnose(recording, cs.Drive.from_toml(EXAMPLES / "drive.toml"))
+
+    return of
 
 
 def diagnose(recording: cs.Recording, **known: Any) -> cs.Diagnosis:
@@ -193,9 +207,9 @@ def test_direction_of_a_dial_that_two_loads_cannot_tell_costs_nothing() -> None:
     [("base_runin1", 0.20), ("base_runin5", 0.12), ("conic_runin1", 0.18), ("cold5", 0.30)],
 )
 def test_measured_ramp_is_predicted_after_fitting_another(
-    stem: str, limit: float, shared_recordings: Path
+    stem: str, limit: float, measured: Callable[[str], cs.Diagnosis]
 ) -> None:
-    found = measured(stem, shared_recordings)
+    found = measured(stem)
     (block,) = found.content["repaired"]["blocks"]
     assert block["told_after_deg"] <= limit
     # The free forecast has to find the crossings of the dead zone too.
@@ -206,8 +220,8 @@ def test_measured_ramp_is_predicted_after_fitting_another(
 
 
 @pytest.mark.shared
-def test_warm_drive_gives_no_stiffness(shared_recordings: Path) -> None:
-    found = measured("base910_unr_runin1", shared_recordings)
+def test_warm_drive_gives_no_stiffness(measured: Callable[[str], cs.Diagnosis]) -> None:
+    found = measured("base910_unr_runin1")
     assert not found.content["stationary"]
     assert "unfit for a stiffness" in found.statement
     rows = {row["topic"]: row["text"] for row in found.content["findings"]}
@@ -228,8 +242,10 @@ def test_drift_shows_without_a_run_to_hold_out(
 
 
 @pytest.mark.shared
-def test_measured_loop_is_described_as_an_expert_would(shared_recordings: Path) -> None:
-    found = measured("base_runin5", shared_recordings)
+def test_measured_loop_is_described_as_an_expert_would(
+    measured: Callable[[str], cs.Diagnosis],
+) -> None:
+    found = measured("base_runin5")
     rows = {row["topic"]: row["text"] for row in found.content["findings"]}
     assert list(rows) == [
         "play",
@@ -248,10 +264,3 @@ def test_measured_loop_is_described_as_an_expert_would(shared_recordings: Path) 
         "loads_beyond_the_limit",
     } <= hidden
     assert "torque_offset" not in hidden
-
-
-def measured(stem: str, shared_recordings: Path) -> cs.Diagnosis:
-    folder = shared_recordings / "cycloidal-13-to-1"
-    (path,) = folder.glob(f"*{stem}.csv.gz")
-    recording = cs.Recording.read(path, EXAMPLES / "recording.toml")
-    return cs.diagnose(recording, cs.Drive.from_toml(EXAMPLES / "drive.toml"))
