@@ -45,8 +45,37 @@ _SIMULATION = {"cyclosweep.simulate": "simulation.simulate"} | {
         ".viscous_drag",
     )
 }
+_DIAGNOSIS = {
+    f"cyclosweep.diagnosis.{old}": new
+    for old, new in {
+        "alarm": "diagnosis.identify.alarm",
+        "engine": "diagnosis.diagnose",
+        "experiment": "diagnosis.verify.experiment",
+        "fault": "diagnosis.refuse",
+        "findings": "diagnosis.whole_loop.findings",
+        "fit": "diagnosis.identify.fit",
+        "forecast": "diagnosis.whole_loop.forecast",
+        "freeform": "diagnosis.hypotheses.unnamed_shapes",
+        "holdout": "diagnosis.verify.holdout",
+        "hum": "diagnosis.hypotheses.sinusoid",
+        "library": "diagnosis.hypotheses.library",
+        "noise": "diagnosis.prepare.noise",
+        "problem": "diagnosis.prepare.problem",
+        "result": "diagnosis.outcome",
+        "rich": "diagnosis.hypotheses.flexible_basis",
+        "scan": "diagnosis.identify.scan",
+        "search": "diagnosis.identify.search",
+        "self_check": "diagnosis.verify.self_check",
+        "split": "diagnosis.prepare.split",
+        "structured": "diagnosis.whole_loop.stepwise",
+        "testability": "diagnosis.identify.testability",
+        "told": "diagnosis.whole_loop.known_flank",
+        "verdict": "diagnosis.identify.verdict",
+        "words": "result.statement",
+    }.items()
+}
 MOVED: dict[str, str] = {
-    old: f"cyclosweep.{new}" for old, new in (_DESIGN | _SWEEP | _SIMULATION).items()
+    old: f"cyclosweep.{new}" for old, new in (_DESIGN | _SWEEP | _SIMULATION | _DIAGNOSIS).items()
 } | {
     "cyclosweep.challenge": "cyclosweep_challenge",
     "cyclosweep.challenge.case": "cyclosweep_challenge.trial.case",
@@ -58,7 +87,37 @@ MOVED: dict[str, str] = {
 }
 """Where the modules of version 0.1 stand now, by their old names."""
 
+_RENAMED_IN_DIAGNOSIS = {
+    "fit.Slot": "identify.fit_parameters.FitParameter",
+    "fit.slots_of": "identify.fit_parameters.fit_parameters_of",
+    "forecast.Knob": "whole_loop.model_parameters.ModelParameter",
+    "forecast.knobs_of": "whole_loop.model_parameters.model_parameters_of",
+    "forecast.start": "whole_loop.forecast.starting_model",
+    "freeform.FreeForm": "hypotheses.unnamed_shapes.UnnamedShape",
+    "freeform.freeforms": "hypotheses.unnamed_shapes.unnamed_shapes",
+    "hum.find_wave": "hypotheses.sinusoid.find_sinusoid",
+    "library.Block": "hypotheses.library.Signature",
+    "noise.estimate_noise": "prepare.noise_estimate.estimate_noise",
+    "rich.rich_basis": "hypotheses.flexible_basis.flexible_basis",
+    "scan.price_of_choice": "identify.scan.shape_choice_penalty",
+    "scan.price_of_vector": "identify.scan.vector_penalty",
+    "search.Node": "identify.candidate.Candidate",
+    "structured.Repetition": "whole_loop.run_comparison.Repetition",
+    "structured.Steadiness": "whole_loop.run_comparison.Steadiness",
+    "structured.climb": "whole_loop.stepwise.choose_effects",
+    "structured.repetition": "whole_loop.run_comparison.repetition",
+    "structured.steadiness": "whole_loop.run_comparison.steadiness",
+    "told.ForecastFit": "whole_loop.known_flank.WholeLoopFit",
+    "told.told_fit": "whole_loop.known_flank.whole_loop_fit",
+    "told.told_path": "whole_loop.known_flank.known_flank_path",
+    "verdict.decide_structured": "identify.verdict.decide_whole_loop",
+}
 RENAMED: dict[str, str] = {
+    f"cyclosweep.diagnosis.{old}": f"cyclosweep.diagnosis.{new}"
+    for old, new in _RENAMED_IN_DIAGNOSIS.items()
+} | {
+    "cyclosweep.diagnosis.result.SCHEMA": "cyclosweep.result.answer.SCHEMA",
+    "cyclosweep.diagnosis.result.plain": "cyclosweep.result.json_form.plain",
     "cyclosweep.drive.NonNegative": "cyclosweep.design.shaft.NonNegative",
     "cyclosweep.drive.Positive": "cyclosweep.design.shaft.Positive",
     "cyclosweep.drive.Segment": "cyclosweep.design.shaft.Segment",

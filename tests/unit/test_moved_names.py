@@ -3,6 +3,7 @@
 import importlib
 import subprocess
 import sys
+from pathlib import Path
 from typing import cast
 
 import pytest
@@ -27,6 +28,14 @@ def test_an_old_name_leads_to_what_it_is_called_now(old: str) -> None:
     with pytest.warns(DeprecationWarning, match=module):
         found = getattr(importlib.import_module(old_module), old_name)
     assert found is getattr(importlib.import_module(module), name)
+
+
+def test_no_old_name_hides_a_module_that_is_there() -> None:
+    folder = Path(cs.__file__).parents[1]
+    for old in MOVED:
+        path = folder.joinpath(*old.split("."))
+        assert not path.with_suffix(".py").exists(), old
+        assert not path.is_dir(), old
 
 
 def test_functions_of_the_package_stay_functions_after_old_imports() -> None:
