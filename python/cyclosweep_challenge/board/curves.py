@@ -1,4 +1,4 @@
-"""Power against visibility, of any number of detectors, as one chart."""
+"""Chart of the share of recordings found against d, for any number of detectors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Point = tuple[float, float, float, float]
 
 
 def power_series(curves: Sequence[tuple[str, Sequence[Point]]], apart: float = 1.0) -> list[Series]:
-    """Series of every detector that has points, each drawn at so many times the d of the last."""
+    """Curves of detectors, each shifted along d by the factor ``apart`` for readability."""
     return [
         Series(
             who,

@@ -1,4 +1,4 @@
-"""The gallery: some concealed cases, what was left over before the repair and after it."""
+"""Example cases for the page: residuals before and after the repair."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ SHOWN = 700
 
 @dataclass(frozen=True)
 class Exhibit:
-    """One case of the gallery.
+    """One example case.
 
     Attributes
     ----------
     outcome : Outcome
         Answer and diagnosis.
     statement : str
-        What the diagnosis said in words.
+        Statement of the diagnosis.
     torque_nm : array
         Torque of the points shown [N m].
     before_deg : array
@@ -44,7 +44,7 @@ class Exhibit:
 
 
 def choose(outcomes: list[Outcome], per_tier: int = 2) -> list[Outcome]:
-    """Choose the first cases of every tier that conceals something, whatever became of them."""
+    """Choose the first cases of every tier that conceals something, whether found or not."""
     chosen: list[Outcome] = []
     for tier in TIERS:
         there = [o for o in outcomes if o.tier == tier and o.causes]
@@ -53,14 +53,14 @@ def choose(outcomes: list[Outcome], per_tier: int = 2) -> list[Outcome]:
 
 
 def exhibit(outcome: Outcome, statement: str, recording: Path, predicted: Path) -> Exhibit:
-    """Lay out one case.
+    """Collect what is shown of one case.
 
     Parameters
     ----------
     outcome : Outcome
         Answer and diagnosis.
     statement : str
-        What the diagnosis said.
+        Statement of the diagnosis.
     recording : pathlib.Path
         The recording's CSV.
     predicted : pathlib.Path

@@ -1,4 +1,4 @@
-"""The score as one HTML page that needs nothing else."""
+"""The score as one self-contained HTML page."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _power(score: Score, programme: str, noise: str) -> str:
 
 
 def _opponents(score: Score) -> str:
-    """Table of who needs how much, on the same recordings."""
+    """Table of the d that the diagnosis and each opponent need, on the same recordings."""
     rows = "".join(
         f"<tr><td>{escape(c.who)}</td><td>{c.programme}</td><td>{c.noise}</td><td></td>"
         f"<td class=n>{within_reach(c.needed)}</td></tr>"
@@ -113,7 +113,7 @@ def _calibration(score: Score) -> str:
 
 
 def _matrix(table: pl.DataFrame) -> str:
-    """Confusion matrix, darker where more."""
+    """Confusion matrix, darker where there are more cases."""
     if table.is_empty():
         return "<p>No cases.</p>"
     names = [c for c in table.columns if c != "cause"]
@@ -132,7 +132,7 @@ def _matrix(table: pl.DataFrame) -> str:
 
 
 def _exhibit(item: Exhibit) -> str:
-    """One case of the gallery: before beside after, on the same scale."""
+    """One example case: residual before beside after the repair, on the same scale."""
     outcome = item.outcome
     span = float(np.quantile(np.abs(item.before_deg), 0.998)) * 1.2
     reach = float(np.abs(item.torque_nm).max()) * 1.04

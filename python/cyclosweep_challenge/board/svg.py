@@ -148,7 +148,7 @@ def _drawn(one: Series, xs: list[float], ys: list[float], py: Callable[[float], 
 
 
 def _legend(series: Sequence[Series]) -> str:
-    """Names in their colours, under the chart."""
+    """Legend under the chart."""
     named = [s for s in series if s.name]
     items = "".join(
         f'<span><i style="background:{s.colour}"></i>{escape(s.name)}</span>' for s in named

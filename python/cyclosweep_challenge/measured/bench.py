@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Row:
-    """What was said of one recording.
+    """One measured recording, its diagnosis, and whether that is right.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Row:
 
 
 class Bench:
-    """Folder of a run on measured loops, and how it is worked through."""
+    """Folder of a run on measured loops: writes recordings, diagnoses them and predicts."""
 
     def __init__(self, out: Path, drive: Path, options: Options, console: Console) -> None:
         self.out, self.drive, self.options, self.console = out, drive, options, console
@@ -139,7 +139,7 @@ class Bench:
         return angles
 
     def row(self, variant: Variant, good: bool | None, **numbers: float) -> Row:
-        """Lay what was said beside what was done."""
+        """Row of the result table for one variant."""
         diagnosis = self.diagnosis(variant)
         rmse = (diagnosis.get("repaired") or {}).get("rmse_deg")
         return Row(

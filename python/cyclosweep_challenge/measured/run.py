@@ -125,7 +125,7 @@ def run_measured(
 
 
 def _plain_numbers(value: Any) -> Any:
-    """Not-a-number as null."""
+    """Return the same data with not-a-number as null."""
     if isinstance(value, dict):
         return {key: _plain_numbers(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -134,6 +134,7 @@ def _plain_numbers(value: Any) -> Any:
 
 
 def _silent(bench: Bench, variant: Variant) -> bool:
+    """Whether a diagnosis was made and raised no alarm."""
     verdict = str(bench.diagnosis(variant).get("verdict", "FAILURE"))
     return verdict not in ALARMS and verdict != "FAILURE"
 
@@ -256,7 +257,7 @@ def _removed(bench: Bench, plain: dict[Path, Variant]) -> list[Row]:
 def _found_again(
     bench: Bench, both: dict[Path, Variant], laid: Sequence[Variant], seed: int
 ) -> list[Row]:
-    """Whether injected effects are named, and how much of them the repaired model takes up."""
+    """Rows for injected effects: whether named, and the share that the repaired model contains."""
     reference = {v.file: (n, v) for n, v in enumerate(both.values())}
     asked: list[tuple[str, dict[str, Any] | None, Variant]] = [
         (f"{v.key}-again", bench.model(v), v) for v in [*both.values(), *laid]

@@ -1,1 +1,1 @@
-"""What people use today to see whether a model leaves something out, on the same files."""
+"""Textbook detectors of model error, run on the same files as the diagnosis."""

@@ -1,4 +1,4 @@
-"""Opponents meet the recordings, in processes of their own, and their replies are stored."""
+"""Run the opponents on the recordings and store their replies."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _entrants(names: Sequence[str]) -> dict[str, Callable[..., Any]]:
 
 
 def meet(recording: Path, results: Path, key: str, names: tuple[str, ...]) -> None:
-    """Let opponents see one recording; those that have seen it before are left out."""
+    """Run opponents on one recording, except those whose reply is stored already."""
     file = results / f"{key}.json"
     replies: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
     missing = [name for name in names if name not in replies]
@@ -86,7 +86,7 @@ def meet_opponents(
     first: int = 0,
     home: str = "white",
 ) -> list[tuple[Callable[..., None], tuple[Any, ...]]]:
-    """List the meetings of a challenge: single effects in the open, and nothing missing.
+    """List the jobs of a challenge: recordings with one effect in the open, or with none.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A ladder of models judged by error alone: the term whose held-out error is smallest wins."""
+"""Forward selection by held-out error alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ljung-Box: asks whether the residual is correlated with its own past."""
+"""Ljung-Box test: whether the residual is correlated with its own past."""
 
 from __future__ import annotations
 

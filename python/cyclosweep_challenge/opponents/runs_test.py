@@ -1,4 +1,4 @@
-"""Runs test: asks whether the residual's signs change as often as by chance."""
+"""Runs test: whether the residual's signs change as often as by chance."""
 
 from __future__ import annotations
 

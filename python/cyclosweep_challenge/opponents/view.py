@@ -107,7 +107,7 @@ class RecordingView:
 
         Taking the baseline out of the columns makes every regression a joint one, which is
         kinder to the opponents than regressing the residual on the raw columns. Columns that
-        hardly differ from one before them are left out, as a careful engineer would.
+        hardly differ from one before them are left out, to keep regressions well conditioned.
         """
         raw = _textbook(self)
         table = np.column_stack([column for _, column in raw])
@@ -153,7 +153,7 @@ def _last_extreme(view: RecordingView) -> Array:
 
 
 def _textbook(view: RecordingView) -> list[tuple[str, Array]]:
-    """Columns that a careful engineer would offer a regression, with the effect of each."""
+    """Regression columns from textbooks, each with the effect that it stands for."""
     torque, side, size = view.torque_nm, np.sign(view.torque_nm), np.abs(view.torque_nm)
     top = float(size.max())
     rate = np.zeros_like(torque)

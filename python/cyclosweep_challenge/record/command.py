@@ -29,6 +29,7 @@ MEASURED = "CYCLOSWEEP_MEASURED"
 
 
 def _parser() -> argparse.ArgumentParser:
+    """Parser of the command line."""
     parser = argparse.ArgumentParser(
         prog="python -m cyclosweep_challenge.record",
         description="Make the run of record, or go on with it; the same command goes on.",
@@ -85,6 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _run(given: argparse.Namespace) -> int:
+    """Run what the command line asks for; return the exit status."""
     # What is piped or stored is not cut to the 80 columns of no terminal.
     screen = Console(stderr=True, width=None if sys.stderr.isatty() else 150)
     if given.pages is not None:
@@ -116,6 +118,7 @@ def _verify_log(log: Path) -> list[str]:
 
 
 def _make(given: argparse.Namespace, screen: Console) -> None:
+    """Make a record, or go on with it, and write its pages."""
     sizes = {name: getattr(given, name) for name in COUNTS}
     size = replace(
         given.base, **{name: value for name, value in sizes.items() if value is not None}

@@ -1,4 +1,4 @@
-"""Compare a run with the figures of record: is it the same picture within the intervals."""
+"""Compare the figures of a run with those of a record, within their intervals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Detection beside the opponents' on the page of record: words, tables and pictures."""
+"""Section of a page that compares detection with the opponents': text, tables and charts."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _picture(page: str, programme: str, noise: str, setting: str) -> str:
 
 
 def _comparison(score: Plain, page: str, programme: str, noise: str, setting: str) -> str:
-    """Picture and table of who finds how much."""
+    """Chart and table of the share that each detector finds."""
     curves = _curves(score, programme, noise)
     levels = sorted({p["d"] for c in curves for p in c["points"]})
     rows: list[Sequence[object]] = []
@@ -149,6 +149,7 @@ def _alarms(rivals: Sequence[Plain], setting: str) -> str:
 
 
 def _alarm(alarms: Mapping[str, Plain], family: str) -> str:
+    """Share of false alarms under one family of noise, or a dash."""
     e = alarms.get(family)
     return f"{text(e, 2)} of {e['count']}" if e else "–"
 
@@ -163,11 +164,12 @@ def _needed(e: Plain) -> str:
 
 
 def _at(points: Mapping[float, Plain], d: float) -> str:
+    """Share found at one d, or a dash."""
     return text(points.get(d), 2)
 
 
 def _drawn(score: Plain, programme: str, noise: str, setting: str) -> str:
-    """Curves of the diagnosis, the knowing test and all opponents, with intervals."""
+    """Chart of the diagnosis, the test that knows the effect and all opponents, with intervals."""
     named = [(c["who"], c["points"]) for c in _curves(score, programme, noise)]
     rivals = _rivals(score, programme, noise, setting)
     named += [

@@ -64,7 +64,7 @@ def contest_page(
 
 
 def _only(programme: str | None) -> str:
-    """What a figure that names no programme is of, where there is one programme only."""
+    """Sentence on figures that name no programme, where the record has one programme only."""
     if not programme:
         return ""
     return (

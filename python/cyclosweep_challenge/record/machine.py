@@ -1,4 +1,4 @@
-"""The kind of machine a record was made on; nothing that tells whose it is."""
+"""The kind of machine a record was made on, without anything that identifies it."""
 
 from __future__ import annotations
 

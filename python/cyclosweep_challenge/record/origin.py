@@ -1,4 +1,4 @@
-"""Where the figures of a page come from: command, seed, machine, code, and the record's parts."""
+"""Origin of a page's figures: command, seed, machine, code, and the record's parts."""
 
 from __future__ import annotations
 

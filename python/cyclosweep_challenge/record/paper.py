@@ -96,7 +96,7 @@ def _write_page(docs: Path, name: str, figures: Mapping[str, Plain]) -> Path:
 
 
 def _notes(file: Path, seed: int) -> str:
-    """What was written by hand about this record; words about another one say so."""
+    """Notes written by hand about this record, with a remark if they are about another one."""
     if not file.exists():
         return ""
     words = file.read_text().strip()

@@ -48,6 +48,7 @@ def proof_page(
 
 
 def _head(content: Plain, log: Sequence[Plain]) -> str:
+    """Title and origin."""
     return (
         "# The proof: concealed physics, committed answers, opponents, and a real drive\n\n"
         "Written by `make proof-record` from the run of record; not edited by hand. What is "
@@ -65,6 +66,7 @@ def _head(content: Plain, log: Sequence[Plain]) -> str:
 
 
 def _targets(content: Plain, contests: Mapping[str, Plain]) -> str:
+    """Table of targets, and those of the contests."""
     parts = ["## The table of targets\n\n" + target_tables(content["figures"])]
     if contests:
         parts.append(
@@ -89,6 +91,7 @@ def _targets(content: Plain, contests: Mapping[str, Plain]) -> str:
 
 
 def _alarms(rows: Sequence[Plain]) -> str:
+    """Table of false alarms by family of noise."""
     programmes = ("rich", "middle", "poor", "oneway")
 
     def cell(e: Plain) -> str:
@@ -131,6 +134,7 @@ def _alarms(rows: Sequence[Plain]) -> str:
 
 
 def _naming(score: Plain, tables: Plain) -> str:
+    """Tables of what was named, by stratum and effect."""
     verdicts = ("IDENTIFIED", "AMBIGUOUS", "UNKNOWN_PHYSICS", "NOTHING_MISSING")
     parts = [
         "## Naming\n\n"
@@ -176,6 +180,7 @@ def _naming(score: Plain, tables: Plain) -> str:
 
 
 def _matrix(rows: Sequence[Plain]) -> str:
+    """Confusion matrix."""
     if not rows:
         return "No cases."
     names = [n for n in rows[0] if n != "cause"]
@@ -187,6 +192,7 @@ def _matrix(rows: Sequence[Plain]) -> str:
 
 
 def _calibration(score: Plain) -> str:
+    """Table of stated probabilities against frequencies."""
     return (
         "## Stated probabilities\n\n"
         + table(
@@ -200,6 +206,7 @@ def _calibration(score: Plain) -> str:
 
 
 def _unknowns(tables: Plain) -> str:
+    """Tables of causes that are not on the list."""
     parts = ["## Causes that are not on the list"]
     for key, words in (
         ("aliens", "On nobody's list"),
@@ -226,6 +233,7 @@ def _unknowns(tables: Plain) -> str:
 
 
 def _checking(about: Plain) -> str:
+    """How to check a record."""
     return f"""## How to check this
 
 For someone who distrusts all of it:

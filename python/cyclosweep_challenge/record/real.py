@@ -43,14 +43,17 @@ def real_drive(rows: Sequence[Plain]) -> str:
 
 
 def _number(value: object) -> str:
+    """Number to three digits, or a dash."""
     return f"{value:.3g}" if isinstance(value, (int, float)) else "–"
 
 
 def _names(row: Plain) -> str:
+    """Named effects, or a dash."""
     return ", ".join(row["named"]).replace("_", " ") or "–"
 
 
 def _unseen(rows: Sequence[Plain]) -> str:
+    """Table of predictions of ramps that were not fitted."""
     return (
         "### One ramp diagnosed, another predicted\n\n"
         "The diagnosis sees ramp 101 (100 conditions the drive) and its model predicts ramp 102 "
@@ -75,6 +78,7 @@ def _unseen(rows: Sequence[Plain]) -> str:
 
 
 def _nulls(rows: Sequence[Plain]) -> str:
+    """Table of repeated loops."""
     alarms = sum(not r["good"] for r in rows)
     bound = share(alarms, len(rows)).high if rows else float("nan")
     by_file = {file: [r for r in rows if r["file"] == file] for file in {r["file"] for r in rows}}
@@ -103,6 +107,7 @@ def _nulls(rows: Sequence[Plain]) -> str:
 
 
 def _terms(single: Sequence[Plain], none: Sequence[Plain], both: Sequence[Plain]) -> str:
+    """Tables of terms removed from the recording."""
     back = sum(bool(r["good"]) for r in single)
     return (
         "### A term removed from the accepted model, and restored\n\n"
@@ -132,6 +137,7 @@ def _terms(single: Sequence[Plain], none: Sequence[Plain], both: Sequence[Plain]
 
 
 def _library(rows: Sequence[Plain]) -> str:
+    """Table of terms removed from the library."""
     return (
         "### A term taken out of the library\n\n"
         "The ramps as measured, diagnosed without one of the effects it had accepted.\n\n"
@@ -162,6 +168,7 @@ def _library(rows: Sequence[Plain]) -> str:
 
 
 def _injected(rows: Sequence[Plain]) -> str:
+    """Table of injected effects."""
     body = []
     for name in sorted({r["detail"] for r in rows}):
         for size in sorted({r["size_deg"] for r in rows}):
@@ -191,6 +198,7 @@ def _injected(rows: Sequence[Plain]) -> str:
 
 
 def _confounded(rows: Sequence[Plain]) -> str:
+    """Table of recordings with several causes at once."""
     return (
         "### Several causes at once\n\n"
         "A file that warmed up while it was taken, and the same kind of drive cold at another "

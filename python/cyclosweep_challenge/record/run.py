@@ -333,7 +333,7 @@ def run_record(record: Record, console: Console | None = None) -> Score:
 
 
 def _discard(folder: Path) -> None:
-    """Delete a record, and only a record."""
+    """Delete the contents of a folder that holds a record; refuse any other folder."""
     held = [path for path in folder.glob("*") if path.name != LOCK]
     if held and not (folder / "record.json").exists():
         raise ValueError(f"{folder}: found something that is no record, not deleted")

@@ -31,6 +31,7 @@ def _share(hits: int, count: int) -> dict[str, Any]:
 
 
 def _alarm_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
+    """False alarms by family of noise and programme."""
     rows = []
     for family in NOISES:
         there = [o for o in outcomes if o["tier"] == "C6" and o["noise"] == family]
@@ -43,14 +44,17 @@ def _alarm_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
 
 
 def _alarmed(there: Sequence[Plain]) -> dict[str, Any]:
+    """Share of cases with an alarm."""
     return _share(sum(o["verdict"] in ALARMS for o in there), len(there))
 
 
 def _right(o: Plain) -> bool:
+    """Whether exactly the true set was identified."""
     return o["verdict"] == "IDENTIFIED" and set(o["named"]) == set(o["causes"])
 
 
 def _tier_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
+    """What was found and named, by stratum."""
     rows = []
     concealed = {"C0", "C1", "C2", "C3", "C4", "C5-alien", "C5-removed", "C7"}
     for stratum in sorted({o["stratum"] for o in outcomes if o["tier"] in concealed}, key=_by_d):
@@ -67,11 +71,13 @@ def _tier_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
 
 
 def _by_d(stratum: str) -> tuple[str, float]:
+    """Order of strata: by kind, then by d."""
     kind, _, d = stratum.partition("/d=")
     return kind, float(d.split("+")[-1]) if d else 0.0
 
 
 def _effect_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
+    """Share named right, by effect, programme and d."""
     rows = []
     for programme in PROGRAMMES:
         for cause in VOCABULARY:
@@ -92,6 +98,7 @@ def _effect_rows(outcomes: Sequence[Plain]) -> list[dict[str, Any]]:
 
 
 def _unknown_rows(outcomes: Sequence[Plain], tier: str) -> list[dict[str, Any]]:
+    """What became of causes off the list, by cause."""
     there = [o for o in outcomes if o["tier"] == tier]
 
     def false_names(o: Plain) -> list[str]:

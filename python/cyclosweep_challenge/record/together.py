@@ -1,4 +1,4 @@
-"""The contests of several records of the same code, taken together."""
+"""Comparison with opponents over several records of the same code."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ def distances(content: Plain, setting: str = "tuned_ahead") -> dict[Key, Estimat
 
 
 def _keyed(content: Plain) -> Iterator[tuple[Key, Plain]]:
+    """Opponents' curves by noise, programme and name, in the order of a page."""
     for noise in dict.fromkeys(o["noise"] for o in content["opponents"]):
         for programme in PROGRAMMES:
             for o in content["opponents"]:
@@ -34,7 +35,7 @@ def _keyed(content: Plain) -> Iterator[tuple[Key, Plain]]:
 
 
 def over_all(content: Plain, others: Sequence[Plain]) -> dict[Key, Estimate]:
-    """Distances, alike, over all records of this one's code, where more than one has them."""
+    """Distances at equal false alarms over all records of the same code, if there are several."""
     seeds = {c["record"]["seed"]: c for c in (content, *others) if same_code(content, c)}
     records = [distances(c) for c in seeds.values()]
     shared = {key: [there[key] for there in records if key in there] for key in distances(content)}

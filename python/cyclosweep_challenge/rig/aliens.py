@@ -1,4 +1,4 @@
-"""Causes that are in nobody's vocabulary, and causes that no recording can show."""
+"""Causes outside the vocabulary, and causes that a calibration absorbs completely."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The dial: read off centre if mounted so, and only to its divisions."""
+"""The dial: eccentric mounting and reading to whole divisions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Side load of the hanging weight: a turn of the input that does not ask which way it pulls."""
+"""Side load of the hanging weight: a turn of the input that is even in torque."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a run keeps what, and how a process has that place to itself."""
+"""Folders of a run, and the lock that keeps them to one process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LOCK = ".lock"
 
 @contextmanager
 def alone(out: Path) -> Iterator[None]:
-    """Have a run's folder to oneself; the lock dies with its process.
+    """Lock a run's folder for this process; the lock ends with the process.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def alone(out: Path) -> Iterator[None]:
 
 
 class Folders:
-    """Where a run keeps what: recordings are never in one folder with answers."""
+    """Folders of a run; recordings and answers lie in different ones."""
 
     def __init__(self, out: Path) -> None:
         self.out = out

@@ -156,7 +156,7 @@ def gallery(
     options: Options,
     make_again: Callable[[str], None] = lambda _: None,
 ) -> list[Exhibit]:
-    """Let the repaired models of some cases predict their own recordings, and lay them out."""
+    """Predict the recordings of some cases with their repaired models, for the page."""
     program = program_of(options)
     items = []
     for outcome in choose(outcomes):

@@ -1,4 +1,4 @@
-"""How work is shared out among processes and threads, with progress, until the time is over."""
+"""Run jobs on processes or threads, with progress and a time limit."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Options:
 
 
 class OutOfTimeError(Exception):
-    """The time given is over; what is done is kept."""
+    """The time limit has passed; finished work stays."""
 
 
 def program_of(options: Options) -> tuple[str, ...]:

@@ -1,1 +1,1 @@
-"""Figures of a challenge, each with its interval and its target."""
+"""Score of a challenge: criteria with intervals and targets, curves and tables."""

@@ -1,4 +1,4 @@
-"""Whether stated probabilities are borne out."""
+"""Stated probabilities against frequencies."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def _behind(
 def share_behind(
     where: str, programme: str, words: str, behind: Sequence[bool], wanted: float | None
 ) -> Criterion:
-    """Share of opponents that are behind the diagnosis as it is, or tuned alike."""
+    """Share of opponents that are behind the diagnosis as it is, or at equal false alarms."""
     return criterion(
         f"{OPPONENTS} {where} behind the diagnosis {words}, {programme}",
         share_of(behind),

@@ -1,4 +1,4 @@
-"""Who is taken for whom: the confusion matrix of single effects."""
+"""Confusion matrix of single effects."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OTHER = ("several", "ambiguous", "unknown", "nothing", "failure")
 
 
 def said_of(outcome: Outcome) -> str:
-    """One word for what a diagnosis said: a name, or why there is none."""
+    """Column of the matrix for one diagnosis: a name, or why there is none."""
     if outcome.verdict == "IDENTIFIED":
         if len(outcome.named) == 1:
             return outcome.named[0] if outcome.named[0] in VOCABULARY else "ambiguous"
@@ -27,7 +27,7 @@ def said_of(outcome: Outcome) -> str:
 
 
 def confusion(outcomes: Sequence[Outcome]) -> pl.DataFrame:
-    """Count, for each single cause at work, what was said of it.
+    """Count, for each single cause at work, what the diagnosis answered.
 
     Returns
     -------

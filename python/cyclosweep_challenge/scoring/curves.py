@@ -58,7 +58,7 @@ def detection_curves(outcomes: Sequence[Outcome]) -> list[Curve]:
 
 
 def needed_by(curves: Sequence[Curve], who: str, programme: str, noise: str) -> Estimate:
-    """Visibility that somebody needs for 90 % power [-], or nothing where it has no curve."""
+    """The d that a detector needs for 90 % power [-], or nothing where it has no curve."""
     for curve in curves:
         if (curve.who, curve.programme, curve.noise) == (who, programme, noise):
             return curve.needed

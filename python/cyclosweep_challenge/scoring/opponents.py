@@ -112,6 +112,7 @@ class OpponentCurve:
 
 
 def _listed(points: Points) -> list[dict[str, Any]]:
+    """Points as plain data."""
     return [{"d": d, **vars(e)} for d, e in points]
 
 

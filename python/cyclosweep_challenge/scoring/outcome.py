@@ -211,7 +211,7 @@ def _pulls(truth: dict[str, Any], diagnosis: dict[str, Any]) -> dict[str, float]
 
 
 def make_outcome(truth: dict[str, Any], diagnosis: dict[str, Any], held_out: HeldOut) -> Outcome:
-    """Lay one answer beside one diagnosis.
+    """Score one diagnosis by its answer.
 
     Parameters
     ----------

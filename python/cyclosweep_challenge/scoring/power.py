@@ -1,4 +1,4 @@
-"""Power against visibility, and the visibility that nine detections in ten take."""
+"""Power against d, and the d at which nine in ten recordings are found."""
 
 from __future__ import annotations
 

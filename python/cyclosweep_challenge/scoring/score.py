@@ -1,4 +1,4 @@
-"""Everything a challenge found, ready to be shown or stored."""
+"""The score of a challenge, to be shown or stored."""
 
 from __future__ import annotations
 

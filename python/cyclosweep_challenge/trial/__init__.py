@@ -1,1 +1,1 @@
-"""One concealed recording: what is hidden how, how visible it is, and its answer."""
+"""One recording of the challenge: concealed causes, their visibility, and the answer."""

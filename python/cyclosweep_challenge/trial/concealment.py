@@ -1,4 +1,4 @@
-"""Amplitudes that make each cause exactly as visible as wanted, no more."""
+"""Amplitudes at which each cause has the wanted signal-to-noise ratio d."""
 
 from __future__ import annotations
 

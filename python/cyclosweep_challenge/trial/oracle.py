@@ -1,4 +1,4 @@
-"""The test that knows the effect: the yardstick for every other test's power."""
+"""Test that knows the signature of the effect; the reference for the power of other tests."""
 
 from __future__ import annotations
 

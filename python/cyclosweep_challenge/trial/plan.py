@@ -1,4 +1,4 @@
-"""Which cases a challenge is made of: any number of them is a balanced sample of all strata."""
+"""List of the cases of a challenge; any number of them is a balanced sample of all strata."""
 
 from __future__ import annotations
 

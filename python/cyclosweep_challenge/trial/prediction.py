@@ -1,4 +1,4 @@
-"""How well the true model itself predicts, once its parameters come from the recording."""
+"""Prediction error of the true model when its parameters are fitted to the recording."""
 
 from __future__ import annotations
 
