@@ -89,10 +89,11 @@ def moved() -> str:
     return (
         "# What moved since version 0.1\n\n"
         "Written by `make docs` from `python/cyclosweep/_moved.py`. What `import cyclosweep as cs` "
-        "gives has not moved: the\nnames in `cs`, the commands and their options, the files and "
-        "their keys. What moved are modules inside the package.\nImporting one by its old name "
-        "still works and gives a `DeprecationWarning` that says the new one. Names inside the modules of "
-        "`diagnosis` that are\nnot listed below were internal and may be gone.\n\n## Modules\n\n"
+        "gives has not\nmoved: the names in `cs`, the commands and their options, the files and "
+        "their keys. What moved are\nmodules inside the package. Importing one by its old name "
+        "still works and gives a\n`DeprecationWarning` that says the new one. Names inside the "
+        "modules of `diagnosis` that are not listed\nbelow were internal and may be gone.\n\n"
+        "## Modules\n\n"
         + _grid(("old", "now"), modules)
         + "\n## Names that did not go where their module went, or are called otherwise\n\n"
         + _grid(("old", "now"), names)
