@@ -46,7 +46,7 @@ class Alarm:
 
     @classmethod
     def calibrate(cls, scan: Scan, rng: np.random.Generator) -> "Alarm":
-        """Draw recordings with nothing beyond the baseline.
+        """Find thresholds on simulated recordings with nothing beyond the baseline.
 
         Parameters
         ----------

@@ -41,7 +41,7 @@ class ContactFit(FittedStructure):
 
     @property
     def independent_share(self) -> float:
-        """All rows count, because the residual is whitened."""
+        """One: all rows count, because the residual is whitened."""
         return 1.0
 
     @property

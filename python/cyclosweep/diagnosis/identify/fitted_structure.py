@@ -1,4 +1,4 @@
-"""What every fitted structure offers the diagnosis, however it was fitted.
+"""A fitted structure: the calibrated model with some effects, however it was fitted.
 
 A structure is the calibrated published model with a set of terms. Two kinds are fitted:
 `cyclosweep.diagnosis.identify.fit.ContactFit` to the rows in contact, the flank of each row being
@@ -163,7 +163,7 @@ class FittedStructure(ABC):
     @property
     @abstractmethod
     def independent_share(self) -> float:
-        """Share of the fitted rows that tell something of their own."""
+        """Share of the fitted rows whose residuals are independent of the others."""
 
     @property
     @abstractmethod

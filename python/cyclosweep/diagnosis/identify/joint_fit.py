@@ -98,6 +98,7 @@ class JointFit:
         return residual, weight
 
     def _terms_at(self, values: Floats) -> tuple[Term, ...]:
+        """Terms with their nonlinear parameters at these values, in the fit's own scale."""
         shapes = [dict(term.shape) for term in self.terms]
         amplitudes = [term.amplitude for term in self.terms]
         for parameter, value in zip(self.fit_parameters, values, strict=True):

@@ -1,4 +1,4 @@
-"""Projected library scan: the evidence of every hypothesis after the model at hand is taken out."""
+"""Scan of a residual: the evidence in it for every hypothesis, given the structure that left it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -95,7 +95,9 @@ def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Library projected on what the model at hand leaves free.
+    """Evidence for every hypothesis in the residual of one structure.
+
+    All columns of the library are projected off what the structure itself can explain.
 
     Attributes
     ----------
@@ -168,6 +170,7 @@ class Scan:
 
     @cached_property
     def _single(self) -> tuple[np.ndarray, np.ndarray, Floats, Floats]:
+        """Index, column, scale and sign of the signatures with one column."""
         index, column, factor, sign = [], [], [], []
         for k, signature in enumerate(self.library.signatures):
             if signature.stop - signature.first == 1 and self.transforms[k].shape[1] == 1:
@@ -179,7 +182,7 @@ class Scan:
 
     @cached_property
     def groups(self) -> dict[str, np.ndarray]:
-        """Blocks of each hypothesis that the recording can show."""
+        """Indices of the signatures of each hypothesis that the recording can show."""
         names = np.array([signature.hypothesis for signature in self.library.signatures])
         found: dict[str, np.ndarray] = {}
         for name in dict.fromkeys(names.tolist()):
@@ -302,7 +305,7 @@ def scan(
     freedom: float,
     excess: float = 0.0,
 ) -> Scan:
-    """Project the library's whitened columns off a tangent basis and score the residual.
+    """Scan the residual of a structure for every hypothesis of a library.
 
     Parameters
     ----------

@@ -193,6 +193,7 @@ class Search:
         return best
 
     def _scan(self, fitted: FittedStructure) -> Scan:
+        """Evidence for every hypothesis in the residual of a structure."""
         return scan(
             self.library,
             self.whitened,
@@ -204,6 +205,7 @@ class Search:
         )
 
     def _candidate(self, fitted: FittedStructure, gain: float, prior: float) -> Candidate:
+        """Candidate of a fitted structure, its residual looked through."""
         found = find_sinusoid(fitted.history, self.problem.fitted, fitted.residual)
         return Candidate(fitted, gain, prior, self._scan(fitted), found, self.alarm)
 

@@ -14,9 +14,6 @@ from cyclosweep.result import Untestable
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 
-HIDDEN = 0.9999
-"""An effect absorbed to this share by the calibration cannot be tested."""
-
 
 @dataclass(frozen=True, slots=True)
 class Testability:
@@ -62,7 +59,7 @@ ALWAYS_HIDDEN = (
         "a calibrated weight on a known arm",
     ),
 )
-"""Exact aliases of the calibration: name, reason, what would show them."""
+"""What the calibration hides exactly: name, reason, what would show it."""
 
 
 def testability(
@@ -166,7 +163,7 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
 
 
 def _recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
-    """What takes out of signatures on the fitted rows all that a calibration takes up."""
+    """Function that takes out of twists on the fitted rows all that a calibration takes up."""
     problem, history = fitted.problem, fitted.history
     line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
     basis = orthonormal(line[problem.fitted])

@@ -58,6 +58,7 @@ class Noise:
 
     @property
     def _pair(self) -> Floats:
+        """Correlation of each row with the one before."""
         return np.where(self.gap > 0, self.correlation**self.gap, 0.0)
 
     def whiten(self, rows: Floats) -> Floats:

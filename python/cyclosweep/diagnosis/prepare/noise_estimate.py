@@ -86,8 +86,10 @@ def _coarse_noise(
     mean = _scored_mean(angle, basis[:, :12], known, start_sigma)
     score, weight = known.residual(angle, mean)
     best, upper = _correlation(score, inner[:, :1], gap)
-    telling = float(np.sum((weight * fine) ** 2))
-    return replace(known, correlation=upper, best_correlation=best, freedom=max(telling - 6.0, 4.0))
+    near_a_step = float(np.sum((weight * fine) ** 2))
+    return replace(
+        known, correlation=upper, best_correlation=best, freedom=max(near_a_step - 6.0, 4.0)
+    )
 
 
 def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float]:
@@ -189,13 +191,13 @@ def _interval_sigma(angle: Floats, basis: Floats, step: float, start: float) -> 
     Only readings near a step tell anything, so the model that is taken out is kept small.
     """
     grid = step / np.geomspace(2.0, 60.0, 24)
-    telling = len(angle) * 4.0 * grid / step
+    near_a_step = len(angle) * 4.0 * grid / step
     value = np.empty(len(grid))
     for width in (3, 12):
         part = basis[:, :width]
         mean = part @ (part.T @ angle)
         for k, sigma in enumerate(grid):
-            if width > 3 and telling[k] < 20 * width:
+            if width > 3 and near_a_step[k] < 20 * width:
                 break
             for _ in range(4):
                 mean = _scoring_step(angle, part, mean, float(sigma), step)

@@ -1,4 +1,4 @@
-"""A recording prepared for fitting: rows worth using, flank in contact, gaps, nominal line."""
+"""A recording prepared for fitting: averaged rows, flank in contact, rows to fit and to keep."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -24,7 +24,7 @@ class NominalLine(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Rows to fit with everything the engine needs to know about them.
+    """A recording prepared for fitting.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Splitting a problem into parts to fit and parts to judge, always in whole blocks."""
+"""Parts of a recording to fit and parts to predict, always in whole runs or stretches."""
 
 from dataclasses import replace
 

@@ -43,45 +43,53 @@ def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0)
 
 
 def _nested(top: float) -> Load:
+    """Nested and biased loops, twice."""
     points = [0, top, -top, 0.6 * top, -0.4 * top, top, 0.4 * top, 0.8 * top, 0]
     return _runs([_line(points, 500), _line(points, 500)], [0, 0])
 
 
 def _rates(top: float) -> Load:
+    """The same loop at three rates."""
     points = [0, top, -top, 0]
     return _runs([_line(points, s) for s in (60, 200, 700)], [0, 0, 0])
 
 
 def _holds(top: float) -> Load:
+    """Holds at full load and without load, both directions."""
     up, down = _line([0, top], 40), _line([top, 0], 40)
     path = np.concatenate([up, np.full(300, top), down, np.full(200, 0.02 * top)])
     return _runs([path, -path], [0, 0])
 
 
 def _places(top: float) -> Load:
+    """The same loop at eight positions of the mesh."""
     points = [0, top, -top, 0]
     spots = [0, 45, 90, 135, 180, 225, 270, 315]
     return _runs([_line(points, 120) for _ in spots], spots)
 
 
 def _returns(top: float) -> Load:
+    """Small loops returning to three positions while the rig warms up by 4 K."""
     points = [0, 0.5 * top, -0.5 * top, 0]
     spots = [0, 120, 240, 0, 120, 240, 0, 120]
     return _runs([_line(points, 120) for _ in spots], spots, warm=4.0)
 
 
 def _soak(top: float) -> Load:
+    """Small loops at one position while the rig warms up by 10 K."""
     points = [0, 0.3 * top, -0.3 * top, 0]
     return _runs([_line(points, 120) for _ in range(8)], [0] * 8, warm=10.0)
 
 
 def _ladder(top: float) -> Load:
+    """Loops of growing amplitude, then a small one."""
     return _runs(
         [_line([0, s * top, -s * top, 0], 150) for s in (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)], [0] * 6
     )
 
 
 def _wide(top: float) -> Load:
+    """Two loops to 1.4 times the largest torque."""
     return _runs([_line([0, 1.4 * top, -1.4 * top, 0], 600) for _ in range(2)], [0, 0])
 
 

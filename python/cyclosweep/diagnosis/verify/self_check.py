@@ -1,4 +1,4 @@
-"""Synthetic twins of this very recording: how often the search errs on it, and how often not."""
+"""Rates of false alarms and of finds on simulated recordings of the same programme and noise."""
 
 import numpy as np
 

@@ -56,7 +56,7 @@ class WholeLoopFit(FittedStructure):
 
     @property
     def independent_share(self) -> float:
-        """Few rows count, because the residual repeats itself along the loop."""
+        """A small share: the residual repeats itself along the loop."""
         return min(INDEPENDENT_PIECES / max(self.problem.count, 1), 1.0)
 
     @property

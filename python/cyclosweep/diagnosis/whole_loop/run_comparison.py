@@ -16,7 +16,7 @@ DRIFT_OF_SPAN = 0.05
 SAME_RANGE = 0.2
 """Share of the range of torque within which the ends of two replicates agree."""
 FEWEST_ROWS = 40
-"""Rows of a run from which it can be compared with another."""
+"""Least rows of a run that is compared with another."""
 MOST_RUNS = 6
 """Runs that are fitted alone to see whether they differ."""
 REPEATING = 0.5
@@ -25,7 +25,15 @@ REPEATING = 0.5
 
 @dataclass(frozen=True)
 class Repetition:
-    """How well the residual of one run predicts that of another."""
+    """How well the residual of one run predicts that of another.
+
+    Attributes
+    ----------
+    correlation : float
+        Between mean residuals in the cells that both runs have visited.
+    cells : int
+        Number of these cells: bands of torque by flank and direction.
+    """
 
     correlation: float
     cells: int
@@ -38,7 +46,7 @@ class Repetition:
 
 @dataclass(frozen=True)
 class Steadiness:
-    """How a model of one run fares on itself and on the replicate that it fits worst.
+    """Errors of a model of one run on that run, and on the replicate that it fits worst.
 
     Attributes
     ----------
@@ -87,7 +95,7 @@ def _by_run(problem: Problem, rows: Flags) -> list[Flags]:
 
 
 def _same_range(first: Floats, second: Floats) -> bool:
-    """Whether two runs load the drive from about as far to about as far."""
+    """Whether the torques of two runs reach about as far on either side."""
     room = SAME_RANGE * max(float(np.ptp(first)), float(np.ptp(second)))
     ends = (first.min() - second.min(), first.max() - second.max())
     return bool(np.max(np.abs(ends)) <= room)

@@ -88,7 +88,7 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
 
 
 def _crosses_late(problem: Problem) -> bool:
-    """Whether crossings of the dead zone were recorded where they tell the torque's zero."""
+    """Whether crossings of the dead zone were recorded that show the torque's zero."""
     history, rows = problem.history, problem.whole_fitted
     pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
     return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
@@ -137,6 +137,7 @@ def _cost(model: Forecast) -> float:
 
 
 def _better(first: Forecast, second: Forecast) -> Forecast:
+    """Forecast with the smaller error; the first where they are equal."""
     return second if second.error_deg < first.error_deg else first
 
 
@@ -158,7 +159,7 @@ def left_out_error(model: Forecast) -> float:
 
 
 def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:
-    """Fit a model with one more effect, starting from next to none of it."""
+    """Fit a simulation with one more effect, starting from a small amplitude of it."""
     columns = effect.columns(best.history, shape)
     largest = np.abs(columns).max(axis=0, initial=1e-12)
     little = 0.01 * problem.history.largest_twist_deg / np.maximum(largest, 1e-12)
