@@ -24,9 +24,9 @@ opponent stands at a threshold that one in a hundred recordings with nothing mis
 recordings those are decides the comparison, so it is made more than once. The diagnosis is the
 same every time and is not told the noise; it stands as it is, and once more with its own evidence
 tuned in the same way. `ahead` is the share found by the diagnosis minus that found by the opponent
-over d = 3 to 10, with the uncertainty of the threshold in its interval; `ahead alike` the same with
-both tuned. An opponent is behind where the whole interval is above zero. In the pictures the points
-of one d stand side by side."""
+over d = 3 to 10, with the uncertainty of the threshold in its interval; `ahead, both at 1 %` the
+same with both tuned. An opponent is behind where the whole interval is above zero. In the pictures
+the points of one d stand side by side."""
 
 _WHITE = """Effects under white noise, thresholds set on white noise. This is what the opponents'
 formulas assume."""
@@ -128,7 +128,7 @@ def _comparison(score: Plain, page: str, programme: str, noise: str, setting: st
         f"false alarms at defaults, {noise}",
         "d for 90 %",
         "ahead",
-        "ahead alike",
+        "ahead, both at 1 %",
         *(f"d = {d:g}" for d in levels),
     )
     picture = _picture(page, programme, noise, setting)

@@ -47,7 +47,7 @@ def contest_page(
         "Share of recordings of d = 3 to 10 that the diagnosis finds and the opponent does not, "
         "less the share that the opponent alone finds, on the same files. The opponent stands at "
         "the threshold that one in a hundred recordings with nothing missing and that noise "
-        "exceeds; the diagnosis at the same (alike), or as it is, where it raises fewer "
+        "exceeds; the diagnosis at the same (both at 1 %), or as it is, where it raises fewer "
         "alarms. The last column is for the recordings of all records that one code made and "
         "diagnosed: their distances, each weighted by its precision, as if their intervals were "
         "symmetric and normal. To take records together was decided after the first two were "

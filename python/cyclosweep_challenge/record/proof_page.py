@@ -269,5 +269,5 @@ For someone who distrusts all of it:
    record mixes versions. `git log` shows what came after.
 5. **The opponents got a fair chance.** `python/cyclosweep_challenge/opponents/`: the baseline is
    taken out of their columns, and their thresholds are set on the same recordings with nothing
-   missing. To see both with thresholds set in the same way, read the column `ahead alike`.
+   missing. To see both with thresholds set in the same way, read `ahead, both at 1 %`.
 """

@@ -53,10 +53,13 @@ def behind_table(content: Plain, others: Mapping[str, Plain]) -> str:
         Figures of other records, by the names of their pages.
     """
     columns = {
-        "alike": distances(content),
+        "both at 1 %": distances(content),
         "as it is": distances(content, "ahead"),
-        **{f"alike in [{name}]({name}.md)": distances(there) for name, there in others.items()},
-        "alike, all records": over_all(content, list(others.values())),
+        **{
+            f"both at 1 %, in [{name}]({name}.md)": distances(there)
+            for name, there in others.items()
+        },
+        "both at 1 %, all records": over_all(content, list(others.values())),
     }
 
     def cell(column: Mapping[Key, Estimate], key: Key) -> str:

@@ -44,7 +44,7 @@ def test_none_alone_but_all_show_that_an_opponent_is_behind() -> None:
     assert figure["estimate"]["value"] == 1.0
     words = behind_table(one, {"proof": other})
     assert "| white | poor | bic_subset | 0.03 [-0.01, 0.07] | -0.5 [-0.6, 0.07] |" in words
-    assert "| alike in [proof](proof.md) |" in words
+    assert "| both at 1 %, in [proof](proof.md) |" in words
 
 
 def test_records_of_other_code_or_other_recordings_are_not_put_together() -> None:
