@@ -7,7 +7,7 @@ import re
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ import cyclosweep._core as _core
 from cyclosweep.atomic import write_text
 from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion, count_active_pins
 from cyclosweep.design.inputs import DriveInputs
+from cyclosweep.design.nominal_line import NominalLine, Side
 from cyclosweep.design.numbers import checked_loads
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
 from cyclosweep.design.toml_files import one_line, read_toml
@@ -35,24 +36,7 @@ __all__ = [
     "NominalLine",
 ]
 
-Side = Literal["input", "output"]
-
 _BUILT_IN = {"reference-87": "reference_87.toml"}
-
-
-class NominalLine(NamedTuple):
-    """The published model as a test engineer sees it: a dead zone and a straight line.
-
-    Attributes
-    ----------
-    free_play_deg : float
-        Half width of the dead zone [deg] at the side asked for.
-    compliance_deg_per_nm : float
-        Slope beyond it [deg/(N m)], torque transfer efficiency included.
-    """
-
-    free_play_deg: float
-    compliance_deg_per_nm: float
 
 
 class Drive(DriveInputs):
@@ -308,9 +292,7 @@ class Drive(DriveInputs):
                     f"{self.name}: statics hold for one or two discs, found {self.disc_count}"
                 )
             at_input = (twist - self.free_play_deg) / self.nominal_torque_nm
-        if side == "input":
-            return NominalLine(self.free_play_deg, at_input)
-        return NominalLine(self.free_play_deg / self.ratio, at_input / self.ratio**2)
+        return NominalLine(self.free_play_deg, at_input).at(side, self.ratio)
 
     def active_pins(self, criterion: Criterion | None = None) -> ActivePins:
         """Active hole-pin contacts over one turn of the mesh zone.
