@@ -15,12 +15,16 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.sweep import executors
 from cyclosweep.sweep.attempts import write_parts
 from cyclosweep.sweep.dataset import Dataset
 from cyclosweep.sweep.executors import dask_executor
 
 distributed = pytest.importorskip("distributed", reason="the dask extra is not installed")
-pytestmark = pytest.mark.filterwarnings("default")
+pytestmark = [
+    pytest.mark.filterwarnings("default"),
+    pytest.mark.skipif(sys.platform == "win32", reason="needs signals of POSIX"),
+]
 
 COUNT, ROWS = 2**19, 2**14
 
@@ -123,7 +127,10 @@ def test_a_lost_scheduler_is_one_error_and_the_same_call_resumes(
     assert cs.scan_dataset(folder).collect().equals(alone)
 
 
-def test_a_scheduler_that_is_not_there_is_one_line(tmp_path: Path) -> None:
+def test_a_scheduler_that_is_not_there_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(executors, "_CONNECT_S", 0.5)
     with pytest.raises(cs.SweepError, match=r"scheduler tcp://127\.0\.0\.1:9: "):
         cs.sink(
             space(),

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import cyclosweep as cs
 from cyclosweep.sweep import shards
 from cyclosweep.sweep.dataset import Dataset, Part
 from cyclosweep.sweep.summary import PartSummary
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs signals of POSIX")
 
 COUNT, ROWS = 2**14, 2**11
 

@@ -19,6 +19,8 @@ from polars.testing import assert_frame_equal
 import cyclosweep as cs
 from cyclosweep.sweep.dataset import read_footer
 
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs signals of POSIX")
+
 SCRIPT = Path(__file__).parent / "interrupted_sweep.py"
 PARTS = 40
 ROWS = 2000

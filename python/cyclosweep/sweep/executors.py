@@ -19,6 +19,8 @@ Engine = Literal["threads", "processes", "dask"]
 ENGINES: tuple[Engine, ...] = ("threads", "processes", "dask")
 MakeExecutor = Callable[[], AbstractContextManager[Executor]]
 
+_CONNECT_S = 10.0
+"""Time allowed for reaching a scheduler [s]."""
 # Dask's nanny sets MALLOC_TRIM_THRESHOLD_, which slows small parts 2.5 times.
 _ENVIRONMENT = {"RAYON_NUM_THREADS": "1", "POLARS_MAX_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
@@ -125,7 +127,7 @@ def dask_executor(workers: int | None, scheduler: str | None) -> Iterator[Execut
             client = stack.enter_context(Client(cluster))
         else:
             try:
-                client = stack.enter_context(Client(scheduler, timeout=10))
+                client = stack.enter_context(Client(scheduler, timeout=_CONNECT_S))
             except OSError as error:
                 raise SweepError(f"scheduler {scheduler}: {error}") from None
         # Not pure: a part that is tried again is a new task, not the failed one's result.
