@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import os
 from pathlib import Path
 
 import pytest
 
+import cyclosweep as cs
 from cyclosweep.atomic import unfinished, write_bytes, write_text
 
 
@@ -68,3 +70,20 @@ def test_what_is_no_regular_file_is_written_directly() -> None:
 def test_a_folder_in_its_place_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(OSError, match=tmp_path.name):
         write_text(tmp_path, "text")
+
+
+def test_nothing_is_written_by_hand() -> None:
+    by_hand = []
+    for path in sorted(Path(cs.__file__).parent.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if path.name == "atomic.py" or not isinstance(node, ast.Call):
+                continue
+            called = ast.unparse(node.func)
+            is_write = called.endswith((".write_text", ".write_bytes")) or called == "os.replace"
+            modes = [a.value for a in node.args if isinstance(a, ast.Constant)]
+            is_open = called.endswith("open") and any(
+                mode in ("w", "wb", "a", "x") for mode in modes
+            )
+            if is_write or is_open:
+                by_hand.append(f"{path.name}: {ast.unparse(node)}")
+    assert by_hand == []

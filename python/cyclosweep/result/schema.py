@@ -6,9 +6,9 @@ python -m cyclosweep.result.schema docs/diagnosis.schema.json
 import dataclasses
 import json
 import sys
-from pathlib import Path
 from typing import Any
 
+from cyclosweep.atomic import write_text
 from cyclosweep.result import answer, calibration, effects, mismatch, proof
 from cyclosweep.result.json_form import answer_type
 from cyclosweep.result.part import Part
@@ -58,7 +58,7 @@ def _as_written(described: dict[str, Any], part: type[Part]) -> None:
 def main() -> None:
     """Write the schema to the file that is named on the command line."""
     text = json.dumps(json_schema(), indent=1, ensure_ascii=False)
-    Path(sys.argv[1]).write_text(text + "\n", encoding="utf-8")
+    write_text(sys.argv[1], text + "\n")
 
 
 if __name__ == "__main__":
