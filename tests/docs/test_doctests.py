@@ -8,11 +8,11 @@ import pkgutil
 
 import pytest
 
-import cyclosweep
+import cyclosweep as cs
 
 MODULES = sorted(
     module.name
-    for module in pkgutil.walk_packages(cyclosweep.__path__, "cyclosweep.")
+    for module in pkgutil.walk_packages(cs.__path__, "cyclosweep.")
     if not module.name.endswith(("__main__", "_core"))
 )
 

@@ -1,4 +1,4 @@
-"""Whatever the bytes, reading ends in a recording or in one line of `InputError`."""
+"""Whatever the bytes, reading ends in a recording or in one line of `cs.InputError`."""
 
 import gzip
 import tempfile
@@ -8,7 +8,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cyclosweep as cs
-from cyclosweep.errors import InputError
 
 FUZZ = settings(
     max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
@@ -96,7 +95,7 @@ def read_or_refuse(content: bytes, meta: bytes | None = None, name: str = "loop.
         complaint = None
         try:
             recording = cs.Recording.read(path)
-        except InputError as error:
+        except cs.InputError as error:
             complaint = str(error)
         if complaint is not None:
             assert len(complaint.splitlines()) == 1

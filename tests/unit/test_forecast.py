@@ -10,15 +10,15 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.verify.holdout import distance_to_curve, replicate_floor
-from cyclosweep.simulation.simulate import EffectValue, Model, elastic_law
+from cyclosweep.simulation.simulate import EffectValue, elastic_law
 from tests.support.arrays import Floats, present
 from tests.support.published_schema import check_content
 
 SLIDE = {"slip_deg": 0.05, "scatter": 0.8, "slack": 0.0, "growth": 0.6, "reference_nm": 8.0}
 
 
-def truth(zero_nm: float = 0.6, coulomb_nm: float = 2.0) -> Model:
-    return Model(
+def truth(zero_nm: float = 0.6, coulomb_nm: float = 2.0) -> cs.Model:
+    return cs.Model(
         compliance_deg_per_nm=0.09,
         free_play_deg=0.8,
         datum_deg=1.5,
@@ -45,7 +45,7 @@ def ramps(top: float = 24.0, runs: int = 3, per_run: int = 500, kept: bool = Tru
     )  # fmt: skip
 
 
-def measured(model: Model, steps_deg: float = 0.1, **programme: Any) -> cs.Recording:
+def measured(model: cs.Model, steps_deg: float = 0.1, **programme: Any) -> cs.Recording:
     """Loops of a model with steps tied to the position, as a mesh makes them."""
     load = ramps(**programme)
     return load.with_angle(with_steps(present(cs.simulate(model, load).angle_deg), steps_deg))

@@ -8,7 +8,6 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.errors import InputError
 from cyclosweep.recording.signals import angle_lattice
 from tests.support.arrays import present
 
@@ -45,7 +44,7 @@ def assert_is_the_loop(recording: cs.Recording) -> None:
 
 
 def complaint(path: Path, meta: Path | None = None) -> str:
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(cs.InputError) as caught:
         cs.Recording.read(path, meta)
     text = str(caught.value)
     assert "\n" not in text

@@ -8,7 +8,6 @@ import pytest
 from rich.console import Console
 
 import cyclosweep as cs
-from cyclosweep.errors import InputError
 from cyclosweep.recording.faults import Fault
 from cyclosweep.report import ReportData, print_summary, write_png, write_report
 from cyclosweep.result import Answer
@@ -55,10 +54,10 @@ def test_the_name_chooses_the_form(tmp_path: Path) -> None:
     assert write_report(data, tmp_path / "a.html").read_text("utf-8").startswith("<!doctype html>")
     assert write_report(data, tmp_path / "b.png").read_bytes().startswith(b"\x89PNG")
     assert (write_report(data, tmp_path / "pictures") / "loop.png").is_file()
-    with pytest.raises(InputError, match=r"\.pdf"):
+    with pytest.raises(cs.InputError, match=r"\.pdf"):
         write_report(data, tmp_path / "c.pdf")
     program = ReportData(
         recording=cs.Recording.from_arrays([1.0, 2.0]), result=Answer(verdict="DATA_FAULT")
     )
-    with pytest.raises(InputError, match="no angles"):
+    with pytest.raises(cs.InputError, match="no angles"):
         write_report(program, tmp_path / "d.png")

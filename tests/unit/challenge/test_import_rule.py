@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-import cyclosweep
+import cyclosweep as cs
 import cyclosweep_challenge as challenge
 
 ROOT = Path(challenge.__file__).parent
@@ -56,7 +56,7 @@ def test_nothing_is_imported_behind_the_rule_s_back(path: Path) -> None:
 
 
 def test_nothing_that_predicts_or_diagnoses_knows_of_the_challenge() -> None:
-    package = Path(cyclosweep.__file__).parent
+    package = Path(cs.__file__).parent
     knowing = [
         path.relative_to(package).as_posix()
         for path in package.rglob("*.py")
