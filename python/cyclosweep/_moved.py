@@ -6,6 +6,8 @@ import importlib
 import sys
 import types
 import warnings
+from importlib.machinery import ModuleSpec
+from pathlib import Path
 from typing import Any
 
 _DESIGN = {"cyclosweep.drive": "design.drive", "cyclosweep.units": "design.units"}
@@ -74,17 +76,23 @@ _DIAGNOSIS = {
         "words": "result.statement",
     }.items()
 }
+_RIG = "aliens balance bristles creep datum dial elastic joint nominal noise pins profile programme"
+_RIG += " rig sideload specimen warmth"
+_TRIAL = "case concealment oracle plan prediction seal signature tiers"
+_CHALLENGE = (
+    {"": "", ".record": ".record.command"}
+    | {f".{name}": f".rig.{name}" for name in _RIG.split()}
+    | {f".{name}": f".trial.{name}" for name in _TRIAL.split()}
+    | {
+        ".diagnosing": ".runner.diagnosing",
+        ".verify": ".runner.verify",
+        ".measured": ".measured.loops",
+        ".measured_run": ".measured.run",
+    }
+)
 MOVED: dict[str, str] = {
     old: f"cyclosweep.{new}" for old, new in (_DESIGN | _SWEEP | _SIMULATION | _DIAGNOSIS).items()
-} | {
-    "cyclosweep.challenge": "cyclosweep_challenge",
-    "cyclosweep.challenge.case": "cyclosweep_challenge.trial.case",
-    "cyclosweep.challenge.plan": "cyclosweep_challenge.trial.plan",
-    "cyclosweep.challenge.programme": "cyclosweep_challenge.rig.programme",
-    "cyclosweep.challenge.rig": "cyclosweep_challenge.rig.rig",
-    "cyclosweep.challenge.verify": "cyclosweep_challenge.runner.verify",
-    "cyclosweep.challenge.measured_run": "cyclosweep_challenge.measured.run",
-}
+} | {f"cyclosweep.challenge{old}": f"cyclosweep_challenge{new}" for old, new in _CHALLENGE.items()}
 """Where the modules of version 0.1 stand now, by their old names."""
 
 _RENAMED_IN_DIAGNOSIS = {
@@ -160,3 +168,7 @@ def register() -> None:
     """
     for old, new in MOVED.items():
         sys.modules.setdefault(old, _MovedModule(old, new))
+    # `python -m` looks for the file to run through the module's specification.
+    command = sys.modules["cyclosweep.challenge.record"]
+    command.__spec__ = ModuleSpec(command.__name__, None, is_package=True)
+    command.__path__ = [str(Path(__file__).parents[1] / "cyclosweep_challenge" / "record")]
