@@ -41,6 +41,8 @@ CASES: dict[str, tuple[cs.Recording, dict[str, Any], str]] = {
     ),
 }
 
+REFUSED = ("too few", "wrong unit", "time runs back")
+
 
 @cache
 def found(case: str) -> cs.Diagnosis:
@@ -55,6 +57,7 @@ def test_every_verdict_keeps_the_schema_and_has_every_key(case: str) -> None:
     check_content(content)
     assert set(content) - ONLY_WHERE_THEY_APPLY == KEYS
     assert ("unknown" in content) is (content["verdict"] == "UNKNOWN_PHYSICS")
+    assert content["stationary"] is (None if case in REFUSED else True)
 
 
 @pytest.mark.parametrize("case", ["identified", "ambiguous", "unknown", "nothing missing"])
@@ -63,7 +66,7 @@ def test_the_statement_follows_from_the_file_alone(case: str) -> None:
     assert statement_of(answer) == found(case).statement
 
 
-@pytest.mark.parametrize("case", ["too few", "wrong unit", "time runs back"])
+@pytest.mark.parametrize("case", REFUSED)
 def test_a_refusal_says_why_and_gives_no_model(case: str) -> None:
     refusal = found(case)
     assert refusal.model is None
@@ -71,6 +74,8 @@ def test_a_refusal_says_why_and_gives_no_model(case: str) -> None:
     assert refusal.content["undecided"] == refusal.content["findings"] == []
     assert refusal.content["stationary"] is None
     assert refusal.content["mismatch"]["evidence"] is None
+    assert refusal.content["self_check"]["false_alarm"] is None
+    assert "repeat" in refusal.content["next_experiment"]["program"]
     assert refusal.statement.startswith(refusal.recording.name)
 
 
@@ -123,11 +128,18 @@ def test_the_folder_holds_the_whole_answer_and_nothing_half_written(tmp_path: Pa
     assert (folder / content["model"]).is_file()
 
 
-def test_a_folder_that_cannot_be_written_keeps_what_was_there(tmp_path: Path) -> None:
-    target = tmp_path / "diagnosis.json"
-    target.mkdir()
-    (target / "kept").write_text("before")
-    with pytest.raises(OSError, match="diagnosis"):
-        found("too few").write(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["diagnosis.json"]
-    assert (target / "kept").read_text() == "before"
+def test_an_interrupted_write_leaves_the_answer_that_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found("too few").write(tmp_path)
+    before = {path.name: path.read_text("utf-8") for path in tmp_path.iterdir()}
+    whole = Path.write_text
+
+    def half(path: Path, data: str, encoding: str | None = None) -> int:
+        whole(path, data[: len(data) // 2], encoding=encoding)
+        raise OSError("no space left on the disk")
+
+    monkeypatch.setattr(Path, "write_text", half)
+    with pytest.raises(OSError, match="no space"):
+        found("identified").write(tmp_path)
+    assert {path.name: path.read_text("utf-8") for path in tmp_path.iterdir()} == before

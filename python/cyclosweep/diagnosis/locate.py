@@ -1,7 +1,8 @@
-"""Where recording and simulation differ: a map over torque, direction, run, place and time."""
+"""Location: where recording and simulation differ in torque, direction, run, place and time."""
 
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -9,16 +10,31 @@ from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import clock_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import recorded_runs
 from cyclosweep.result.mismatch import Direction, Region
-from cyclosweep.simulation.effects.history import Flags
+from cyclosweep.simulation.effects.history import Flags, Floats
 
 MOST_REGIONS = 4
+"""Regions that are given at most."""
+LEVEL = 0.05
+"""Probability by noise alone below which a region is given."""
+LEAST_LEFT = 0.2
+"""Share of a cell that earlier regions have to leave for it to become one itself."""
 BANDS = 8
+"""Bands of torque on either side of zero."""
+MOST_RUNS = 60
+"""Runs up to which each run is a cell."""
+MOST_POSITIONS = 40
+"""Mesh positions that are cells."""
+STRETCHES = (10, 30)
+"""Numbers of equal stretches into which the recording is cut."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class _Cell:
+    """Rows of the recording that may form a region, and their limits."""
+
     rows: Flags
     torque: tuple[float, float] | None = None
     direction: Direction | None = None
@@ -51,60 +67,74 @@ def locate(concluded: Conclusion) -> tuple[Region, ...]:
 
 
 def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list[Region]:
-    """Regions with error control, strongest first, each after the ones before are taken out.
+    """Find regions with error control, each after the ones before are taken out.
 
     The statistic is the largest standardised cell mean of the projected residual; its distribution
     is simulated under the model of the candidate.
+
+    Parameters
+    ----------
+    search : Search
+        The recording with its noise.
+    candidate : Candidate
+        The structure whose residual is searched.
+    draws : int
+        Number of simulated residuals.
+
+    Returns
+    -------
+    list of Region
+        The strongest first.
     """
-    problem, noise = search.problem, search.noise
-    use = problem.fitted
-    cells = _cells(search)
+    problem, fitted, use = search.problem, candidate.fit, search.problem.fitted
+    cells = _cells(problem)
     if not cells:
         return []
-    _, weight = noise.residual(problem.angle_deg[use], candidate.fit.mean_deg[use])
+    _, weight = search.noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
     columns = np.column_stack([cell.rows[use].astype(np.float64) for cell in cells])
-    white = noise.design(columns, weight)
-    residual = candidate.fit.residual
-    tangent = candidate.fit.tangent
-    white = white - tangent @ (tangent.T @ white)
+    white = search.noise.design(columns, weight)
+    white = white - fitted.tangent @ (fitted.tangent.T @ white)
     gram = white.T @ white
-    score = white.T @ residual
     size = np.sqrt(np.diag(gram))
     testable = size > 1e-6 * max(float(size.max()), 1e-300)
     size = np.where(testable, size, np.inf)
-    rng = np.random.default_rng([search.seed, 2])
-    values, vectors = np.linalg.eigh(gram)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    null = np.abs(root @ rng.standard_normal((len(values), draws))) / size[:, None]
-    maxima = np.sort(null.max(axis=0))
-    excess = max(candidate.fit.chi2 - search.noise.freedom, 1e-9)
-    raw = (problem.angle_deg - candidate.fit.mean_deg)[use]
+    maxima = _largest_by_chance(gram, size, draws, np.random.default_rng([search.seed, 2]))
+    excess = max(fitted.chi2 - search.noise.freedom, 1e-9)
+    raw = (problem.angle_deg - fitted.mean_deg)[use]
+    residual = fitted.residual
     found: list[Region] = []
     for _ in range(MOST_REGIONS):
-        z = np.abs(score) / size
+        z = np.abs(white.T @ residual) / size
         best = int(np.argmax(z))
         p = (1 + np.count_nonzero(maxima >= z[best])) / (1 + draws)
-        if p > 0.05 or not testable[best]:
+        if p > LEVEL or not testable[best]:
             break
         cell = cells[best]
-        gain = float(z[best] ** 2)
-        found.append(_region(search, cell, float(raw[cell.rows[use]].mean()), gain / excess, p))
+        share = float(z[best] ** 2) / excess
+        found.append(_region(problem, cell, float(raw[cell.rows[use]].mean()), share, p))
         direction = white[:, best] / np.linalg.norm(white[:, best])
         residual = residual - direction * (direction @ residual)
         white = white - np.outer(direction, direction @ white)
-        score = white.T @ residual
         left = np.linalg.norm(white, axis=0)
-        testable &= left > 0.2 * np.where(np.isfinite(size), size, 0.0)
+        testable &= left > LEAST_LEFT * np.where(np.isfinite(size), size, 0.0)
         size = np.where(testable, left, np.inf)
     return found
 
 
-def _region(search: Search, cell: _Cell, mean: float, share: float, p: float) -> Region:
-    history = search.problem.history
-    rows = cell.rows & search.problem.fitted
+def _largest_by_chance(gram: Floats, size: Floats, draws: int, rng: np.random.Generator) -> Floats:
+    """Largest standardised cell mean in each of many residuals of noise alone."""
+    values, vectors = np.linalg.eigh(gram)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    means = np.abs(root @ rng.standard_normal((len(values), draws))) / size[:, None]
+    return np.asarray(means.max(axis=0))
+
+
+def _region(problem: Problem, cell: _Cell, mean: float, share: float, p: float) -> Region:
+    """Region of a cell with its mean residual [deg], share of the misfit and p-value."""
+    history = problem.history
     temperature = None
     if history.temperature_c is not None and (cell.time or cell.run):
-        part = history.temperature_c[rows]
+        part = history.temperature_c[cell.rows]
         temperature = (round(float(part.min()), 2), round(float(part.max()), 2))
     return Region(
         torque_nm=cell.torque,
@@ -119,43 +149,66 @@ def _region(search: Search, cell: _Cell, mean: float, share: float, p: float) ->
     )
 
 
-def _cells(search: Search) -> list[_Cell]:
-    problem = search.problem
-    history, use = problem.history, problem.fitted
-    count = int(use.sum())
+def _cells(problem: Problem) -> list[_Cell]:
+    """Fitted rows of every cell that has enough of them."""
+    use = problem.fitted
+    least = max(3, int(use.sum()) // 400)
+    every = chain(
+        _torque_cells(problem),
+        _run_cells(problem),
+        _position_cells(problem),
+        _time_cells(problem),
+    )
+    cells = [replace(cell, rows=cell.rows & use) for cell in every]
+    return [cell for cell in cells if np.count_nonzero(cell.rows) >= least]
+
+
+def _torque_cells(problem: Problem) -> Iterator[_Cell]:
+    """Bands of torque, in both directions and in each."""
+    history = problem.history
     torque = history.applied_nm
-    top = history.largest_torque_nm
     loading = history.sense * history.side > 0
-    cells: list[_Cell] = []
+    bands = np.linspace(-1, 1, 2 * BANDS + 1) * history.largest_torque_nm
+    for width in (1, 2, 4):
+        for low, high in zip(bands, bands[width:], strict=False):
+            inside = (torque >= low) & (torque <= high)
+            limits = (round(float(low), 3), round(float(high), 3))
+            yield _Cell(rows=inside, torque=limits)
+            yield _Cell(rows=inside & loading, torque=limits, direction="loading")
+            yield _Cell(rows=inside & ~loading, torque=limits, direction="unloading")
+    yield _Cell(rows=loading, direction="loading")
 
-    def add(rows: Flags, **where: object) -> None:
-        if np.count_nonzero(rows & use) >= max(3, count // 400):
-            cells.append(_Cell(rows & use, **where))  # type: ignore[arg-type]
 
-    bands = np.linspace(-1, 1, 2 * BANDS + 1) * top
-    for low, high in [(a, b) for w in (1, 2, 4) for a, b in zip(bands, bands[w:], strict=False)]:
-        inside = (torque >= low) & (torque <= high)
-        torque_range = (round(float(low), 3), round(float(high), 3))
-        add(inside, torque=torque_range)
-        add(inside & loading, torque=torque_range, direction="loading")
-        add(inside & ~loading, torque=torque_range, direction="unloading")
-    add(loading, direction="loading")
-    labels = recorded_runs(problem)
-    for k in range(history.run_count if history.run_count <= 60 else 0):
-        add(history.run == k, run=(labels[k], labels[k]))
-        add(history.run >= k, run=(labels[k], labels[-1]))
-    if history.crank_deg is not None:
-        for place in np.unique(np.round(history.crank_deg, 1))[:40]:
-            near = np.abs(history.crank_deg - place) < 0.06
-            add(near, crank=(float(place), float(place)))
+def _run_cells(problem: Problem) -> Iterator[_Cell]:
+    """Each run, and all from each run on."""
+    history, labels = problem.history, recorded_runs(problem)
+    for k in range(history.run_count if history.run_count <= MOST_RUNS else 0):
+        yield _Cell(rows=history.run == k, run=(labels[k], labels[k]))
+        yield _Cell(rows=history.run >= k, run=(labels[k], labels[-1]))
+
+
+def _position_cells(problem: Problem) -> Iterator[_Cell]:
+    """Each mesh position."""
+    crank = problem.history.crank_deg
+    if crank is None:
+        return
+    for place in np.unique(np.round(crank, 1))[:MOST_POSITIONS]:
+        yield _Cell(rows=np.abs(crank - place) < 0.06, crank=(float(place), float(place)))
+
+
+def _time_cells(problem: Problem) -> Iterator[_Cell]:
+    """Stretches of the recording with equal numbers of fitted rows."""
+    history, labels = problem.history, recorded_runs(problem)
     clock = clock_of(history)
-    index = np.flatnonzero(use)
-    for parts in (10, 30):
+    index = np.flatnonzero(problem.fitted)
+    for parts in STRETCHES:
         edges = index[np.linspace(0, len(index) - 1, parts + 1).astype(int)]
-        for a, b in pairwise(edges):
-            rows = np.zeros(len(use), dtype=bool)
-            rows[a : b + 1] = True
-            span = (round(float(clock[a]), 3), round(float(clock[b]), 3))
-            spanned = (labels[history.run[a]], labels[history.run[b]])
-            add(rows, time=span if history.time_s is not None else None, run=spanned)
-    return cells
+        for first, last in pairwise(edges):
+            rows = np.zeros(len(problem.fitted), dtype=bool)
+            rows[first : last + 1] = True
+            span = (round(float(clock[first]), 3), round(float(clock[last]), 3))
+            yield _Cell(
+                rows=rows,
+                time=span if history.time_s is not None else None,
+                run=(labels[history.run[first]], labels[history.run[last]]),
+            )

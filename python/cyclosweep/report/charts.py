@@ -153,6 +153,13 @@ class Figure:
 def nice_ticks(low: float, high: float, count: int = 6) -> Floats:
     """Round numbers that divide a range.
 
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range.
+    count : int
+        About how many steps.
+
     Examples
     --------
     >>> nice_ticks(-7.3, 41.0).tolist()
@@ -173,6 +180,13 @@ def nice_ticks(low: float, high: float, count: int = 6) -> Floats:
 def tick_text(value: float, ticks: Floats) -> str:
     """Text of a tick, with the decimals that its neighbours need.
 
+    Parameters
+    ----------
+    value : float
+        The tick.
+    ticks : ndarray of float
+        All ticks of its axis.
+
     Examples
     --------
     >>> tick_text(2.5, np.array([0, 2.5, 5]))
@@ -188,7 +202,15 @@ def tick_text(value: float, ticks: Floats) -> str:
 
 
 def extent(panel: Panel, axis: Literal["x", "y"]) -> tuple[float, float]:
-    """Limits of an axis: given, or fitted to the series with a margin."""
+    """Limits of an axis: given, or fitted to the series with a margin.
+
+    Parameters
+    ----------
+    panel : Panel
+        Axes with their series.
+    axis : {"x", "y"}
+        Which of the two.
+    """
     given = panel.x_range if axis == "x" else panel.y_range
     if given is not None:
         return given

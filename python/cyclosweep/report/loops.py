@@ -129,6 +129,11 @@ def _slope(torque: Floats, angle: Floats, chosen: NDArray[np.bool_]) -> float | 
 def dead_zone_crossings(torque: Floats, angle: Floats) -> NDArray[np.bool_]:
     """Steps over which torque changes its sign and the angle jumps: the dead zone, not recorded.
 
+    Parameters
+    ----------
+    torque, angle : ndarray of float, shape (n,)
+        Torque, and measured or predicted angle, in any unit.
+
     Returns
     -------
     ndarray of bool, shape (n - 1,)

@@ -55,6 +55,13 @@ def write_png(data: ReportData, folder: str | Path) -> list[Path]:
 def write_main_png(data: ReportData, path: str | Path) -> Path:
     """Write the main picture as a PNG file.
 
+    Parameters
+    ----------
+    data : ReportData
+        What to report.
+    path : path
+        File to write; it appears whole or not at all.
+
     Raises
     ------
     InputError

@@ -44,6 +44,20 @@ def band(counts: NDArray[np.int64], sigma_deg: float, rho: float, cells: int) ->
 
     White or first-order correlated Gaussian noise; neighbouring samples of a bin are taken as
     neighbours in time, which is the worst case.
+
+    Parameters
+    ----------
+    counts : ndarray of int, shape (k,)
+        Samples in each bin.
+    sigma_deg, rho : float
+        Standard deviation [deg] and lag-one autocorrelation of the noise.
+    cells : int
+        Number of means that share the band.
+
+    Returns
+    -------
+    ndarray of float, shape (k,)
+        Half-width [deg].
     """
     quantile = stats.norm.ppf(0.5 + 0.5 * CONFIDENCE ** (1.0 / max(cells, 1)))
     inflation = np.sqrt((1.0 + max(rho, 0.0)) / (1.0 - min(max(rho, 0.0), 0.99)))
@@ -77,7 +91,17 @@ def profile(
 def by_group(
     group: NDArray[np.int64], residual_deg: Floats, sigma_deg: float, rho: float
 ) -> Profile:
-    """Mean residual of each group, such as a run; `x` is the group's number."""
+    """Mean residual of each group, such as a run; `x` is the group's number.
+
+    Parameters
+    ----------
+    group : ndarray of int, shape (n,)
+        Group of each sample.
+    residual_deg : ndarray of float, shape (n,)
+        Residual [deg].
+    sigma_deg, rho : float
+        Standard deviation [deg] and lag-one autocorrelation of the noise.
+    """
     numbers, label = np.unique(group, return_inverse=True)
     counts = np.bincount(label)
     mean = np.bincount(label, residual_deg) / counts
@@ -126,7 +150,21 @@ def residual_map(
     rho: float,
     columns: int = 16,
 ) -> ResidualMap:
-    """Mean residual by torque and row, with a band over all cells together."""
+    """Mean residual by torque and row, with a band over all cells together.
+
+    Parameters
+    ----------
+    torque_nm, residual_deg : ndarray of float, shape (n,)
+        Torque [N m] and residual [deg].
+    row : ndarray of int, shape (n,)
+        Row of each sample.
+    row_names : tuple of str
+        What each row is.
+    sigma_deg, rho : float
+        Standard deviation [deg] and lag-one autocorrelation of the noise.
+    columns : int
+        Number of bins of the torque.
+    """
     edges = np.linspace(torque_nm.min(), torque_nm.max(), columns + 1)
     column = np.clip(np.searchsorted(edges, torque_nm, side="right") - 1, 0, columns - 1)
     shape = (len(row_names), columns)

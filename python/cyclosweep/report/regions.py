@@ -45,7 +45,21 @@ def _in_run_range(recording: Recording, ends: tuple[int, int]) -> Mask:
 
 
 def axis_values(recording: Recording, axis: str) -> tuple[Floats, str]:
-    """Values and label of the residual's axis."""
+    """Return values and label of the residual's axis.
+
+    Parameters
+    ----------
+    recording : Recording
+        What was measured.
+    axis : {"torque", "time"}
+        Quantity; where there is no clock through all runs, the sample's number stands for time.
+
+    Returns
+    -------
+    values : ndarray of float, shape (n,)
+    label : str
+        With the unit.
+    """
     if axis == "torque":
         return recording.torque_nm, f"torque at the {recording.side} shaft (N m)"
     if recording.time_s is not None and _is_monotone(recording):
@@ -59,7 +73,21 @@ def _is_monotone(recording: Recording) -> bool:
 
 
 def spans_of(data: ReportData, axis: str, *, labelled: bool) -> Iterator[Span]:
-    """Shaded stretches of the regions on an axis."""
+    """Shaded stretches of the regions on an axis.
+
+    Parameters
+    ----------
+    data : ReportData
+        With the regions.
+    axis : {"torque", "time"}
+        Quantity of the axis.
+    labelled : bool
+        Whether the first stretch carries direction and runs.
+
+    Yields
+    ------
+    Span
+    """
     recording = data.recording
     x, _ = axis_values(recording, axis)
     for region in regions_of(data)[:2]:

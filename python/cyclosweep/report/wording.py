@@ -35,6 +35,13 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def number(value: float | None, digits: int = 3) -> str:
     """Write a number with so many significant digits and a true minus sign.
 
+    Parameters
+    ----------
+    value : float or None
+        The number; None and NaN are written as a dash.
+    digits : int
+        Significant digits.
+
     Examples
     --------
     >>> number(0.012345), number(-1234.5), number(0), number(None)
@@ -64,6 +71,13 @@ def number(value: float | None, digits: int = 3) -> str:
 def angle(value_deg: float | None, digits: int = 3) -> str:
     """Write an angle in deg and arcmin.
 
+    Parameters
+    ----------
+    value_deg : float or None
+        The angle [deg].
+    digits : int
+        Significant digits.
+
     Examples
     --------
     >>> angle(0.5)
@@ -76,6 +90,13 @@ def angle(value_deg: float | None, digits: int = 3) -> str:
 
 def interval(ends: Sequence[float] | None, digits: int = 3) -> str:
     """Write an interval.
+
+    Parameters
+    ----------
+    ends : sequence of two floats, or None
+        Lower and upper end.
+    digits : int
+        Significant digits.
 
     Examples
     --------
@@ -128,6 +149,13 @@ def without_unit(name: str) -> str:
 
 def with_error(estimate: float, std_error: float | None) -> str:
     """Write an estimate and its standard error.
+
+    Parameters
+    ----------
+    estimate : float
+        The estimate.
+    std_error : float or None
+        Its standard error; None where it is not known.
 
     Examples
     --------

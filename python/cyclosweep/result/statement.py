@@ -40,6 +40,7 @@ def _verdict_sentences(answer: Answer) -> str:
 
 
 def _nothing_missing(answer: Answer) -> str:
+    """Say that simulation and recording agree."""
     return (
         "Nothing is missing: simulation and recording agree within the noise of "
         f"{degrees(answer.noise.sigma_deg)}, and every effect this recording can show is below "
@@ -49,6 +50,7 @@ def _nothing_missing(answer: Answer) -> str:
 
 
 def _insufficient(answer: Answer) -> str:
+    """Say which effects could still be too large."""
     open_effects = sorted(answer.undecided, key=lambda bound: -bound.upper95_deg)
     names = listed([bound.name for bound in open_effects[:4]]) if open_effects else "no effect"
     return (
@@ -60,6 +62,7 @@ def _insufficient(answer: Answer) -> str:
 
 
 def _identified(answer: Answer) -> str:
+    """Name what is missing."""
     names = listed([effect.name for effect in answer.effects])
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. Size after "
@@ -69,6 +72,7 @@ def _identified(answer: Answer) -> str:
 
 
 def _ambiguous(answer: Answer) -> str:
+    """List what may be missing."""
     options = " or ".join(_option(explanation) for explanation in answer.explanation_set)
     return (
         f"Something is missing, and this recording cannot say which: {options}. It shows most "
@@ -78,6 +82,7 @@ def _ambiguous(answer: Answer) -> str:
 
 
 def _unknown(answer: Answer) -> str:
+    """Describe what is missing and has no name."""
     known = ""
     if answer.effects:
         names = listed([effect.name for effect in answer.effects])
