@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import doctest
 import importlib
-import pkgutil
+from pathlib import Path
 
 import pytest
 
 import cyclosweep as cs
 
+ROOT = Path(cs.__file__).parents[1]
 MODULES = sorted(
-    module.name
-    for module in pkgutil.walk_packages(cs.__path__, "cyclosweep.")
-    if not module.name.endswith(("__main__", "_core"))
+    ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    for package in ("cyclosweep", "cyclosweep_challenge")
+    for path in (ROOT / package).rglob("*.py")
+    if ">>> " in path.read_text("utf-8")
 )
 
 
@@ -24,4 +26,9 @@ def test_docstring_examples(name: str) -> None:
     except ModuleNotFoundError as error:
         pytest.skip(f"{error.name} is not installed: an optional extra")
     result = doctest.testmod(module)
+    assert result.attempted > 0
     assert result.failed == 0
+
+
+def test_the_functions_of_the_package_have_examples() -> None:
+    assert {"cyclosweep.design.drive", "cyclosweep.sweep.shards"} <= set(MODULES)
