@@ -1,8 +1,36 @@
 """Slow plain-NumPy twins of the history operators, kept on purpose to check the core against."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from tests.support.arrays import Floats, Mask
+
+Law = Callable[[float], float]
+"""Elastic torque [N m] over the twist beyond the dead zone [deg]."""
+
+
+def line(compliance: float) -> Law:
+    """Law of a spring."""
+    return lambda beyond: beyond / compliance
+
+
+def through(torque: Floats, twist: Floats) -> Law:
+    """Law through points, the outermost two carried on beyond the ends."""
+
+    def law(beyond: float) -> float:
+        for k in range(1, len(twist)):
+            if beyond <= twist[k] or k == len(twist) - 1:
+                part = (beyond - twist[k - 1]) / (twist[k] - twist[k - 1])
+                return float(torque[k - 1] + part * (torque[k] - torque[k - 1]))
+        raise ValueError("a law needs two points")
+
+    return law
+
+
+def stretch_by(limit: float, reference: float, growth: float) -> float:
+    """Factor on the presliding distances at a friction limit."""
+    return 1.0 if growth == 0 else max(limit / reference, 1e-9) ** growth
 
 
 def solve_slip(
@@ -13,27 +41,35 @@ def solve_slip(
     slip: Floats,
     share: Floats,
     play: float,
-    compliance: float,
+    law: Law,
     limit: float,
     load: float = 0.0,
+    growth: float = 0.0,
+    reference_nm: float = 1.0,
 ) -> tuple[Floats, Floats]:
     """Balance of torques by bisection, one sample after the other."""
     angle, friction = np.zeros(len(torque)), np.zeros(len(torque))
     anchor = np.full(len(slip), start[0])
 
     def elastic(twist: float) -> float:
-        return float(np.sign(twist)) * max(abs(twist) - play, 0.0) / compliance
+        if abs(twist) <= play:
+            return 0.0
+        return law(twist - play if twist > 0 else twist + play)
+
+    def hold(twist: float) -> tuple[float, float]:
+        """Friction limit, and how much longer the presliding distances are."""
+        most = limit + load * abs(elastic(twist))
+        return most, stretch_by(most, limit + load * reference_nm, growth)
 
     def force(at: float, base: float) -> float:
-        state = float(np.sum(share * np.clip((at - anchor) / slip, -1, 1)))
-        return (limit + load * abs(elastic(at - base))) * state
+        most, stretch = hold(at - base)
+        return most * float(np.sum(share * np.clip((at - anchor) / (slip * stretch), -1, 1)))
 
     for i in range(len(torque)):
         if i and restart[i]:
             anchor = np.full(len(slip), start[i])
-        reach = play + compliance * (abs(torque[i]) + limit) / (1 - load) + 1.0
-        low, high = offset[i] - reach, offset[i] + reach
-        for _ in range(200):
+        low, high = offset[i] - 1e4, offset[i] + 1e4
+        for _ in range(60):
             middle = 0.5 * (low + high)
             if elastic(middle - offset[i]) + force(middle, offset[i]) < torque[i]:
                 low = middle
@@ -41,8 +77,31 @@ def solve_slip(
                 high = middle
         angle[i] = 0.5 * (low + high)
         friction[i] = force(angle[i], offset[i])
-        anchor = np.clip(anchor, angle[i] - slip, angle[i] + slip)
+        reach = slip * hold(angle[i] - offset[i])[1]
+        anchor = np.clip(anchor, angle[i] - reach, angle[i] + reach)
     return angle, friction
+
+
+def slip_state(
+    angle: Floats, restart: Mask, start: Floats, stretch: Floats, slip: Floats, share: Floats
+) -> Floats:
+    """State of the elements along an angle, each element on its own."""
+    out = np.zeros(len(angle))
+    for distance, part in zip(slip, share, strict=True):
+        anchor = start[0]
+        for i in range(len(angle)):
+            anchor = start[i] if i and restart[i] else anchor
+            reach = distance * stretch[i]
+            anchor = min(max(anchor, angle[i] - reach), angle[i] + reach)
+            out[i] += part * (angle[i] - anchor) / reach
+    return out
+
+
+def remembered_datum(push: Floats, memory: float) -> Floats:
+    """Datum of each run as a sum over all runs before."""
+    return np.array(
+        [sum(push[j] * memory ** (k - 1 - j) for j in range(k)) for k in range(len(push))]
+    )
 
 
 def creep_state(load: Floats, time: Floats, restart: Mask, tau: float, steps: int = 400) -> Floats:

@@ -5,30 +5,108 @@ import itertools
 import numpy as np
 import pytest
 
+import cyclosweep as cs
 import cyclosweep._core as core
+from cyclosweep.simulation.effects.slip_elements import elements_of
+from cyclosweep.simulation.model import EffectValue
+from cyclosweep.simulation.simulate import predict_history
 from tests.parity import slow_hysteresis as slow
+from tests.support.arrays import Floats, Mask
+
+LAW_TORQUE = np.array([-60.0, -20.0, -8.0, -2.0, 0.0, 2.0, 8.0, 20.0, 60.0])
+LAW_TWIST = np.array([-90.0, -45.0, -24.0, -9.0, 0.0, 7.0, 21.0, 44.0, 100.0])
+"""Contacts that stiffen, a little softer to one side."""
 
 
-@pytest.mark.parametrize(("play", "load"), [(0.0, 0.0), (3.0, 0.0), (3.0, 0.25)])
-def test_slip_in_the_angle(play: float, load: float) -> None:
-    rng = np.random.default_rng(4)
-    turn = rng.uniform(-20, 20, 6)
-    torque = np.concatenate([np.linspace(a, b, 25) for a, b in itertools.pairwise(turn)])
-    n = len(torque)
-    offset = 0.2 * np.sin(np.arange(n) / 9)
-    restart = np.zeros(n, dtype=bool)
-    restart[60] = True
-    start = np.full(n, play)
+def random_history(seed: int, play: float) -> tuple[Floats, Floats, Mask, Floats]:
+    """Torque over random turning points with holds, wandering datum, fresh starts, their angles."""
+    rng = np.random.default_rng(seed)
+    turn = rng.uniform(-20, 20, 7)
+    parts = [np.linspace(a, b, rng.integers(6, 16)) for a, b in itertools.pairwise(turn)]
+    torque = np.concatenate([*parts, np.full(5, turn[-1])])
+    count = len(torque)
+    offset = np.cumsum(rng.normal(scale=0.05, size=count))
+    restart = rng.random(count) < 0.03
+    return torque, offset, restart, offset + play * rng.choice([-1.0, 1.0], count)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("curved", [False, True], ids=["line", "law"])
+@pytest.mark.parametrize("growth", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize(("limit", "load"), [(0.8, 0.0), (0.0, 0.2), (0.6, 0.25)])
+@pytest.mark.parametrize("play", [0.0, 3.0])
+def test_slip_in_the_angle(
+    seed: int, curved: bool, growth: float, limit: float, load: float, play: float
+) -> None:
+    torque, offset, restart, start = random_history(seed, play)
     slip, share = np.array([0.05, 0.4, 2.0]), np.array([0.5, 0.3, 0.2])
     angle, friction = core.solve_slip(
         torque, offset, restart, start, slip, share,
-        free_play=play, compliance=2.0, limit=0.8, load_factor=load,
+        free_play=play, compliance=2.0, limit=limit, load_factor=load, growth=growth,
+        reference_torque=9.0, law_torque=LAW_TORQUE if curved else None,
+        law_twist=LAW_TWIST if curved else None,
     )  # fmt: skip
+    law = slow.through(LAW_TORQUE, LAW_TWIST) if curved else slow.line(2.0)
     expected, force = slow.solve_slip(
-        torque, offset, restart, start, slip, share, play, 2.0, 0.8, load
+        torque, offset, restart, start, slip, share, play, law, limit, load, growth, 9.0
     )
     np.testing.assert_allclose(angle, expected, atol=1e-6)
     np.testing.assert_allclose(friction, force, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_state_along_an_angle(seed: int) -> None:
+    angle, _, restart, start = random_history(seed, 3.0)
+    stretch = np.random.default_rng(seed).uniform(0.3, 2.0, len(angle))
+    slip, share = np.array([0.05, 0.4, 2.0]), np.array([0.5, 0.3, 0.2])
+    fast = core.slip_state(angle, restart, start, stretch, slip, share)
+    expected = slow.slip_state(angle, restart, start, stretch, slip, share)
+    np.testing.assert_allclose(fast, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.7])
+def test_fitted_model_is_solved_like_its_formulas(growth: float) -> None:
+    slip = {"slip_deg": 0.5, "scatter": 0.8, "growth": growth, "reference_nm": 8.0}
+    model = cs.Model(
+        compliance_deg_per_nm=2.0,
+        free_play_deg=5.0,
+        datum_deg=0.3,
+        effects=(
+            EffectValue("friction_hysteresis", slip, (0.8,)),
+            EffectValue("load_dependent_friction", slip, (0.15,)),
+            EffectValue("contact_stiffening", {"turn_nm": 2.0}, (0.8,)),
+        ),
+    )
+    torque = random_history(8, 5.0)[0]
+    history = predict_history(model, cs.Recording.from_arrays(torque))
+
+    def twist(load: float) -> float:
+        return float(np.sign(load) * (2.0 * abs(load) + 0.8 * 2.0 * np.log1p(abs(load) / 2.0)))
+
+    def law(beyond: float) -> float:
+        low, high = -200.0, 200.0
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if twist(middle) < beyond else (low, middle)
+        return 0.5 * (low + high)
+
+    elements = elements_of(slip)
+    fresh = np.arange(len(torque)) == 0
+    start = np.full(len(torque), history.start_angle_deg[0])
+    angle, friction = slow.solve_slip(
+        torque, np.full(len(torque), 0.3), fresh, start, elements.slip_deg, elements.share,
+        5.0, law, 0.8, 0.15, growth, 8.0,
+    )  # fmt: skip
+    # The law is laid through points, a thousandth of the twist apart from its formula.
+    np.testing.assert_allclose(history.angle_deg, angle, atol=2e-3)
+    np.testing.assert_allclose(history.applied_nm - history.elastic_nm, friction, atol=2e-3)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.6, 1.0, -0.8])
+def test_remembered_datum(memory: float) -> None:
+    push = np.random.default_rng(7).normal(size=20)
+    fast = core.remembered_datum(push, memory)
+    np.testing.assert_allclose(fast, slow.remembered_datum(push, memory), atol=1e-12)
 
 
 def test_creep() -> None:
