@@ -150,7 +150,7 @@ def share_left(signature: Signature, effect: Effect) -> tuple[float, float]:
     if not grid:
         return 1.0, 1.0
     best = sorted(grid, key=left)[:REFINED]
-    joined = [new for other in grid if (new := effect.richer(best[0], other)) is not None]
+    joined = [new for other in grid if (new := effect.combined(best[0], other)) is not None]
     single = min(_refined(left, effect, shape) for shape in best)
     both = [_refined(left, effect, shape) for shape in sorted(joined, key=left)[:REFINED]]
     return single, min([single, *both])

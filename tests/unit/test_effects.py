@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import cyclosweep as cs
 from cyclosweep.simulation import effects
 from cyclosweep.simulation.effects import VOCABULARY, Effect, History, Parameter, Shape
 from tests.support.arrays import Floats
@@ -59,6 +60,7 @@ def test_effect_says_what_it_is(effect: Effect) -> None:
     assert effect.source
     assert effect.tell_tale
     assert effect.family
+    assert effect.shown_by != Effect.shown_by
 
 
 @pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
@@ -71,7 +73,8 @@ def test_columns_match_amplitudes(effect: Effect) -> None:
         columns = effect.columns(h, shape)
         assert columns.shape[0] == len(h)
         assert np.all(np.isfinite(columns))
-        assert len(effect.amplitudes(shape)) >= columns.shape[1] or "free" in shape
+        named = len(effect.amplitudes(shape))
+        assert named >= columns.shape[1] if "each_run" in shape else named == columns.shape[1]
     assert any(np.any(effect.columns(h, shape)) for shape in shapes)
 
 
@@ -94,6 +97,148 @@ def test_missing_column_makes_untestable_what_needs_it_and_nothing_else(
         assert column in str(reason)
     else:
         assert reason is None
+
+
+WITHOUT_CRANK = ({"crank_deg": None}, "crank_deg")
+WITHOUT_CLOCK = ({"time_s": None}, "time_s")
+HIDDEN: dict[str, list[tuple[dict[str, Any], str]]] = {
+    "friction_hysteresis": [],
+    "load_dependent_friction": [],
+    "contact_stiffening": [],
+    "clearance_takeup": [],
+    "overload_softening": [],
+    "datum_drift": [
+        ({"resets_datum": True}, "reset"),
+        ({"run": np.repeat([0, 1], 305)}, "three runs"),
+    ],
+    "creep": [WITHOUT_CLOCK],
+    "phase_dependent_compliance": [
+        WITHOUT_CRANK,
+        ({"crank_deg": np.repeat([0.0, 90.0], 305)}, "fewer than three positions"),
+    ],
+    "transmission_error": [
+        WITHOUT_CRANK,
+        ({"crank_deg": np.repeat([0.0, 90.0], 305)}, "fewer than three positions"),
+    ],
+    "thermal_drift": [
+        ({"temperature_c": None}, "temperature_c"),
+        ({"temperature_c": np.linspace(20.0, 20.1, 610)}, "did not change"),
+    ],
+    "viscous_drag": [WITHOUT_CLOCK],
+    "load_asymmetry": [({"side": np.ones(610)}, "one direction")],
+    "dial_eccentricity": [({"angle_deg": np.linspace(0.0, 29.0, 610)}, "30 deg")],
+}
+"""What hides each effect, and a word of the reason; nothing hides the first five."""
+
+
+@pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
+def test_what_hides_an_effect(effect: Effect) -> None:
+    everything = {"resets_datum": True} | dict.fromkeys(
+        ("time_s", "crank_deg", "temperature_c"), None
+    )
+    one_run = {
+        name: value[:60]
+        for name, value in vars(history()).items()
+        if isinstance(value, np.ndarray) and value.shape == (610,)
+    }
+    one_run |= {"side": np.ones(60), "angle_deg": np.linspace(0.0, 29.0, 60)}
+    hidden = effect.untestable(history(**(one_run | everything)))
+    assert (hidden is not None) == bool(HIDDEN[effect.name])
+    for changes, word in HIDDEN[effect.name]:
+        assert word in str(effect.untestable(history(**changes)))
+
+
+PARAMETERS = {
+    "friction_hysteresis": {"slip_deg", "scatter", "skew"},
+    "load_dependent_friction": {"slip_deg", "scatter", "skew"},
+    "contact_stiffening": {"turn_nm"},
+    "clearance_takeup": {"first_nm", "range_nm"},
+    "overload_softening": {"onset_nm", "power"},
+    "datum_drift": {"memory"},
+    "creep": {"time_constant_s"},
+    "phase_dependent_compliance": set(),
+    "transmission_error": set(),
+    "thermal_drift": {"delay_s"},
+    "viscous_drag": {"power"},
+    "load_asymmetry": {"power"},
+    "dial_eccentricity": set(),
+}
+"""What the fit refines of each effect."""
+
+
+@pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
+def test_grid_lies_within_the_bounds(effect: Effect) -> None:
+    h, seen = history(), set()
+    for shape in effect.shapes(h):
+        for parameter in effect.shape_parameters:
+            if parameter.name in shape:
+                bounds = effect.shape_bounds(parameter, h)
+                assert bounds.lower <= shape[parameter.name] * (1 + 1e-9)
+                if parameter.name != "range_nm":
+                    # The widest range of engagement is looked for, but cut to the bound in fits.
+                    assert shape[parameter.name] <= bounds.upper * (1 + 1e-9)
+                seen.add(parameter.name)
+    assert seen == PARAMETERS[effect.name]
+
+
+@pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
+def test_shapes_are_known_in_any_order(effect: Effect) -> None:
+    h = history()
+    shapes = [v for shape in effect.shapes(h) for v in effect.variants(h, shape)]
+    for shape in shapes:
+        turned = {name: shape[name] for name in reversed(list(shape))}
+        assert effect.known_shape(turned) == shape
+        known = effect.amplitudes(effect.known_shape(turned))
+        assert [p.name for p in known] == [p.name for p in effect.amplitudes(shape)]
+    with pytest.raises(cs.InputError, match="of_a_test"):
+        effect.known_shape({**shapes[0], "of_a_test": 1.0})
+
+
+BOUNDS_NM = {
+    ("overload_softening", "onset_nm"): (0.0, 18.4),
+    ("clearance_takeup", "first_nm"): (0.0, 9.0),
+    ("clearance_takeup", "range_nm"): (0.02, 18.0),
+    ("contact_stiffening", "turn_nm"): (0.02, 5.0),
+}
+
+
+@pytest.mark.parametrize(("name", "parameter"), BOUNDS_NM)
+def test_loads_are_bound_by_the_largest_of_20_nm(name: str, parameter: str) -> None:
+    effect = effects.find(name)
+    (own,) = (p for p in effect.shape_parameters if p.name == parameter)
+    bounds = effect.shape_bounds(own, history())
+    assert (bounds.lower, bounds.upper) == pytest.approx(BOUNDS_NM[name, parameter])
+
+
+def test_times_are_bound_by_the_step_and_the_recording() -> None:
+    h = history()
+    creep, thermal = effects.find("creep"), effects.find("thermal_drift")
+    assert creep.shape_bounds(creep.shape_parameters[0], h).lower == pytest.approx(3.0)
+    delay = thermal.shape_bounds(thermal.shape_parameters[0], h)
+    assert delay.upper == pytest.approx(0.1 * (609.0 + 400.0))
+
+
+def test_friction_is_bound_by_the_torque() -> None:
+    h = history()
+    shape = {"slip_deg": 0.5, "scatter": 0.5}
+    for name, upper in (("friction_hysteresis", 20.0), ("load_dependent_friction", 0.9)):
+        (amplitude,) = effects.find(name).amplitude_bounds(h, shape)
+        assert (amplitude.lower, amplitude.upper) == pytest.approx((0.0, upper))
+
+
+def test_loops_usually_show_friction_stiffening_and_asymmetry() -> None:
+    begun = {e.name: e.usual_start(history(), 0.05, 0.02) for e in VOCABULARY}
+    starts = {name: start for name, start in begun.items() if start is not None}
+    assert {name: amplitude for name, (_, amplitude) in starts.items()} == pytest.approx(
+        {
+            "friction_hysteresis": 1.0,
+            "load_dependent_friction": 0.2,
+            "contact_stiffening": 0.3 * 2.7,
+            "load_asymmetry": 1e-3,
+        }
+    )
+    for name in ("friction_hysteresis", "load_dependent_friction"):
+        assert starts[name][0]["slip_deg"] == pytest.approx(0.02 * 20 * 2.7)
 
 
 def test_friction_takes_from_the_twist_while_loading() -> None:
@@ -141,10 +286,12 @@ def test_free_offsets_are_memory_only_if_one_memory_explains_them() -> None:
         shift = datum.columns(h, shape)[h.run_starts] @ [1.0, 0.5]
         return np.asarray(shift[1:] - shift[0])
 
-    assert datum.telling(h, {"free": 1.0}, offsets(0.4, 0.4))
+        return shift[1:] - shift.mean()
+
+    assert datum.is_recognised(h, {"each_run": 1.0}, offsets(0.4, 0.4))
     # Two pushes with a memory each would leave 0.04 of this random walk.
-    wandering = np.array([2.0, 2.7, 3.4, 2.8, 1.2, 1.4, 1.5, 0.2, -0.4, -0.5, -1.5])
-    assert not datum.telling(h, {"free": 1.0}, wandering)
+    wandering = np.array([0.0, 2.0, 2.7, 3.4, 2.8, 1.2, 1.4, 1.5, 0.2, -0.4, -0.5, -1.5])
+    assert not datum.is_recognised(h, {"each_run": 1.0}, (wandering - wandering.mean())[1:])
 
 
 def test_datum_remembers_the_run_before() -> None:
@@ -160,14 +307,23 @@ def test_balanced_loops_push_the_datum_by_no_rounding() -> None:
     mean, balance = 5.0, 3.0
     for shape in effects.find("datum_drift").shapes(h):
         assert not {mean, balance} & {shape.get("push"), shape.get("push_2")}
-    # The pushes of the same loops, a little more to one side, are looked at again.
-    biased = history(applied_nm=np.tile(loop + 2.0, 5), elastic_nm=np.tile(loop + 2.0, 5))
-    assert {mean, balance} <= {s.get("push") for s in effects.find("datum_drift").shapes(biased)}
+    # Loops that lie to one side by more and more push by their mean and by their imbalance.
+    torque = np.concatenate([loop + bias for bias in (1.0, -2.0, 3.0, 0.0, 2.0)])
+    biased = history(applied_nm=torque, elastic_nm=torque)
+    pushes = {s.get("push") for s in effects.find("datum_drift").shapes(biased)}
+    assert pushes & {mean, balance}
 
 
 def test_one_direction_hides_asymmetry() -> None:
     h = history(side=np.ones(610))
     assert "one direction" in str(effects.find("load_asymmetry").untestable(h))
+
+
+def test_pushes_alike_in_all_runs_are_one_law() -> None:
+    # Five equal loops push by the same each: the number of runs stands for all of it.
+    shapes = effects.find("datum_drift").shapes(history())
+    assert {s.get("push", 0.0) for s in shapes} == {0.0}
+    assert not any("push_2" in s or "reset" in s for s in shapes)
 
 
 def test_users_register_their_own() -> None:

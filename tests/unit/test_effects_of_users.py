@@ -198,3 +198,18 @@ def test_old_path_registers_too() -> None:
         assert cast("Any", find("another_of_a_test")) in effects.effects()
     finally:
         effects._REGISTERED.pop("another_of_a_test", None)
+
+
+def test_methods_by_their_former_names_still_work() -> None:
+    with pytest.warns(DeprecationWarning, match="caution is now penalty"):
+
+        class Old(FiveTeeth):
+            name = "old_names_of_a_test"
+
+            def caution(self, shape: Shape) -> float:
+                return 3.0
+
+    assert Old().penalty({}) == 3.0
+    with pytest.warns(DeprecationWarning, match="settled is now consistent"):
+        settled = getattr(effects.find("creep"), "settled")  # noqa: B009
+    assert settled == effects.find("creep").consistent

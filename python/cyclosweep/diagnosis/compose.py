@@ -99,7 +99,11 @@ def _answer(
         self_check=verified.self_check,
         next_experiment=verified.next_experiment,
         model=MODEL_FILE,
-        notes=(*recording.notes, *(fault.reason for fault in recording.faults)),
+        notes=(
+            *repaired.model.notes,
+            *recording.notes,
+            *(fault.reason for fault in recording.faults),
+        ),
         unknown=remainder(concluded, verified, regions),
         stationary=verified.drift is None,
         drift=verified.drift,

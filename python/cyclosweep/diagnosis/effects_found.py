@@ -54,7 +54,7 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
     half = NORMAL_95 * spread
     return FoundEffect(
         name=effect.name,
-        physics=effect.physics,
+        physics=f"{effect.physics} {_found_law(fitted, index)}".rstrip(),
         source=effect.source,
         parameters=_parameters(fitted, index),
         size_deg=Size(estimate=size, ci95=(max(size - half, 0.0), size + half)),
@@ -65,6 +65,15 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
         e_value=finite(e_value),
         detectability=strength,
     )
+
+
+def _found_law(fitted: FittedStructure, index: int) -> str:
+    """Which of an effect's laws was found, in a sentence; empty where it has one."""
+    term = fitted.terms[index]
+    if term.effect is None or term.slips:
+        return ""
+    found = fitted.beta[fitted.column_range(index)]
+    return term.effect.found_law(fitted.history, term.shape, found)
 
 
 def _p_value(search: Search, accepted: Candidate, name: str) -> float:

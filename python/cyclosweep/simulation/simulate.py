@@ -162,7 +162,7 @@ def predict_history(model: Model, programme: Recording) -> History:
 
 
 def settle(
-    model: Model, history: History, rounds: int = ROUNDS, told_side: Floats | None = None
+    model: Model, history: History, rounds: int = ROUNDS, known_side: Floats | None = None
 ) -> History:
     """Settle path, flank and effects along a load history that is already zeroed.
 
@@ -174,7 +174,7 @@ def settle(
         Load history of n samples in some state, from which the rounds start.
     rounds : int
         Most rounds in which twist, flank and effects settle on each other.
-    told_side : ndarray, shape (n,), optional
+    known_side : ndarray, shape (n,), optional
         Flank in contact of every sample, +1 or -1, where a recording shows it; without it the
         model finds the flank, which is a forecast.
 
@@ -190,7 +190,7 @@ def settle(
         added = linear_twist(others, history)
         before = history.angle_deg
         if sliding:
-            history = _slide(model, history, sliding, added, law, told_side)
+            history = _slide(model, history, sliding, added, law, known_side)
         else:
             base = model.datum_deg + history.side * model.free_play_deg
             angle = base + model.compliance_deg_per_nm * history.applied_nm + added
@@ -208,15 +208,15 @@ def _slide(
     sliding: Sequence[EffectValue],
     added: Floats,
     law: ElasticLaw | None,
-    told_side: Floats | None,
+    known_side: Floats | None,
 ) -> History:
-    told = 0.0 if told_side is None else told_side * model.free_play_deg
-    play = model.free_play_deg if told_side is None else 0.0
+    flank = 0.0 if known_side is None else known_side * model.free_play_deg
+    play = model.free_play_deg if known_side is None else 0.0
     points = None if law is None else (law.torque_nm, law.twist_deg)
-    offset = model.datum_deg + added + told
+    offset = model.datum_deg + added + flank
     angle, friction = _friction(sliding).solve(history, offset, play, points)
     elastic = history.applied_nm - friction
-    if told_side is not None:
+    if known_side is not None:
         return history.with_state(elastic_nm=elastic, angle_deg=angle)
     small = 1e-9 * history.largest_torque_nm
     side = _flanks(np.where(np.abs(elastic) < small, 0.0, elastic), history.restart)

@@ -33,7 +33,7 @@ def prior_penalty(name: str, effect: Effect | None, shape: Shape) -> float:
     """
     if effect is None:
         return OTHER_PENALTIES.get(name, UNNAMED_PENALTY)
-    return effect.caution(shape)
+    return effect.penalty(shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class Candidate:
             effect = term.effect
             if effect is None:
                 doubtful |= FAMILIES_ALIKE.get(term.name, frozenset())
-            elif not term.slips and not effect.telling(
+            elif not term.slips and not effect.is_recognised(
                 fitted.history, term.shape, fitted.beta[fitted.column_range(k)]
             ):
                 doubtful.add(effect.family)

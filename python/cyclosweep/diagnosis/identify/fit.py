@@ -63,13 +63,14 @@ class ContactFit(FittedStructure):
 
     def model(self, drive: str) -> Model:
         """Return the structure as a simulation of a drive of this name."""
-        values = []
+        values, notes = [], list[str]()
         for index, term in enumerate(self.terms):
             shape = term.shape
             amplitudes: Sequence[float] = (term.amplitude,)
             if not term.slips:
                 assert term.effect is not None
                 found = self.beta[self.column_range(index)]
+                notes += term.effect.notes(self.history, shape, found)
                 shape, amplitudes = term.effect.portable(self.history, shape, found)
             plain = {name: float(value) for name, value in shape.items()}
             values.append(EffectValue(term.name, plain, tuple(map(float, amplitudes))))
@@ -81,6 +82,7 @@ class ContactFit(FittedStructure):
             effects=tuple(values),
             output_pin_count=self.history.output_pin_count,
             drive=drive,
+            notes=tuple(notes),
         )
 
     def predict_left_out(self) -> list[LeftOutPrediction]:

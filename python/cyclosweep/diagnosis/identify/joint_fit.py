@@ -193,7 +193,7 @@ class JointFit:
         for term in self.terms:
             width = 0 if term.slips else term.columns(history).shape[1]
             if term.effect is not None and width:
-                shape = term.effect.settled(history, term.shape, beta[first : first + width])
+                shape = term.effect.consistent(history, term.shape, beta[first : first + width])
                 term = replace(term, shape=shape)
             terms.append(term)
             first += width

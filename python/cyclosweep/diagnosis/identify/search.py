@@ -234,7 +234,7 @@ class Search:
             members = found.groups[term.name]
             each = evidence(found.observed[members], found.ranks[members])
             for index in members[np.argsort(-each)][:3]:
-                shape = term.effect.richer(term.shape, self.library.signatures[index].shape)
+                shape = term.effect.combined(term.shape, self.library.signatures[index].shape)
                 if shape is None:
                     continue
                 terms = list(candidate.fit.terms)
@@ -258,7 +258,7 @@ class Search:
             for k, term in enumerate(joint.terms):
                 wrong = joint.wrong_signs(k)
                 if wrong.any():
-                    shape = None if term.effect is None else term.effect.poorer(term.shape, wrong)
+                    shape = None if term.effect is None else term.effect.reduced(term.shape, wrong)
                     if shape is None:
                         return None
                     term = replace(term, shape=shape)

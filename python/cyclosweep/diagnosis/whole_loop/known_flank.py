@@ -185,7 +185,7 @@ def known_flank_path(problem: Problem, model: Model) -> History:
         All rows.
     """
     side = problem.history.side
-    return settle(model, at_start(problem.history, model, side), told_side=side)
+    return settle(model, at_start(problem.history, model, side), known_side=side)
 
 
 def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeLoopFit:

@@ -1,70 +1,26 @@
 """What every effect is: physics in words, its parameters, and its response to a load history."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 from cyclosweep.errors import InputError
+from cyclosweep.simulation.effects.former_names import FormerNames
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.parameters import Parameter, Shape, ShapeForm, listed, spread
 from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
+
+__all__ = ["Effect", "Parameter", "Shape", "ShapeForm", "listed", "spread"]
 
 FEWEST_STEPS = 3.0
 """Steps between samples below which a delay cannot be told from drag."""
 MOST_FRICTION = 0.95
 """Largest share of the transmitted torque that friction may take."""
 
-Shape = Mapping[str, float]
-"""Values of the parameters that enter an effect's response nonlinearly, by name."""
 
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """A parameter of an effect: what it means, in what unit, and where it can lie."""
-
-    name: str
-    unit: str
-    meaning: str
-    lower: float = -np.inf
-    upper: float = np.inf
-    logarithmic: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class ShapeForm:
-    """Names that make up one kind of shape.
-
-    Attributes
-    ----------
-    needed : tuple of str
-        Names that have to be there.
-    optional : tuple of str
-        Names that may be there.
-    numbered : str
-        Pattern such as ``order_{}`` of names numbered 1, 2, ... without a gap, at least one.
-    """
-
-    needed: tuple[str, ...] = ()
-    optional: tuple[str, ...] = ()
-    numbered: str = ""
-
-    def ordered(self, names: Collection[str]) -> list[str] | None:
-        """Names in the order of this form; None where they do not make it up."""
-        found = [*self.needed, *(name for name in self.optional if name in names)]
-        if self.numbered:
-            count = max(len(names) - len(found), 1)
-            found += [self.numbered.format(k + 1) for k in range(count)]
-        return found if set(found) == set(names) else None
-
-    def __str__(self) -> str:
-        parts = [*self.needed, *(f"[{name}]" for name in self.optional)]
-        if self.numbered:
-            parts.append(f"{self.numbered.format(1)} ...")
-        return " ".join(parts)
-
-
-class Effect:
+class Effect(FormerNames):
     """A kind of physics that the published model leaves out.
 
     A subclass states the physics and gives its response as columns that enter the twist linearly,
@@ -118,6 +74,13 @@ class Effect:
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist for unit amplitudes [deg], one column an amplitude.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
 
         Returns
         -------
@@ -201,7 +164,19 @@ class Effect:
         return elements_of(shape)
 
     def far_apart(self, shape: Shape, other: Shape) -> bool:
-        """Whether two shapes of the grid are so unlike that a fit is started from both."""
+        """Whether two shapes of the grid are so unlike that a fit is started from both.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape of the effect.
+        other : mapping
+            Shape with which another fit starts.
+
+        Returns
+        -------
+        bool
+        """
         return False
 
     def usual_start(
@@ -257,40 +232,159 @@ class Effect:
         return False
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes alike at first sight, between which only a joint fit decides."""
+        """Shapes alike at first sight, between which only a joint fit decides.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the grid that fits best.
+
+        Returns
+        -------
+        sequence of mapping
+            Shapes to start from.
+        """
         return [shape]
 
-    def caution(self, shape: Shape) -> float:
+    def penalty(self, shape: Shape) -> float:
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""
         return 0.0
 
     def expected(self, history: History, shape: Shape) -> Floats | None:
         """Size that amplitudes are expected to have, which holds those that nothing else holds.
 
-        None where nothing is expected.
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+
+        Returns
+        -------
+        ndarray, shape (k,), or None
+            None where nothing is expected.
         """
         return None
 
     def portable(
         self, history: History, shape: Shape, amplitudes: Floats
     ) -> tuple[Shape, Sequence[float]]:
-        """Shape and amplitudes by which another programme can be predicted."""
+        """Shape and amplitudes by which another programme can be predicted.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes, each in its own unit.
+
+        Returns
+        -------
+        shape, amplitudes : mapping and sequence of float
+        """
         return shape, amplitudes.tolist()
 
-    def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
-        """Shape in which what follows from the amplitudes agrees with them."""
+    def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
+        """Shape in which what follows from the amplitudes agrees with them.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes, each in its own unit.
+
+        Returns
+        -------
+        mapping
+        """
         return shape
 
-    def telling(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
-        """Whether what was found is this effect's own, and not just any shape of its class."""
+    def is_recognised(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
+        """Whether what was found is this effect's own, and not just any shape of its class.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes, each in its own unit.
+
+        Returns
+        -------
+        bool
+        """
         return True
 
-    def richer(self, shape: Shape, found: Shape) -> Shape | None:
-        """Shape with what a search found besides it; None where the effect cannot hold both."""
+    def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
+        """Sentence on which of several laws of the effect was found; empty for one law.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Fitted shape.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes.
+        """
+        return ""
+
+    def notes(self, history: History, shape: Shape, amplitudes: Floats) -> tuple[str, ...]:
+        """Sentences that a user of the repaired model should know.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Fitted shape.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes.
+        """
+        return ()
+
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
+        """Shape with what a search found besides it.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape of the effect.
+        found : mapping
+            Shape that explains more of what is left.
+
+        Returns
+        -------
+        mapping or None
+            None where the effect cannot hold both.
+        """
         return None
 
-    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
-        """Shape without the parts whose amplitudes have the wrong sign; None if none is left."""
+    def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
+        """Shape without the parts whose amplitudes have the wrong sign.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape of the effect.
+        wrong : ndarray of bool, shape (k,)
+            Amplitudes that lie outside their bounds.
+
+        Returns
+        -------
+        mapping or None
+            None if no part is left.
+        """
         return None
 
     def untestable(self, history: History) -> str | None:
@@ -302,18 +396,5 @@ class Effect:
         }
         for column in self.needs:
             if getattr(history, column) is None:
-                return f"the recording has no {column}: it needs {labels[column]}"
+                return f"the recording has no {column}: it needs {labels.get(column, column)}"
         return None
-
-
-def listed(name: str, values: Iterable[float], most: int = 4) -> Shape | None:
-    """Shape ``name_1 ... name_k`` of distinct values in order; None for none or too many."""
-    distinct = sorted(set(map(float, values)))
-    if not 0 < len(distinct) <= most:
-        return None
-    return {name.format(k): value for k, value in enumerate(distinct, 1)}
-
-
-def spread(values: Floats) -> float:
-    """Range of values; zero where there are none."""
-    return float(np.ptp(values)) if len(values) else 0.0

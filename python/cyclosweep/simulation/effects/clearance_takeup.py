@@ -67,11 +67,11 @@ class ClearanceTakeup(Effect):
         done = np.maximum(load - first - width, 0.0)
         return np.asarray(-side * (begun**2 - done**2) / (2 * width))[:, None]
 
-    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Kinks of both; a range of engagement becomes a kink at either end."""
         return listed("kink_{}_nm", [*_kinks(shape), *_kinks(found)])
 
-    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+    def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Kinks at which the slope drops."""
         if "first_nm" in shape:
             return None

@@ -66,11 +66,11 @@ class Creep(Effect):
             ]
         )
 
-    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Time constants of both."""
         return listed("tau_{}_s", [*shape.values(), *found.values()], most=5)
 
-    def poorer(self, shape: Shape, wrong: Flags) -> Shape | None:
+    def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Time constants of positive weight."""
         return listed("tau_{}_s", [v for v, w in zip(shape.values(), wrong, strict=True) if not w])
 

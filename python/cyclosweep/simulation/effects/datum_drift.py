@@ -1,76 +1,53 @@
 """Hereditary memory: the zero moves from run to run."""
 
-from collections.abc import Callable, Sequence
-from itertools import combinations
+from collections.abc import Sequence
 
 import numpy as np
 
-import cyclosweep._core as _core
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
+from cyclosweep.simulation.effects.datum_laws import (
+    NUMBER,
+    PUSH_NAMES,
+    PUSHES,
+    DatumLaw,
+    Explanation,
+    best_laws,
+    left_out_share,
+    pairs_of_laws,
+    runs_of,
+    single_laws,
+)
 from cyclosweep.simulation.effects.history import Floats, History
 
-Push = Callable[[History, int, int], float]
+__all__ = ["PUSHES", "PUSH_NAMES", "DatumDrift"]
 
-
-def _largest(history: History, start: int, stop: int) -> float:
-    return float(np.abs(history.applied_nm[start:stop]).max()) / 10.0
-
-
-def _signed_largest(history: History, start: int, stop: int) -> float:
-    part = history.applied_nm[start:stop]
-    return float(part[np.argmax(np.abs(part))]) / 10.0
-
-
-def _balance(history: History, start: int, stop: int) -> float:
-    part = history.applied_nm[start:stop]
-    return float(part.max() + part.min()) / 10.0
-
-
-def _last_extreme(history: History, start: int, stop: int) -> float:
-    part = history.applied_nm[start:stop]
-    turn = np.flatnonzero(np.diff(np.sign(np.diff(part))) != 0) + 1
-    far = [float(part[k]) for k in turn if abs(part[k]) > 0.1 * history.largest_torque_nm]
-    return (far[-1] if far else _signed_largest(history, start, stop)) / 10.0
-
-
-def _one(history: History, start: int, stop: int) -> float:
-    return 1.0
-
-
-def _average(history: History, start: int, stop: int) -> float:
-    return float(history.applied_nm[start:stop].mean()) / 10.0
-
-
-PUSHES: tuple[Push, ...] = (_one, _largest, _signed_largest, _balance, _last_extreme, _average)
-PUSH_NAMES = (
-    "the number of runs",
-    "the largest torque of a run",
-    "the signed largest torque of a run",
-    "the imbalance of a run's extremes",
-    "the last turning point of a run",
-    "the mean torque of a run",
-)
-
-
-MEMORIES = (0.0, 0.4, 0.7, 0.9, 1.0)
-"""Parts of a shift kept from run to run that are looked at."""
-
-
-LEAST_PUSH = 0.01
-"""Share of the largest torque that a push must reach to be one: balanced loops have a mean torque
-of nothing but rounding."""
-
-
-UNTOLD = 0.1
-"""Share of free offsets up to which the pushes that explain the rest are believed."""
+FEWEST_RUNS, MOST_RUNS = 4, 60
+"""Runs between which a datum without a law is looked for."""
+UNEXPLAINED = 0.1
+"""Share of the offsets of the runs up to which the laws that explain the rest are believed."""
+TO_AND_FRO = 1.0
+"""Mean square of the steps from run to run over that of the offsets (von Neumann's ratio) from
+which a datum goes to and fro; 2 where every run has an offset of its own, near zero for a drift."""
+LEAST_SWING = 0.3
+"""Share of the range of the offsets by which the datum must both rise and fall."""
+OTHER_CAUSE = 0.25
+"""Share of the offsets below which temperature or mesh position leaves too little unexplained to
+call the datum erratic."""
+PLACE_DEG = 0.1
+"""Mesh positions closer than this are the same [deg]."""
 
 
 class DatumDrift(Effect):
-    """Datum that each run moves by something it did, and that forgets in time.
+    """Datum that differs from run to run.
 
-    `push` says what moves it (see `PUSH_NAMES`); `memory` is the part kept from run to run.
-    Without `push` the offsets of the runs are free; to predict another programme they are put down
-    to what explains them best.
+    Either by a law: `push` says what moves it (see `PUSH_NAMES`), `memory` is the part kept from
+    run to run, below zero where the datum turns back, and with `reset` a run at full load in both
+    directions wipes what was kept. Or without one: with `each_run` the offset of every run is free.
+    Such a datum is put down to a law where one explains it on runs left out, and called erratic
+    where it goes to and fro and neither temperature nor mesh position explains it.
+
+    Two more shapes stand in files only: `erratic`, which gives no run an offset, and `free`, as
+    written before, with offsets from the first run on.
     """
 
     name = "datum_drift"
@@ -83,10 +60,12 @@ class DatumDrift(Effect):
     shown_by = "three or more runs without a reset between them"
     family = "run offsets"
     shape_parameters = (
-        Parameter("memory", "", "part of the shift kept to the next run", 0.0, 1.0),
+        Parameter("memory", "", "part of the shift kept to the next run", -1.0, 1.0),
     )
     forms = (
-        ShapeForm(("push", "memory"), ("push_2", "memory_2")),
+        ShapeForm(("push", "memory"), ("push_2", "memory_2", "reset")),
+        ShapeForm(("each_run",)),
+        ShapeForm(("erratic",)),
         ShapeForm(("free",)),
     )
 
@@ -99,136 +78,155 @@ class DatumDrift(Effect):
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Every push with several memories, every two of them, and free offsets."""
-        given = _given(history)
-        grid: list[Shape] = [
-            {"push": float(push), "memory": memory}
-            for push in given
-            for memory in MEMORIES
-            if not (push == 0 and memory in (0.4, 0.9))
+        """Every law with several memories, every two pushes, and free offsets."""
+        few = (0.4, 0.9)
+        grid = [
+            _shape(law)
+            for law in single_laws(history)
+            if not (law.push == NUMBER and law.memory in few)
         ]
-        if 4 <= history.run_count <= 60:
-            grid += [
-                {"push": float(first), "memory": memory, "push_2": float(second)}
-                for first, second in combinations(given[1:], 2)
-                for memory in (0.0, 0.4, 0.7)
-            ]
-            grid.append({"free": 1.0})
+        if FEWEST_RUNS <= history.run_count <= MOST_RUNS:
+            grid += [_shape(*pair) for pair in pairs_of_laws(history, (0.0, 0.4, 0.7))]
+            grid.append({"each_run": 1.0})
         return grid
 
     def columns(self, history: History, shape: Shape) -> Floats:
-        """Shift of the datum for a unit push [deg]."""
-        if "free" in shape:
-            runs = np.arange(1, history.run_count)
-            return np.asarray(history.run[:, None] == runs, dtype=np.float64)
+        """Shift of the datum for a unit push, or for the offset of each run [deg]."""
+        if "erratic" in shape:
+            return np.zeros((len(history), 1))
+        if "free" in shape or "each_run" in shape:
+            own = np.asarray(history.run[:, None] == np.arange(1, history.run_count), np.float64)
+            # Offsets from the mean of all runs add up to nothing.
+            return np.asarray(own - (history.run == 0)[:, None]) if "each_run" in shape else own
         length = np.diff(np.r_[history.run_starts, len(history)])
         return np.column_stack(
-            [np.repeat(_shifts(history, push, memory), length) for push, memory in _pushes(shape)]
+            [np.repeat(law.shifts_deg(history), length) for law in DatumLaw.all_of(shape)]
         )
 
-    def caution(self, shape: Shape) -> float:
+    def penalty(self, shape: Shape) -> float:
         """Free offsets hold whatever differs from run to run."""
-        return 6.0 if "free" in shape else 0.0
+        return 6.0 if "each_run" in shape else 0.0
 
-    def telling(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
-        """Free offsets are memory only if what the runs before did explains them."""
-        if "free" not in shape:
+    def is_recognised(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
+        """Free offsets are drift of the datum if a law explains them, or if they are erratic."""
+        if "each_run" not in shape:
             return True
-        best = _explained(history, amplitudes)
-        return best is not None and best[0] < UNTOLD
+        offsets = _offsets(amplitudes)
+        return _law_of(history, offsets) is not None or _erratic(history, offsets)
+
+    def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
+        """Say which law fits, or by how much the datum moves without one."""
+        if "each_run" not in shape:
+            return f"Found: {'; '.join(map(str, DatumLaw.all_of(shape)))}."
+        offsets = _offsets(amplitudes)
+        law = _law_of(history, offsets)
+        if law is not None:
+            laws = "; ".join(map(str, law.laws))
+            return f"Found: {laws}; {100 * law.left:.2g} % of the offsets are left."
+        return (
+            "Found: no law of the runs before explains the offsets, the datum is erratic. It moves "
+            f"from run to run by {np.std(offsets, ddof=1):.2g} deg (standard deviation), between "
+            f"{offsets.min():.2g} and {offsets.max():.2g} deg from its mean."
+        )
+
+    def notes(self, history: History, shape: Shape, amplitudes: Floats) -> tuple[str, ...]:
+        """Say that an erratic datum is not predicted."""
+        if "each_run" not in shape or _law_of(history, _offsets(amplitudes)) is not None:
+            return ()
+        return (
+            "datum_drift: the datum is erratic, so that a prediction gives no run an offset; expect"
+            f" the offset of a new run within {2 * np.std(_offsets(amplitudes), ddof=1):.2g} deg.",
+        )
 
     def fewer_amplitudes(self, shape: Shape) -> bool:
         """Free offsets: one a run after the first, up to sixty."""
-        return "free" in shape
+        return "free" in shape or "each_run" in shape
 
     def portable(
         self, history: History, shape: Shape, amplitudes: Floats
     ) -> tuple[Shape, Sequence[float]]:
-        """One or two pushes that explain free offsets best, by the error on runs left out."""
-        if "free" not in shape:
+        """Laws that explain free offsets, or their spread where none does."""
+        if "each_run" not in shape:
             return shape, amplitudes.tolist()
-        best = _explained(history, amplitudes)
-        if best is None:
-            return shape, amplitudes.tolist()
-        named: dict[str, float] = {}
-        for k, (push, memory) in enumerate(best[1]):
-            tail = f"_{k + 1}" if k else ""
-            named |= {f"push{tail}": float(push), f"memory{tail}": memory}
-        return named, best[2].tolist()
+        offsets = _offsets(amplitudes)
+        law = _law_of(history, offsets)
+        if law is not None:
+            return _shape(*law.laws), law.shifts_deg.tolist()
+        return {"erratic": 1.0}, [float(np.std(offsets, ddof=1))]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
-        """Shift by one push, or the shift of each run after the first."""
-        if "free" in shape:
+        """Shift by one push, or the offset of each run after the first."""
+        if "erratic" in shape:
+            return (Parameter("spread_deg", "deg", "standard deviation of the runs' offsets", 0.0),)
+        if "free" in shape or "each_run" in shape:
+            since = "mean of all runs" if "each_run" in shape else "first run"
             return tuple(
-                Parameter(f"shift_{k}_deg", "deg", f"shift of run {k + 1}", -np.inf)
-                for k in range(1, 61)
+                Parameter(f"shift_{k}_deg", "deg", f"shift of run {k + 1} from the {since}")
+                for k in range(1, MOST_RUNS + 1)
             )
         return tuple(
             Parameter(
                 f"shift{'' if k == 1 else f'_{k}'}_deg",
                 "deg",
-                f"shift a unit (10 N m, or one run) of {PUSH_NAMES[push]}",
+                f"shift a unit ({law.unit}) of {PUSH_NAMES[law.push]}",
             )
-            for k, (push, _) in enumerate(_pushes(shape), 1)
+            for k, law in enumerate(DatumLaw.all_of(shape), 1)
         )
 
 
-def _explained(
-    history: History, amplitudes: Floats
-) -> tuple[float, tuple[tuple[int, float], ...], Floats] | None:
-    """Share of free offsets that the best one or two pushes leave in runs left out; pushes, shifts.
-
-    Two pushes share one memory, for there is one zero that forgets; with a memory each they would
-    also fit a zero that wanders with the temperature. Offsets drawn at random leave more than
-    `UNTOLD` 97 times in a hundred.
-    """
-    found = np.r_[0.0, amplitudes]
-    single = [(push, memory) for push in _given(history) for memory in MEMORIES]
-    shifts = {one: _shifts(history, *one) for one in single}
-    best: tuple[float, tuple[tuple[int, float], ...], Floats] | None = None
-    alike = (pair for pair in combinations(single, 2) if pair[0][1] == pair[1][1])
-    for pushes in [*((one,) for one in single), *alike]:
-        columns = np.column_stack([shifts[one] for one in pushes])
-        basis, corner = np.linalg.qr(columns)
-        if np.min(np.abs(np.diag(corner))) < 1e-6 * max(np.max(np.abs(corner)), 1e-300):
-            continue
-        part = basis.T @ found
-        lever = np.minimum(np.sum(basis**2, axis=1), 0.99)
-        error = float(np.mean(((found - basis @ part) / (1.0 - lever)) ** 2))
-        if best is None or error < best[0]:
-            best = error, pushes, np.asarray(np.linalg.solve(corner, part))
-    if best is None:
-        return None
-    return best[0] / max(float(np.mean(found**2)), 1e-300), best[1], best[2]
+def _shape(*laws: DatumLaw) -> dict[str, float]:
+    """Shape of one law, or of two with one memory."""
+    shape = {"push": float(laws[0].push), "memory": laws[0].memory}
+    if len(laws) > 1:
+        shape["push_2"] = float(laws[1].push)
+    return shape | ({"reset": 1.0} if laws[0].resets else {})
 
 
-def _given(history: History) -> list[int]:
-    """Pushes that the runs of a recording give, the number of runs first."""
-    least = LEAST_PUSH * history.largest_torque_nm / 10.0
-    return [0] + [
-        push
-        for push in range(1, len(PUSHES))
-        if np.max(np.abs(_pushed(history, push)), initial=0.0) > least
-    ]
+def _offsets(amplitudes: Floats) -> Floats:
+    """Offset of every run from the mean of all, shape (runs,) [deg]."""
+    return np.asarray(np.r_[-np.sum(amplitudes), amplitudes])
 
 
-def _pushed(history: History, push: int) -> Floats:
-    """Push by each run."""
-    starts = history.run_starts
-    stops = np.r_[starts[1:], len(history)]
-    return np.array(
-        [PUSHES[push](history, int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
-    )
+def _law_of(history: History, offsets: Floats) -> Explanation | None:
+    """Laws that explain the offsets of the runs; None where none does."""
+    best = best_laws(history, offsets)
+    return best if best is not None and best.left < UNEXPLAINED else None
 
 
-def _pushes(shape: Shape) -> list[tuple[int, float]]:
-    """What moves the datum, and the part of it that is kept."""
-    first = [(int(shape["push"]), float(shape["memory"]))]
-    if "push_2" not in shape:
-        return first
-    return [*first, (int(shape["push_2"]), float(shape.get("memory_2", shape["memory"])))]
+def _erratic(history: History, offsets: Floats) -> bool:
+    """Whether the datum goes to and fro, and neither temperature nor place explains it."""
+    centred = offsets - offsets.mean()
+    total = float(centred @ centred)
+    span = float(np.ptp(offsets))
+    rise = float(np.max(offsets - np.minimum.accumulate(offsets)))
+    fall = float(np.max(np.maximum.accumulate(offsets) - offsets))
+    if not total > 0 or min(rise, fall) < LEAST_SWING * span:
+        return False
+    if float(np.sum(np.diff(offsets) ** 2)) < TO_AND_FRO * total:
+        return False
+    return not _by_temperature(history, centred) and not _by_place(history, centred)
 
 
-def _shifts(history: History, push: int, memory: float) -> Floats:
-    """Shift of the datum in each run for a unit push [deg]."""
-    return _core.remembered_datum(_pushed(history, push), memory)
+def _by_temperature(history: History, centred: Floats) -> bool:
+    """Whether the temperature of the runs explains most of their offsets."""
+    if history.temperature_c is None:
+        return False
+    warm = np.array([float(np.mean(history.temperature_c[run])) for run in runs_of(history)])
+    fitted = left_out_share(np.column_stack([np.ones(len(warm)), warm]), centred)
+    return fitted is not None and fitted[0] < OTHER_CAUSE
+
+
+def _by_place(history: History, centred: Floats) -> bool:
+    """Whether the mesh positions of the runs explain their offsets, or may well do so."""
+    if history.crank_deg is None:
+        return False
+    place = np.round(history.crank_deg[history.run_starts] % 360.0 / PLACE_DEG)
+    _, which = np.unique(place, return_inverse=True)
+    count, places = len(which), int(which.max()) + 1
+    if places == 1:
+        return False
+    if places == count:
+        return True
+    mean = np.bincount(which, centred) / np.bincount(which)
+    within = float(np.sum((centred - mean[which]) ** 2)) / (count - places)
+    return within < OTHER_CAUSE * float(centred @ centred) / (count - 1)

@@ -1,5 +1,6 @@
 """What an effect sees of a load history: torque, clock, runs, place, and the shaft's path."""
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -115,9 +116,15 @@ class History:
         return float(np.median(step)) if len(step) else 0.0
 
     @property
-    def telling_step_s(self) -> float:
-        """Time over which a rate is told [s]: a step, or more where steps are very many."""
+    def rate_step_s(self) -> float:
+        """Time over which a rate is measured [s]: a step, or more where steps are very many."""
         return self.usual_step_s * max(len(self) / max(self.run_count, 1) / 250.0, 1.0)
+
+    @property
+    def telling_step_s(self) -> float:
+        """Former name of `rate_step_s`."""
+        warnings.warn("telling_step_s is now rate_step_s", DeprecationWarning, stacklevel=2)
+        return self.rate_step_s
 
     @cached_property
     def lapse_s(self) -> Floats:

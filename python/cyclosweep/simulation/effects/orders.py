@@ -65,6 +65,6 @@ class MeshPeriodic(Effect):
             reason = "the mesh zone stood at fewer than three positions"
         return reason
 
-    def richer(self, shape: Shape, found: Shape) -> Shape | None:
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Orders of both."""
         return listed("order_{}", [*shape.values(), *found.values()])

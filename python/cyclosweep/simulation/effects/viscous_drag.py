@@ -34,15 +34,15 @@ class ViscousDrag(Effect):
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Newtonian and thinning drag, too small yet to lag."""
-        lag = SHORTEST_LAG * history.telling_step_s
+        lag = SHORTEST_LAG * history.rate_step_s
         return [{"power": power, "lag_s": lag} for power in (1.0, 0.7)] if lag > 0 else []
 
-    def settled(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
+    def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
         rate = history.compliance_deg_per_nm * np.diff(history.applied_nm) / history.usual_step_s
         usual = max(float(np.sqrt(np.mean(rate**2))), 1e-12)
         drag = max(float(amplitudes[0]), 0.0) * usual ** (shape["power"] - 1.0)
-        shortest = SHORTEST_LAG * history.telling_step_s
+        shortest = SHORTEST_LAG * history.rate_step_s
         return {**shape, "lag_s": max(drag * history.compliance_deg_per_nm, shortest)}
 
     def columns(self, history: History, shape: Shape) -> Floats:
