@@ -18,6 +18,10 @@ def provenance_of(recording: Recording, drive: Drive, seed: int) -> dict[str, st
         The drive it was taken on.
     seed : int
         Seed of every random draw.
+
+    Returns
+    -------
+    dict of str to str
     """
     known = {
         "cyclosweep": _core.__version__,

@@ -115,6 +115,10 @@ def refused(recording: Recording, drive: Drive, refusal: NoDiagnosisError, seed:
         Verdict and reason.
     seed : int
         Seed of the diagnosis, for the record.
+
+    Returns
+    -------
+    Diagnosis
     """
     answer = Answer(
         verdict=refusal.verdict,

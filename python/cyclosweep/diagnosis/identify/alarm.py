@@ -128,6 +128,11 @@ def probability(null: Floats, value: float) -> float:
     ----------
     null : ndarray, shape (draws,)
     value : float
+
+    Returns
+    -------
+    float
+        From 1 / (draws + 1) to 1.
     """
     return float((1 + np.count_nonzero(null >= value)) / (1 + len(null)))
 
@@ -142,6 +147,10 @@ def tail_quantile(values: Floats, level: float) -> float:
     values : ndarray, shape (draws,)
     level : float
         Probability of a larger value.
+
+    Returns
+    -------
+    float
     """
     within = max(level, 0.03)
     edge = float(np.quantile(values, 1.0 - within))

@@ -30,6 +30,10 @@ def prior_penalty(name: str, effect: Effect | None, shape: Shape) -> float:
         None for an unnamed shape.
     shape : mapping of str to float
         Shape parameters of the effect.
+
+    Returns
+    -------
+    float
     """
     if effect is None:
         return OTHER_PENALTIES.get(name, UNNAMED_PENALTY)

@@ -25,6 +25,10 @@ def usual_change(parameter: FitParameter, value: float) -> float:
     parameter : FitParameter
     value : float
         Its value in the fit's own scale.
+
+    Returns
+    -------
+    float
     """
     quantity = parameter.quantity
     if quantity.logarithmic:

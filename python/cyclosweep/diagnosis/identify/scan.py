@@ -24,6 +24,11 @@ def evidence(chi2: Floats | float, rank: Floats | float) -> Floats:
         Chi-squared that some columns take away.
     rank : float or ndarray
         Projected rank k of these columns.
+
+    Returns
+    -------
+    ndarray
+        Of the shape of `chi2`.
     """
     chi2, rank = np.asarray(chi2, dtype=np.float64), np.asarray(rank, dtype=np.float64)
     safe = np.maximum(chi2, 1e-12)
@@ -44,6 +49,10 @@ def vector_penalty(size: Floats, information: Floats) -> float:
         Amplitudes.
     information : ndarray, shape (k, k)
         Inverse of their covariance.
+
+    Returns
+    -------
+    float
     """
     strength, axes = np.linalg.eigh(information)
     strength = np.maximum(strength, 0.0)
@@ -68,6 +77,10 @@ def shape_choice_penalty(information: Floats, ranges: Floats) -> float:
         Inverse of the parameters' covariance.
     ranges : ndarray, shape (k,)
         Range of each parameter in the library.
+
+    Returns
+    -------
+    float
     """
     known = np.maximum(np.linalg.eigvalsh(information * np.outer(ranges, ranges)), 0.0)
     return float(0.5 * np.sum(np.log1p(known / (2.0 * np.pi))))
@@ -87,6 +100,11 @@ def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
         Chi-squared beyond what noise explains.
     freedom : float
         Degrees of freedom with which the noise is known.
+
+    Returns
+    -------
+    ndarray
+        Of the shape of `chi2`.
     """
     before = np.log1p(np.maximum(excess, chi2) / freedom)
     after = np.log1p(np.maximum(excess - chi2, 0.0) / freedom)
@@ -309,6 +327,8 @@ def scan(
 
     Parameters
     ----------
+    library : Library
+        The hypotheses.
     whitened : ndarray, shape (n, k)
         Whitened columns of the library.
     gram : ndarray, shape (k, k)
@@ -317,6 +337,14 @@ def scan(
         Orthonormal basis of the tangent space of the model at hand.
     residual : ndarray, shape (n,)
         White unit-variance residual of that model.
+    freedom : float
+        Degrees of freedom with which the noise is known.
+    excess : float
+        Chi-squared beyond what noise explains.
+
+    Returns
+    -------
+    Scan
     """
     shadow = tangent.T @ whitened
     projected = gram - shadow.T @ shadow

@@ -142,6 +142,10 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
     fitted : FittedStructure
     index : int
         Index of a linear term.
+
+    Returns
+    -------
+    float
     """
     use = fitted.problem.fitted
     recalibrated = _recalibration(fitted)

@@ -87,6 +87,10 @@ def decide_whole_loop(chosen: Candidate | None, *, repeats: bool) -> Decision:
         Structure fitted to whole loops.
     repeats : bool
         Whether its residual repeats from run to run.
+
+    Returns
+    -------
+    Decision
     """
     if chosen is None or not chosen.fit.terms:
         return Decision("INSUFFICIENT_DATA", None, [], False)
@@ -103,6 +107,10 @@ def unit_slip(ratio: float, gear_ratio: float) -> str | None:
         Measured compliance over the nominal one.
     gear_ratio : float
         Ratio of the drive.
+
+    Returns
+    -------
+    str or None
     """
     known = (
         (180 / np.pi, "57.3: angles in rad read as deg, or the reverse"),

@@ -84,6 +84,10 @@ def distance_to_curve(problem: Problem, angle_deg: Floats, rows: Flags) -> float
         Predicted twist of all rows [deg].
     rows : ndarray of bool, shape (n,)
         Readings that count.
+
+    Returns
+    -------
+    float
     """
     torque, measured = problem.history.applied_nm, problem.angle_deg
     chord = float(np.ptp(measured[rows])) / max(float(np.ptp(torque[rows])), 1e-12)
