@@ -5,8 +5,8 @@
 
 mod study;
 
-use cyclosweep::outputs::Output;
-use cyclosweep::space::Rows;
+use cyclosweep::Output;
+use cyclosweep::sampling::Rows;
 
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|word| word != "--bench");
@@ -34,6 +34,8 @@ fn main() {
                 )
         })
         .collect();
-    let columns = study.evaluate(Rows::From(0), count, &outputs);
+    let columns = study
+        .evaluate(Rows::From(0), count, &outputs)
+        .expect("rows of the study");
     std::hint::black_box(columns);
 }

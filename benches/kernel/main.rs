@@ -3,8 +3,8 @@
 mod study;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use cyclosweep::outputs::Output;
-use cyclosweep::space::Rows;
+use cyclosweep::Output;
+use cyclosweep::sampling::Rows;
 
 /// Variants a measurement: enough for every thread, small enough for the allocator's cache.
 const BATCH: usize = 1 << 17;
@@ -22,7 +22,11 @@ fn kernel(criterion: &mut Criterion) {
             .collect();
         for (columns, outputs) in [("every column", &every), ("compliance, twist", &compliance)] {
             group.bench_function(format!("{name}, {columns}"), |bench| {
-                bench.iter(|| study.evaluate(Rows::From(0), BATCH, outputs));
+                bench.iter(|| {
+                    study
+                        .evaluate(Rows::From(0), BATCH, outputs)
+                        .expect("rows of the study")
+                });
             });
         }
     }

@@ -1,46 +1,64 @@
 //! The bench study in Rust: the one of `benches/study.py`, plus its full-grid form.
 
-use cyclosweep::columns::Study;
-use cyclosweep::inputs::{Input, SCALARS, SEGMENT_FIELDS, factor, segment_input};
-use cyclosweep::shaft::SegmentKind;
-use cyclosweep::space::{Axis, Layout, Space, Values};
+use cyclosweep::Study;
+use cyclosweep::model::active_pins::Criterion;
+use cyclosweep::model::design::{Design, ShaftSegment};
+use cyclosweep::model::inputs::{Input, segment_input};
+use cyclosweep::sampling::{Axis, Layout, Space, Values};
 
 /// Loads (nominal torques) at which twists are computed.
 const LOADS: [f64; 5] = [1.0, 2.0, 3.0, 4.0, 4.5];
 
-/// The drive of `benches/drive.toml`, in the user's units.
-const DRIVE: [(Input, f64); 22] = [
-    (Input::Ratio, 87.0),
-    (Input::DiscCount, 2.0),
-    (Input::Eccentricity, 0.62),
-    (Input::RingPinCircleRadius, 75.0),
-    (Input::HoleClocking, -1.2),
-    (Input::OutputPinCount, 8.0),
-    (Input::OutputPinCircleRadius, 45.0),
-    (Input::OutputPinDiameter, 16.0),
-    (Input::OutputPinBore, 0.0),
-    (Input::OutputPinLength, 40.0),
-    (Input::BushWall, 2.0),
-    (Input::DiscOuterRadius, 70.0),
-    (Input::DiscBoreRadius, 25.0),
-    (Input::YoungsModulus, 206.0),
-    (Input::PoissonRatio, 0.3),
-    (Input::KeywayCoefficient, 10.0),
-    (Input::InputPower, 1.14),
-    (Input::InputSpeed, 1500.0),
-    (Input::OutputTorque, 585.0),
-    (Input::FreePlay, 28.0),
-    (Input::InputInertia, 0.002),
-    (Input::Criterion, 0.0),
-];
-/// Its shaft: kind, then diameter, end diameter, length, keyway depth (mm).
-const SHAFT: [(SegmentKind, [f64; 4]); 5] = [
-    (SegmentKind::Keyway, [50.0, f64::NAN, 60.0, 5.5]),
-    (SegmentKind::Cylinder, [50.0, f64::NAN, 30.0, f64::NAN]),
-    (SegmentKind::Cylinder, [55.0, f64::NAN, 30.0, f64::NAN]),
-    (SegmentKind::Cylinder, [60.0, f64::NAN, 20.0, f64::NAN]),
-    (SegmentKind::Frustum, [62.0, 84.0, 15.0, f64::NAN]),
-];
+/// The drive of `benches/drive.toml`.
+fn drive() -> Design {
+    Design {
+        ratio: 87.0,
+        disc_count: 2.0,
+        eccentricity_mm: 0.62,
+        ring_pin_circle_radius_mm: 75.0,
+        hole_clocking_deg: -1.2,
+        output_pin_count: 8.0,
+        output_pin_circle_radius_mm: 45.0,
+        output_pin_diameter_mm: 16.0,
+        output_pin_bore_mm: 0.0,
+        output_pin_length_mm: 40.0,
+        bush_wall_mm: 2.0,
+        disc_outer_radius_mm: 70.0,
+        disc_bore_radius_mm: 25.0,
+        youngs_modulus_gpa: 206.0,
+        poisson_ratio: 0.3,
+        keyway_coefficient: 10.0,
+        input_power_kw: 1.14,
+        input_speed_rpm: 1500.0,
+        output_torque_nm: 585.0,
+        free_play_deg: 28.0,
+        input_inertia_kg_m2: Some(0.002),
+        output_stiffness_nm_per_arcmin: None,
+        criterion: Criterion::PublishedMap,
+        shaft: vec![
+            ShaftSegment::Keyway {
+                diameter_mm: 50.0,
+                length_mm: 60.0,
+                keyway_depth_mm: 5.5,
+            },
+            cylinder(50.0, 30.0),
+            cylinder(55.0, 30.0),
+            cylinder(60.0, 20.0),
+            ShaftSegment::Frustum {
+                diameter_mm: 62.0,
+                end_diameter_mm: 84.0,
+                length_mm: 15.0,
+            },
+        ],
+    }
+}
+
+const fn cylinder(diameter_mm: f64, length_mm: f64) -> ShaftSegment {
+    ShaftSegment::Cylinder {
+        diameter_mm,
+        length_mm,
+    }
+}
 
 /// The eight axes: input, lowest and highest value, values in the full grid.
 fn ranges() -> [(usize, f64, f64, u64); 8] {
@@ -58,18 +76,7 @@ fn ranges() -> [(usize, f64, f64, u64); 8] {
 
 /// The study over a space of its axes.
 fn study(space: Space) -> Study {
-    let mut base = vec![f64::NAN; SCALARS + SEGMENT_FIELDS.len() * SHAFT.len()];
-    for (input, value) in DRIVE {
-        base[input as usize] = value * factor(input as usize);
-    }
-    for (segment, (_, fields)) in SHAFT.iter().enumerate() {
-        for (field, value) in fields.iter().enumerate() {
-            let input = segment_input(segment, field);
-            base[input] = value * factor(input);
-        }
-    }
-    let kinds = SHAFT.iter().map(|(kind, _)| *kind).collect();
-    Study::new(space, base, kinds, LOADS.to_vec(), Vec::new()).expect("a study that can be")
+    Study::new(space, &drive(), LOADS.to_vec(), Vec::new()).expect("a study that can be")
 }
 
 /// Scrambled Sobol points over eight axes.

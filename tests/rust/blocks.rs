@@ -1,14 +1,16 @@
 //! Blocks of variants in vector instructions give the bits of variants computed one by one.
 
-use cyclosweep::columns::{Limit, Limited, Study};
-use cyclosweep::error::Status;
-use cyclosweep::inputs::{Input, SCALARS, SEGMENT_FIELDS};
-use cyclosweep::outputs::Output;
-use cyclosweep::shaft::SegmentKind;
-use cyclosweep::space::{Axis, Layout, Rows, Space, Values};
+use cyclosweep::Output;
+use cyclosweep::model::active_pins::Criterion;
+use cyclosweep::model::design::{Design, ShaftSegment};
+use cyclosweep::model::error::Status;
+use cyclosweep::model::inputs::{Input, SCALARS, SEGMENT_FIELDS};
+use cyclosweep::model::shaft::SegmentKind;
+use cyclosweep::sampling::{Axis, Layout, Rows, Space, Values};
+use cyclosweep::{Limit, Limited, Study};
 use proptest::prelude::*;
 
-use drive::{KINDS, LOADS, base, core_units};
+use drive::{LOADS, SHAFT, base};
 
 mod drive;
 
@@ -17,7 +19,7 @@ const ROWS: usize = 700;
 
 /// A value of an input: mostly near the base's, at times anything.
 fn value(input: usize) -> impl Strategy<Value = f64> {
-    let base = base()[input];
+    let base = base().value(input);
     let usual = if base.is_nan() { 50.0 } else { base };
     prop_oneof![
         20 => (0.7..1.3_f64).prop_map(move |share| usual * share),
@@ -73,13 +75,13 @@ prop_compose! {
         ],
         has_shaft in prop::bool::weighted(0.8),
         inputs in prop::sample::subsequence(
-            (0..SCALARS + KINDS.len() * SEGMENT_FIELDS.len()).collect::<Vec<_>>(), 0..6
+            (0..SCALARS + SHAFT.len() * SEGMENT_FIELDS.len()).collect::<Vec<_>>(), 0..6
         ),
-        criterion in 0..3_u8,
+        criterion in prop::sample::select(Criterion::ALL.to_vec()),
         discs in 1..=4_u8,
         turns in prop_oneof![Just(0.0), -2.0..2.0_f64],
-        stiffness in prop_oneof![Just(f64::NAN), 0.5..5.0_f64],
-        kinds in Just(KINDS.to_vec()).prop_shuffle(),
+        stiffness in prop::option::of(0.5..5.0_f64),
+        kinds in Just(SHAFT.map(|segment| segment.kind()).to_vec()).prop_shuffle(),
         limits in prop::collection::vec(limit(), 0..2),
         seed in any::<u64>(),
     )(
@@ -92,28 +94,33 @@ prop_compose! {
         discs in Just(discs), turns in Just(turns), stiffness in Just(stiffness),
         kinds in Just(kinds), limits in Just(limits), seed in Just(seed),
     ) -> Study {
-        let mut inputs = base();
-        inputs[Input::Criterion as usize] = f64::from(criterion);
-        inputs[Input::DiscCount as usize] = f64::from(discs);
-        inputs[Input::HoleClocking as usize] += 360.0 * turns;
-        inputs[Input::OutputStiffness as usize] = stiffness;
-        for k in 0..kinds.len() {
-            // Every kind everywhere: each has a diameter that suits its place.
-            let place = SCALARS + k * SEGMENT_FIELDS.len();
-            inputs[place + 1] = 52.0 + 3.0 * k as f64;
-            inputs[place + 3] = 5.0;
-        }
-        let kinds = if has_shaft { kinds } else { Vec::<SegmentKind>::new() };
-        inputs.truncate(SCALARS + kinds.len() * SEGMENT_FIELDS.len());
+        // Every kind everywhere: each has a diameter that suits its place.
+        let segment = |(place, kind): (usize, SegmentKind)| {
+            let [diameter, _, length, _] = SHAFT[place].fields();
+            ShaftSegment::of(kind, [diameter, 52.0 + 3.0 * place as f64, length, 5.0])
+        };
+        let shaft = kinds.into_iter().enumerate().map(segment).collect();
+        let design = Design {
+            criterion,
+            disc_count: f64::from(discs),
+            hole_clocking_deg: base().hole_clocking_deg + 360.0 * turns,
+            output_stiffness_nm_per_arcmin: stiffness,
+            shaft: if has_shaft { shaft } else { Vec::new() },
+            ..base()
+        };
         let space = Space::new(axes, layout, ROWS as u64, seed).expect("a space that can be");
-        Study::new(space, core_units(&inputs), kinds, LOADS.to_vec(), limits).expect("a study that can be")
+        Study::new(space, &design, LOADS.to_vec(), limits).expect("a study that can be")
     }
 }
 
 /// The first variant and column in which blocks and variants one by one differ.
 fn difference(study: &Study, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Option<String> {
-    let blocks = study.evaluate(rows, len, outputs);
-    let alone = study.evaluate_one_by_one(rows, len, outputs);
+    let blocks = study
+        .evaluate(rows, len, outputs)
+        .expect("rows of the study");
+    let alone = study
+        .evaluate_one_by_one(rows, len, outputs)
+        .expect("rows of the study");
     if blocks.any_refused != alone.any_refused {
         return Some("any_refused".to_owned());
     }
@@ -152,7 +159,7 @@ proptest! {
         let picked: Vec<u64> = picked.into_iter().map(|k| k % last).collect();
         prop_assert_eq!(difference(&study, Rows::At(&picked), picked.len(), &outputs), None);
         for variant in picked.iter().take(20) {
-            let alone = study.evaluate(Rows::From(*variant), 1, &[]);
+            let alone = study.evaluate(Rows::From(*variant), 1, &[]).expect("rows of the study");
             let reason = study.explain(*variant).map_or(Status::Ok, |error| error.status()) as u8;
             let is_limit = usize::from(alone.status[0]) >= Status::ALL.len();
             prop_assert!(alone.status[0] == reason || (is_limit && reason == Status::Ok as u8));
@@ -161,7 +168,7 @@ proptest! {
 }
 
 /// A study of drives that can be built, of every number of pins and discs.
-fn sound(criterion: f64) -> Study {
+fn sound(criterion: Criterion) -> Study {
     let interval = |input: Input, low: f64, high: f64| Axis {
         input: input as usize,
         values: Values::Interval { low, high },
@@ -186,26 +193,24 @@ fn sound(criterion: f64) -> Study {
         interval(Input::OutputPinDiameter, 5.0, 14.0),
         interval(Input::YoungsModulus, 70.0, 210.0),
     ];
-    let mut inputs = base();
-    inputs[Input::Criterion as usize] = criterion;
+    let design = Design {
+        criterion,
+        ..base()
+    };
     let space = Space::new(axes, Layout::Sobol, 1 << 20, 7).expect("a space that can be");
-    Study::new(
-        space,
-        core_units(&inputs),
-        KINDS.to_vec(),
-        LOADS.to_vec(),
-        Vec::new(),
-    )
-    .expect("a study that can be")
+    Study::new(space, &design, LOADS.to_vec(), Vec::new()).expect("a study that can be")
 }
 
 #[test]
 fn blocks_of_drives_that_can_be_built_have_the_bits_of_drives_one_by_one() {
-    for criterion in [0.0, 1.0, 2.0] {
+    for criterion in Criterion::ALL {
         let study = sound(criterion);
         let outputs = Output::all(&LOADS);
         assert_eq!(difference(&study, Rows::From(77), 30_000, &outputs), None);
-        let built = study.evaluate(Rows::From(77), 30_000, &outputs).status;
+        let built = study
+            .evaluate(Rows::From(77), 30_000, &outputs)
+            .expect("rows of the study")
+            .status;
         assert!(built.iter().filter(|status| **status == 0).count() > 20_000);
     }
 }

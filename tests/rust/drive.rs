@@ -1,56 +1,55 @@
 //! The drive that studies in tests vary.
 
-use cyclosweep::inputs::{SCALARS, SEGMENT_FIELDS, factor};
-use cyclosweep::shaft::SegmentKind;
+use cyclosweep::model::active_pins::Criterion;
+use cyclosweep::model::design::{Design, ShaftSegment};
 
-/// Its shaft.
-pub const KINDS: [SegmentKind; 3] = [
-    SegmentKind::Keyway,
-    SegmentKind::Cylinder,
-    SegmentKind::Frustum,
-];
 /// Loads at which twists are computed.
 pub const LOADS: [f64; 2] = [1.0, 4.5];
 
-/// A drive that can be built, in the user's units.
-pub fn base() -> Vec<f64> {
-    let mut base = vec![
-        87.0,
-        2.0,
-        0.62,
-        75.0,
-        -1.2,
-        8.0,
-        45.0,
-        16.0,
-        0.0,
-        40.0,
-        2.0,
-        70.0,
-        25.0,
-        206.0,
-        0.3,
-        10.0,
-        1.14,
-        1500.0,
-        585.0,
-        28.0,
-        0.002,
-        f64::NAN,
-        0.0,
-    ];
-    assert_eq!(base.len(), SCALARS);
-    base.extend([50.0, f64::NAN, 100.0, 5.5]);
-    base.extend([55.0, f64::NAN, 60.0, f64::NAN]);
-    base.extend([60.0, 90.0, 15.0, f64::NAN]);
-    assert_eq!(base.len(), SCALARS + KINDS.len() * SEGMENT_FIELDS.len());
-    base
-}
+/// Its shaft.
+pub const SHAFT: [ShaftSegment; 3] = [
+    ShaftSegment::Keyway {
+        diameter_mm: 50.0,
+        length_mm: 100.0,
+        keyway_depth_mm: 5.5,
+    },
+    ShaftSegment::Cylinder {
+        diameter_mm: 55.0,
+        length_mm: 60.0,
+    },
+    ShaftSegment::Frustum {
+        diameter_mm: 60.0,
+        end_diameter_mm: 90.0,
+        length_mm: 15.0,
+    },
+];
 
-/// The same in the core's units.
-pub fn core_units(base: &[f64]) -> Vec<f64> {
-    base.iter()
-        .enumerate()
-        .map(|(k, value)| value * factor(k))
-        .collect()
+/// A drive that can be built.
+pub fn base() -> Design {
+    Design {
+        ratio: 87.0,
+        disc_count: 2.0,
+        eccentricity_mm: 0.62,
+        ring_pin_circle_radius_mm: 75.0,
+        hole_clocking_deg: -1.2,
+        output_pin_count: 8.0,
+        output_pin_circle_radius_mm: 45.0,
+        output_pin_diameter_mm: 16.0,
+        output_pin_bore_mm: 0.0,
+        output_pin_length_mm: 40.0,
+        bush_wall_mm: 2.0,
+        disc_outer_radius_mm: 70.0,
+        disc_bore_radius_mm: 25.0,
+        youngs_modulus_gpa: 206.0,
+        poisson_ratio: 0.3,
+        keyway_coefficient: 10.0,
+        input_power_kw: 1.14,
+        input_speed_rpm: 1500.0,
+        output_torque_nm: 585.0,
+        free_play_deg: 28.0,
+        input_inertia_kg_m2: Some(0.002),
+        output_stiffness_nm_per_arcmin: None,
+        criterion: Criterion::PublishedMap,
+        shaft: SHAFT.to_vec(),
+    }
 }

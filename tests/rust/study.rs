@@ -1,27 +1,19 @@
 //! Studies: anything may be put in, nothing panics, and a variant does not depend on its company.
 
-use cyclosweep::columns::{Limit, Limited, Study};
-use cyclosweep::error::Status;
-use cyclosweep::inputs::{Input, SCALARS};
-use cyclosweep::outputs::Output;
-use cyclosweep::sampling::{Permutation, SobolAxis, key, random, unit_interval};
-use cyclosweep::space::{Axis, Layout, Rows, Space, Values};
+use cyclosweep::Output;
+use cyclosweep::model::error::Status;
+use cyclosweep::model::inputs::{Input, SCALARS};
+use cyclosweep::sampling::{Axis, Layout, Rows, Space, Values};
+use cyclosweep::{Limit, Limited, Study};
 use proptest::prelude::*;
 
-use drive::{KINDS, LOADS, base, core_units};
+use drive::{LOADS, base};
 
 mod drive;
 
 fn study(axes: Vec<Axis>, layout: Layout, count: u64, seed: u64, limits: Vec<Limit>) -> Study {
     let space = Space::new(axes, layout, count, seed).expect("a space that can be");
-    Study::new(
-        space,
-        core_units(&base()),
-        KINDS.to_vec(),
-        LOADS.to_vec(),
-        limits,
-    )
-    .expect("a study that can be")
+    Study::new(space, &base(), LOADS.to_vec(), limits).expect("a study that can be")
 }
 
 fn bits(columns: &[Vec<f64>], row: usize) -> Vec<u64> {
@@ -56,7 +48,9 @@ fn axes() -> Vec<Axis> {
 fn the_base_is_a_drive_that_can_be_built() {
     let whole = study(Vec::new(), Layout::Grid, 0, 0, Vec::new());
     assert!(whole.explain(0).is_none());
-    let columns = whole.evaluate(Rows::From(0), 1, &Output::all(&LOADS));
+    let columns = whole
+        .evaluate(Rows::From(0), 1, &Output::all(&LOADS))
+        .expect("rows of the study");
     assert_eq!(columns.status, [0]);
     assert!(!columns.any_refused);
 }
@@ -66,16 +60,23 @@ fn a_grid_with_tables_gives_the_bits_of_variants_one_by_one() {
     let outputs = Output::all(&LOADS);
     let grid = study(axes(), Layout::Grid, 0, 0, Vec::new());
     let len = grid.space().len() as usize;
-    let whole = grid.evaluate(Rows::From(0), len, &outputs);
+    let whole = grid
+        .evaluate(Rows::From(0), len, &outputs)
+        .expect("rows of the study");
     // The same values as the rows of a table, for which no stage is computed beforehand.
     let listed: Vec<Axis> = (0..axes().len())
         .map(|k| Axis {
             input: axes()[k].input,
-            values: Values::List(grid.axis_values(k, Rows::From(0), len)),
+            values: Values::List(
+                grid.axis_values(k, Rows::From(0), len)
+                    .expect("rows of the study"),
+            ),
         })
         .collect();
     let table = study(listed, Layout::Table, 0, 0, Vec::new());
-    let rows = table.evaluate(Rows::From(0), len, &outputs);
+    let rows = table
+        .evaluate(Rows::From(0), len, &outputs)
+        .expect("rows of the study");
     assert_eq!(whole.status, rows.status);
     for (row, status) in whole.status.iter().enumerate() {
         if *status == Status::Ok as u8 {
@@ -117,14 +118,14 @@ proptest! {
         let limit = Limit { column: Limited::Output(Output::HoleWeb), min: 2.0, max: f64::INFINITY };
         let whole = study(axes(), layout, 7560, seed, vec![limit]);
         let len = whole.space().len();
-        let all = whole.evaluate(Rows::From(0), len as usize, &outputs);
+        let all = whole.evaluate(Rows::From(0), len as usize, &outputs).expect("rows of the study");
         let mut edges = cuts;
         edges.extend([0, len]);
         edges.sort_unstable();
         for pair in edges.windows(2) {
             let (from, to) = (pair[0] as usize, pair[1] as usize);
             let fresh = study(axes(), layout, 7560, seed, vec![limit]);
-            let some = fresh.evaluate(Rows::From(pair[0]), to - from, &outputs);
+            let some = fresh.evaluate(Rows::From(pair[0]), to - from, &outputs).expect("rows of the study");
             prop_assert_eq!(&some.status[..], &all.status[from..to]);
             for (part, column) in some.values.iter().zip(&all.values) {
                 let same = part.iter().zip(&column[from..to]).all(|(a, b)| a.to_bits() == b.to_bits());
@@ -142,8 +143,8 @@ proptest! {
         few in prop::sample::subsequence(Output::all(&LOADS), 1..5),
     ) {
         let whole = study(axes(), layout, 7560, 3, Vec::new());
-        let all = whole.evaluate(Rows::From(0), 7560, &few);
-        let some = whole.evaluate(Rows::At(&picked), picked.len(), &few);
+        let all = whole.evaluate(Rows::From(0), 7560, &few).expect("rows of the study");
+        let some = whole.evaluate(Rows::At(&picked), picked.len(), &few).expect("rows of the study");
         for (row, variant) in picked.iter().enumerate() {
             prop_assert_eq!(some.status[row], all.status[*variant as usize]);
             prop_assert_eq!(bits(&some.values, row), bits(&all.values, *variant as usize));
@@ -156,8 +157,8 @@ proptest! {
     ) {
         let all_outputs = Output::all(&LOADS);
         let grid = study(axes(), Layout::Random, 2000, 1, Vec::new());
-        let all = grid.evaluate(Rows::From(0), 2000, &all_outputs);
-        let some = grid.evaluate(Rows::From(0), 2000, &chosen);
+        let all = grid.evaluate(Rows::From(0), 2000, &all_outputs).expect("rows of the study");
+        let some = grid.evaluate(Rows::From(0), 2000, &chosen).expect("rows of the study");
         prop_assert_eq!(&some.status, &all.status);
         for (output, column) in chosen.iter().zip(&some.values) {
             let place = all_outputs.iter().position(|o| o == output).expect("known");
@@ -175,65 +176,17 @@ proptest! {
     fn nothing_that_can_be_put_in_panics(
         changes in prop::collection::vec((0..SCALARS + 12, prop::num::f64::ANY), 1..8)
     ) {
-        let mut inputs = base();
-        for (input, value) in &changes {
-            inputs[*input] = *value;
-        }
-        let space = Space::new(Vec::new(), Layout::Grid, 0, 0).expect("one variant");
-        let one = Study::new(space, core_units(&inputs), KINDS.to_vec(), LOADS.to_vec(), Vec::new()).expect("a study that can be");
-        let columns = one.evaluate(Rows::From(0), 1, &Output::all(&LOADS));
+        let axes = changes.into_iter().collect::<std::collections::BTreeMap<_, _>>();
+        let axis = |(input, value)| Axis { input, values: Values::List(vec![value]) };
+        let space = Space::new(axes.into_iter().map(axis).collect(), Layout::Table, 1, 0)
+            .expect("one variant");
+        let one = Study::new(space, &base(), LOADS.to_vec(), Vec::new()).expect("a study");
+        let columns = one.evaluate(Rows::From(0), 1, &Output::all(&LOADS)).expect("rows of the study");
         let refused = one.explain(0);
         prop_assert_eq!(columns.status[0], refused.map_or(Status::Ok, |error| error.status()) as u8);
         if let Some(error) = refused {
             prop_assert!(!error.to_string().contains('\n'));
             prop_assert!(columns.values.iter().all(|column| column[0].is_nan()));
         }
-    }
-}
-
-proptest! {
-    #[test]
-    fn a_run_of_sobol_points_is_the_points(
-        axis in 0..128_usize, scramble in any::<Option<u64>>(), start in 0..(1_u64 << 63) - 400,
-        len in 0..400_usize,
-    ) {
-        let axis = SobolAxis::new(axis, scramble);
-        let mut run = vec![0.0; len];
-        axis.fill_units(start, &mut run);
-        for (unit, index) in run.iter().zip(start..) {
-            prop_assert_eq!(*unit, unit_interval(axis.bits(index)));
-        }
-    }
-
-    #[test]
-    fn a_permutation_is_a_bijection(count in 1..3000_u64, key in any::<u64>()) {
-        let permutation = Permutation::new(count, key);
-        let mut hit = vec![false; count as usize];
-        for index in 0..count {
-            let image = permutation.at(index) as usize;
-            prop_assert!(!hit[image]);
-            hit[image] = true;
-        }
-    }
-
-    #[test]
-    fn points_lie_in_the_unit_interval(count in 1..=1_u64 << 63, key_of in any::<u64>(), at in any::<u64>()) {
-        let index = at % count;
-        for u in [
-            Permutation::new(count, key_of).stratified(index),
-            random(key(key_of, 3), index),
-            unit_interval(at),
-        ] {
-            prop_assert!((0.0..1.0).contains(&u));
-        }
-    }
-
-    #[test]
-    fn whole_numbers_stay_in_their_range(low in 0..50_u32, width in 0..500_u32, u in 0.0..1.0_f64) {
-        let (low, high) = (f64::from(low), f64::from(low + width));
-        let value = Values::Whole { low, high }.at(u);
-        prop_assert!(value >= low && value <= high && value.fract() == 0.0);
-        prop_assert_eq!(Values::Whole { low, high }.at(0.0), low);
-        prop_assert_eq!(Values::Whole { low, high }.at(1.0 - f64::EPSILON / 2.0), high);
     }
 }

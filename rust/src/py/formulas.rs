@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::active_pins::{Criterion, PinMap};
-use crate::error::DesignError;
-use crate::hypotrochoid::hole_centre;
-use crate::shaft::{frustum_factor, keyway_factor, step_factor};
+use crate::model::active_pins::{Criterion, PinMap};
+use crate::model::error::DesignError;
+use crate::model::hypotrochoid::hole_centre;
+use crate::model::shaft::{frustum_factor, keyway_factor, step_factor};
 
 /// Eq. (5) (rad/(N m)).
 #[pyfunction]
@@ -53,23 +53,6 @@ fn criterion_of(code: u8) -> Result<Criterion, DesignError> {
     })
 }
 
-fn checked(map: PinMap) -> Result<PinMap, DesignError> {
-    if !(1..=4).contains(&map.discs) {
-        return Err(DesignError::DiscCountOutOfRange {
-            discs: f64::from(map.discs),
-        });
-    }
-    if !(3..=64).contains(&map.pins) {
-        return Err(DesignError::PinCountOutOfRange {
-            pins: f64::from(map.pins),
-        });
-    }
-    if map.ratio.is_nan() || map.ratio < 3.0 {
-        return Err(DesignError::RatioOutOfRange { ratio: map.ratio });
-    }
-    Ok(map)
-}
-
 /// Figures of the active-pin map: mean, minimum, maximum of active contacts by a criterion
 /// (code), participation by statics (mean, minimum, maximum), window of hole H1 (turns).
 #[pyfunction]
@@ -85,13 +68,7 @@ pub fn active_pins(
     delta: f64,
     clocking: f64,
 ) -> PyResult<((f64, u32, u32), (f64, f64, f64), (f64, f64))> {
-    let map = checked(PinMap {
-        ratio,
-        discs,
-        pins,
-        delta,
-        clocking,
-    })?;
+    let map = PinMap::new(ratio, discs, pins, delta, clocking)?;
     let count = match criterion_of(criterion)? {
         Criterion::PublishedMap => map.published_map(),
         Criterion::Inside => map.inside(),
@@ -115,13 +92,7 @@ pub fn sectors(
     delta: f64,
     clocking: f64,
 ) -> PyResult<Vec<(f64, f64, u32)>> {
-    let map = checked(PinMap {
-        ratio,
-        discs,
-        pins,
-        delta,
-        clocking,
-    })?;
+    let map = PinMap::new(ratio, discs, pins, delta, clocking)?;
     let sectors = map.sectors(criterion_of(criterion)?);
     Ok(sectors
         .into_iter()

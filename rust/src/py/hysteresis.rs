@@ -1,6 +1,6 @@
 //! Python bindings of the history operators.
 
-use crate::hysteresis::{self, HistoryError, SlipElements, Spring};
+use crate::model::hysteresis::{self, HistoryError, SlipElements, Spring};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -8,9 +8,9 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::error::{DesignError as Refusal, Status};
-use crate::inputs::{Input, SEGMENT_FIELDS};
-use crate::outputs::{Kind, Output};
+use crate::model::error::{DesignError as Refusal, Status};
+use crate::model::inputs::{Input, SEGMENT_FIELDS};
+use crate::{Kind, Output};
 
 create_exception!(
     cyclosweep._core,

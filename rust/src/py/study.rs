@@ -6,11 +6,18 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::columns::{Limit, Limited, Study};
-use crate::inputs::{SCALARS, SEGMENT_FIELDS, factor, input_index};
-use crate::outputs::Output;
-use crate::shaft::SegmentKind;
-use crate::space::{Axis, Layout, Rows, Space, Values};
+use crate::model::active_pins::Criterion;
+use crate::model::design::{Design, ShaftSegment};
+use crate::model::inputs::{Input, input_index, segment_input};
+use crate::model::shaft::SegmentKind;
+use crate::sampling::{Axis, Layout, Rows, Space, Values};
+use crate::{Limit, Limited, Output, Study, StudyError};
+
+impl From<StudyError> for PyErr {
+    fn from(error: StudyError) -> Self {
+        PyValueError::new_err(error.to_string())
+    }
+}
 
 /// A study's definition, ready to evaluate.
 #[pyclass(name = "Study", frozen, module = "cyclosweep._core")]
@@ -140,7 +147,7 @@ impl PyStudy {
             let mut columns = columns.readwrite();
             let status = status.as_slice_mut()?;
             let columns = columns.as_slice_mut()?.chunks_mut(len.max(1)).collect();
-            py.detach(|| self.study.evaluate_into(rows, &outputs, status, columns))
+            py.detach(|| self.study.evaluate_into(rows, &outputs, status, columns))?
         };
         Ok((status, any_refused, columns))
     }
@@ -174,11 +181,24 @@ impl PyStudy {
             let unknown = || PyValueError::new_err(format!("unknown input {name}"));
             input_index(name, kinds.len()).ok_or_else(unknown)
         };
-        let mut inputs = vec![f64::NAN; SCALARS + SEGMENT_FIELDS.len() * kinds.len()];
+        let mut inputs = vec![f64::NAN; segment_input(kinds.len(), 0)];
         for (name, value) in &base {
-            let k = index(name)?;
-            inputs[k] = value * factor(k);
+            inputs[index(name)?] = *value;
         }
+        let code = inputs[Input::Criterion as usize];
+        let criterion = Criterion::ALL
+            .into_iter()
+            .find(|known| f64::from(*known as u8) == code);
+        let unknown = || PyValueError::new_err(format!("unknown criterion number {code}"));
+        let segment = |(number, kind): (usize, &SegmentKind)| {
+            let fields = std::array::from_fn(|field| inputs[segment_input(number, field)]);
+            ShaftSegment::of(*kind, fields)
+        };
+        let design = Design::of_values(
+            |input| inputs[input as usize],
+            criterion.ok_or_else(unknown)?,
+            kinds.iter().enumerate().map(segment).collect(),
+        );
         let outputs: Vec<(String, Output)> = Output::all(&loads)
             .into_iter()
             .map(|output| (output.name(&loads), output))
@@ -201,8 +221,7 @@ impl PyStudy {
         }
         let space = Space::new(built, layout_of(layout)?, count, seed)
             .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let study = Study::new(space, inputs, kinds, loads, ranges)
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let study = Study::new(space, &design, loads, ranges)?;
         Ok(Self { study, outputs })
     }
 
@@ -247,7 +266,7 @@ impl PyStudy {
         {
             let mut columns = columns.readwrite();
             let columns = columns.as_slice_mut()?.chunks_mut(len.max(1)).collect();
-            py.detach(|| self.study.axes_into(&axes, Rows::From(start), columns));
+            py.detach(|| self.study.axes_into(&axes, Rows::From(start), columns))?;
         }
         Ok(columns)
     }
@@ -265,7 +284,7 @@ impl PyStudy {
         let values = py.detach(|| {
             self.study
                 .axis_values(axis, Rows::At(indices), indices.len())
-        });
+        })?;
         Ok(values.into_pyarray(py))
     }
 

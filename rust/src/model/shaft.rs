@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::error::DesignError;
-use crate::judge::{Judge, judged};
+use crate::model::checks::{Checks, checked};
+use crate::model::error::DesignError;
 
 /// What a segment of the shaft is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,10 +24,10 @@ impl SegmentKind {
         matches!(self, SegmentKind::Frustum)
     }
 
-    /// Place in [`crate::inputs::SEGMENT_FIELDS`] of the diameter at the flange end.
+    /// Place among a segment's fields of the diameter at the flange end.
     #[inline(always)]
     #[must_use]
-    pub const fn flange_field(self) -> usize {
+    pub(crate) const fn flange_field(self) -> usize {
         if self.tapers() { 1 } else { 0 }
     }
 }
@@ -63,18 +63,18 @@ impl Segment {
     ///
     /// Requires dimensions above zero and a keyway that does not reach the axis.
     #[inline(always)]
-    pub fn factor(&self, keyway_coefficient: f64, judge: &mut impl Judge) -> f64 {
-        let diameter = judge.positive("shaft diameter", self.diameter);
-        let length = judge.positive("shaft length", self.length);
+    pub(crate) fn factor(&self, keyway_coefficient: f64, checks: &mut impl Checks) -> f64 {
+        let diameter = checks.positive("shaft diameter", self.diameter);
+        let length = checks.positive("shaft length", self.length);
         match self.kind {
             SegmentKind::Cylinder => length / fourth(diameter),
             SegmentKind::Frustum => {
-                let end = judge.positive("shaft end diameter", self.end_diameter);
+                let end = checks.positive("shaft end diameter", self.end_diameter);
                 frustum_factor(length, diameter, end)
             }
             SegmentKind::Keyway => {
-                let depth = judge.non_negative("keyway depth", self.keyway_depth);
-                judge.require(depth < 0.5 * diameter, || DesignError::KeywayTooDeep {
+                let depth = checks.non_negative("keyway depth", self.keyway_depth);
+                checks.require(depth < 0.5 * diameter, || DesignError::KeywayTooDeep {
                     depth,
                     diameter,
                 });
@@ -139,7 +139,7 @@ pub fn step_factor(l1: f64, diameter: f64, l2: f64, larger: f64) -> Result<f64, 
 /// What one segment adds to Eq. (4), without 32/(pi G): its own factor, and the shoulder of
 /// Eq. (6) where the diameter rises onto it (zero elsewhere).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Term {
+pub(crate) struct Term {
     /// The segment's factor (1/m^3).
     pub factor: f64,
     /// The shoulder before it (1/m^3).
@@ -152,15 +152,15 @@ impl Term {
     /// Requires what the segment requires, and a diameter that does not fall on the way to the
     /// flange.
     #[inline(always)]
-    pub fn of(
+    pub(crate) fn of(
         segment: &Segment,
         before: f64,
         keyway_coefficient: f64,
-        judge: &mut impl Judge,
+        checks: &mut impl Checks,
     ) -> Self {
         Self {
-            factor: segment.factor(keyway_coefficient, judge),
-            shoulder: shoulder(before, segment.diameter, judge),
+            factor: segment.factor(keyway_coefficient, checks),
+            shoulder: shoulder(before, segment.diameter, checks),
         }
     }
 }
@@ -169,9 +169,9 @@ impl Term {
 ///
 /// Requires that it does not fall.
 #[inline(always)]
-pub fn shoulder(before: f64, after: f64, judge: &mut impl Judge) -> f64 {
+pub(crate) fn shoulder(before: f64, after: f64, checks: &mut impl Checks) -> f64 {
     let falls = after < before;
-    judge.require(!falls, || DesignError::ShaftStepNotAscending {
+    checks.require(!falls, || DesignError::ShaftStepNotAscending {
         from: before,
         to: after,
     });
@@ -183,15 +183,16 @@ pub fn shoulder(before: f64, after: f64, judge: &mut impl Judge) -> f64 {
 /// diameter rises from one to the next. Each length counts once.
 ///
 /// # Errors
-/// The first [`DesignError`] of [`Term::of`].
+/// The first [`DesignError`]: a dimension that is not above zero, a keyway that reaches the axis, a
+/// diameter that falls.
 pub fn shaft_factor(
     segments: impl IntoIterator<Item = Segment>,
     keyway_coefficient: f64,
 ) -> Result<f64, DesignError> {
-    judged(|judge| {
+    checked(|checks| {
         let (mut sum, mut before) = (0.0, f64::NAN);
         for segment in segments {
-            let term = Term::of(&segment, before, keyway_coefficient, judge);
+            let term = Term::of(&segment, before, keyway_coefficient, checks);
             sum += term.factor + term.shoulder;
             before = segment.flange_diameter();
         }
@@ -203,10 +204,10 @@ pub fn shaft_factor(
 ///
 /// Requires a modulus above zero and a Poisson's ratio within (-1, 0.5].
 #[inline(always)]
-pub fn shear_modulus(youngs_modulus: f64, poisson: f64, judge: &mut impl Judge) -> f64 {
-    let modulus = judge.positive("youngs_modulus", youngs_modulus);
-    let poisson = judge.finite("poisson_ratio", poisson);
-    judge.require((poisson > -1.0) & (poisson <= 0.5), || {
+pub(crate) fn shear_modulus(youngs_modulus: f64, poisson: f64, checks: &mut impl Checks) -> f64 {
+    let modulus = checks.positive("youngs_modulus", youngs_modulus);
+    let poisson = checks.finite("poisson_ratio", poisson);
+    checks.require((poisson > -1.0) & (poisson <= 0.5), || {
         DesignError::PoissonOutOfRange { poisson }
     });
     modulus / (2.0 * (1.0 + poisson))
@@ -214,24 +215,24 @@ pub fn shear_modulus(youngs_modulus: f64, poisson: f64, judge: &mut impl Judge) 
 
 /// `32 / (pi G)` (m^2/N), which turns the factors into compliances; see [`shear_modulus`].
 #[inline(always)]
-pub fn shaft_scale(youngs_modulus: f64, poisson: f64, judge: &mut impl Judge) -> f64 {
-    32.0 / (PI * shear_modulus(youngs_modulus, poisson, judge))
+pub(crate) fn shaft_scale(youngs_modulus: f64, poisson: f64, checks: &mut impl Checks) -> f64 {
+    32.0 / (PI * shear_modulus(youngs_modulus, poisson, checks))
 }
 
 /// Compliance C_OS^t (rad/(N m)) of the whole shaft.
 ///
 /// # Errors
-/// The first [`DesignError`] of [`shear_modulus`] and [`shaft_factor`].
+/// The first [`DesignError`]: of the modulus, of Poisson's ratio, or of [`shaft_factor`].
 pub fn shaft_compliance(
     segments: impl IntoIterator<Item = Segment>,
     youngs_modulus: f64,
     poisson: f64,
     keyway_coefficient: f64,
 ) -> Result<f64, DesignError> {
-    let (scale, coefficient) = judged(|judge| {
+    let (scale, coefficient) = checked(|checks| {
         (
-            shaft_scale(youngs_modulus, poisson, judge),
-            judge.non_negative("keyway_coefficient", keyway_coefficient),
+            shaft_scale(youngs_modulus, poisson, checks),
+            checks.non_negative("keyway_coefficient", keyway_coefficient),
         )
     })?;
     Ok(scale * shaft_factor(segments, coefficient)?)
@@ -314,7 +315,7 @@ mod tests {
             ..cylinder(0.05, 0.03)
         };
         assert!(matches!(
-            judged(|judge| deep.factor(10.0, judge)),
+            checked(|checks| deep.factor(10.0, checks)),
             Err(DesignError::KeywayTooDeep { .. })
         ));
     }

@@ -6,20 +6,21 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS};
+use crate::kernel::packed::Inputs;
+use crate::model::inputs::{Input, SCALARS, SEGMENT_FIELDS};
 
 /// Variants computed together: their stages stay in the cache.
-pub const BLOCK: usize = 128;
+pub(crate) const BLOCK: usize = 128;
 
 /// One quantity of every variant of a block.
-pub type Lanes = [f64; BLOCK];
+pub(crate) type Lanes = [f64; BLOCK];
 
 /// For each variant of a block, whether its formulas hold (one) or it has to be looked at alone.
-pub type Mask = [u64; BLOCK];
+pub(crate) type Mask = [u64; BLOCK];
 
 /// Work to run with the widest instructions there are. Its `run` and all it calls must be
 /// `inline(always)`.
-pub trait Wide {
+pub(crate) trait Wide {
     /// What comes of it.
     type Output;
     /// Does the work.
@@ -28,7 +29,7 @@ pub trait Wide {
 
 /// Runs `work` with the widest instructions that this machine has.
 #[inline]
-pub fn with_widest<W: Wide>(work: W) -> W::Output {
+pub(crate) fn with_widest<W: Wide>(work: W) -> W::Output {
     struct Dispatched<W>(W);
     impl<W: Wide> WithSimd for Dispatched<W> {
         type Output = W::Output;
@@ -41,7 +42,7 @@ pub fn with_widest<W: Wide>(work: W) -> W::Output {
 }
 
 /// The inputs of one variant, whether it stands alone or in a block.
-pub trait Variant {
+pub(crate) trait Variant {
     /// Value of a scalar input, in the core's unit.
     fn get(&self, input: Input) -> f64;
     /// sin(pi / N_OP), where the number of pins is one that a design may have.
@@ -51,7 +52,7 @@ pub trait Variant {
 }
 
 /// The inputs of a block of variants.
-pub struct InputLanes {
+pub(crate) struct InputLanes {
     scalars: Box<[Lanes; SCALARS]>,
     segments: Vec<[Lanes; SEGMENT_FIELDS.len()]>,
     half_pitch_sines: Lanes,
@@ -62,7 +63,7 @@ pub struct InputLanes {
 
 /// One variant of a block.
 #[derive(Clone, Copy)]
-pub struct Lane<'a> {
+pub(crate) struct Lane<'a> {
     scalars: &'a [Lanes; SCALARS],
     half_pitch_sines: &'a Lanes,
     flange: &'a Lanes,
@@ -71,8 +72,7 @@ pub struct Lane<'a> {
 
 impl InputLanes {
     /// A block of variants that are all alike.
-    #[must_use]
-    pub fn new(inputs: &Inputs) -> Self {
+    pub(crate) fn new(inputs: &Inputs) -> Self {
         let mut lanes = Self {
             scalars: Box::new(Input::ALL.map(|input| [inputs.get(input); BLOCK])),
             segments: inputs
@@ -90,7 +90,7 @@ impl InputLanes {
 
     /// The lanes of the input at this position among all inputs.
     #[inline(always)]
-    pub fn at_mut(&mut self, input: usize) -> &mut Lanes {
+    pub(crate) fn at_mut(&mut self, input: usize) -> &mut Lanes {
         match input.checked_sub(SCALARS) {
             None => &mut self.scalars[input],
             Some(k) => &mut self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()],
@@ -107,14 +107,13 @@ impl InputLanes {
     }
 
     /// The value of one variant's input at this position among all inputs.
-    #[must_use]
-    pub fn at(&self, input: usize, row: usize) -> f64 {
+    pub(crate) fn at(&self, input: usize, row: usize) -> f64 {
         self.lanes(input)[row]
     }
 
     /// To be called after the numbers of pins have changed.
     #[inline(always)]
-    pub fn find_half_pitch_sines(&mut self) {
+    pub(crate) fn find_half_pitch_sines(&mut self) {
         let sines = &half_pitch::SINES.0;
         let pins = &self.scalars[Input::OutputPinCount as usize];
         for (sine, pins) in self.half_pitch_sines.iter_mut().zip(pins) {
@@ -124,22 +123,13 @@ impl InputLanes {
 
     /// The fields of every segment of the shaft.
     #[inline(always)]
-    #[must_use]
-    pub fn segments(&self) -> &[[Lanes; SEGMENT_FIELDS.len()]] {
+    pub(crate) fn segments(&self) -> &[[Lanes; SEGMENT_FIELDS.len()]] {
         &self.segments
-    }
-
-    /// The lanes of one scalar input.
-    #[inline(always)]
-    #[must_use]
-    pub const fn get(&self, input: Input) -> &Lanes {
-        &self.scalars[input as usize]
     }
 
     /// The first variant of the block.
     #[inline(always)]
-    #[must_use]
-    pub fn first(&self) -> Lane<'_> {
+    pub(crate) fn first(&self) -> Lane<'_> {
         Lane {
             scalars: &self.scalars,
             half_pitch_sines: &self.half_pitch_sines,
@@ -156,15 +146,15 @@ impl InputLanes {
 /// A macro, not a function of a closure: a closure cannot be forced into the loop, and a call
 /// there keeps the loop from becoming vector instructions.
 macro_rules! for_each_lane {
-    ($inputs:expr, $mask:expr, |$row:ident, $lane:ident, $judge:ident| $formula:expr) => {
+    ($inputs:expr, $mask:expr, |$row:ident, $lane:ident, $checks:ident| $formula:expr) => {
         // Where the inputs lie is found once, not in every turn.
         let first = $inputs.first();
         for (row, holds) in $mask.iter_mut().enumerate() {
             let ($row, $lane) = (row, &first.at(row));
-            let mut judge = $crate::judge::AllHold(true);
-            let $judge = &mut judge;
+            let mut checks = $crate::model::checks::AllPass(true);
+            let $checks = &mut checks;
             $formula;
-            *holds &= u64::from(judge.0);
+            *holds &= u64::from(checks.0);
         }
     };
 }
@@ -173,8 +163,7 @@ pub(crate) use for_each_lane;
 impl<'a> Lane<'a> {
     /// The variant at another place of the block.
     #[inline(always)]
-    #[must_use]
-    pub const fn at(&self, row: usize) -> Lane<'a> {
+    pub(crate) const fn at(&self, row: usize) -> Lane<'a> {
         Lane { row, ..*self }
     }
 }

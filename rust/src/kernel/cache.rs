@@ -1,13 +1,14 @@
-//! Which outcomes of a stage are known before any variant: constants, and tables over the few axes
-//! of a grid that the stage reads.
+//! Outcomes of a stage that are computed before any variant: constants, and tables over the few
+//! axes of a grid that the stage reads.
 
 use rayon::prelude::*;
 
-use crate::error::{DesignError, Status};
-use crate::inputs::{Inputs, factor};
-use crate::lanes::BLOCK;
-use crate::space::{Rows, Space};
-use crate::stages::Stage;
+use crate::kernel::lanes::BLOCK;
+use crate::kernel::packed::Inputs;
+use crate::kernel::stages::Stage;
+use crate::model::error::{DesignError, Status};
+use crate::model::inputs::factor;
+use crate::sampling::{Rows, Space};
 
 /// Most entries of a stage's table, and how many variants an entry must serve to be worth it.
 const TABLE_LIMIT: u64 = 1 << 20;
@@ -15,59 +16,59 @@ const TABLE_WORTH: u64 = 4;
 
 /// A stage's outcome: why it refuses the variant, and what it gives where it does not.
 #[derive(Clone, Copy)]
-pub(crate) struct Filed<T> {
+pub(crate) struct Outcome<T> {
     pub status: Status,
-    pub outcome: T,
+    pub value: T,
 }
 
-impl<T: Stage> From<Result<T, DesignError>> for Filed<T> {
+impl<T: Stage> From<Result<T, DesignError>> for Outcome<T> {
     #[inline]
     fn from(outcome: Result<T, DesignError>) -> Self {
         match outcome {
-            Ok(outcome) => Self {
+            Ok(value) => Self {
                 status: Status::Ok,
-                outcome,
+                value,
             },
             Err(error) => Self {
                 status: error.status(),
-                outcome: T::NONE,
+                value: T::NONE,
             },
         }
     }
 }
 
 /// A stage's outcomes for a block of variants.
-pub(crate) struct FiledBlock<T: Stage> {
+pub(crate) struct OutcomeBlock<T: Stage> {
     pub statuses: [Status; BLOCK],
-    pub outcomes: Box<T::Block>,
+    pub values: Box<T::Block>,
 }
 
-impl<T: Stage> FiledBlock<T> {
+impl<T: Stage> OutcomeBlock<T> {
     /// Where to write outcomes of variants none of which is refused so far.
     #[inline(always)]
     pub(crate) fn open(&mut self) -> &mut T::Block {
         self.statuses = [Status::Ok; BLOCK];
-        &mut self.outcomes
+        &mut self.values
     }
 
     #[inline(always)]
-    pub(crate) fn put(&mut self, filed: Filed<T>, row: usize) {
-        self.statuses[row] = filed.status;
-        filed.outcome.put(&mut self.outcomes, row);
+    pub(crate) fn put(&mut self, outcome: Outcome<T>, row: usize) {
+        self.statuses[row] = outcome.status;
+        outcome.value.put(&mut self.values, row);
     }
 }
 
-/// Which of a stage's outcomes are already known.
-pub(crate) enum Known<T> {
+/// What of a stage is computed before any variant.
+pub(crate) enum Precomputed<T> {
     /// Nothing it reads varies.
-    Constant(Filed<T>),
+    Constant(Outcome<T>),
     /// One entry a combination of the grid's axes that it reads.
     Table {
-        entries: Vec<Filed<T>>,
+        entries: Vec<Outcome<T>>,
         axes: Vec<TableAxis>,
     },
     /// To be computed for every variant.
-    Nothing,
+    PerVariant,
 }
 
 /// One digit of a table's index: `(k / stride % count) * weight`.
@@ -78,8 +79,8 @@ pub(crate) struct TableAxis {
     weight: u64,
 }
 
-impl<T: Stage> Known<T> {
-    /// What is known of a stage that reads these inputs and is computed by `of`.
+impl<T: Stage> Precomputed<T> {
+    /// Computes what can be computed beforehand of a stage that reads these inputs.
     pub(crate) fn of(
         space: &Space,
         base: &Inputs,
@@ -91,10 +92,10 @@ impl<T: Stage> Known<T> {
             .filter(|a| reads.contains(&axes[*a].input))
             .collect();
         if varying.is_empty() {
-            return Known::Constant(of(base).into());
+            return Precomputed::Constant(of(base).into());
         }
         let Some(strides) = space.grid_strides() else {
-            return Known::Nothing;
+            return Precomputed::PerVariant;
         };
         let mut table = Vec::with_capacity(varying.len());
         let mut size = 1_u64;
@@ -108,7 +109,7 @@ impl<T: Stage> Known<T> {
             size = size.saturating_mul(count);
         }
         if size > TABLE_LIMIT.min(space.len() / TABLE_WORTH) {
-            return Known::Nothing;
+            return Precomputed::PerVariant;
         }
         table.reverse();
         let entries = (0..size)
@@ -121,11 +122,11 @@ impl<T: Stage> Known<T> {
                         let value = axes[*axis].values.nth(entry / digit.weight % digit.count);
                         inputs.set(input, value * factor(input));
                     }
-                    Filed::from(of(inputs))
+                    Outcome::from(of(inputs))
                 },
             )
             .collect();
-        Known::Table {
+        Precomputed::Table {
             entries,
             axes: table,
         }
@@ -134,25 +135,25 @@ impl<T: Stage> Known<T> {
     /// True when it has to be computed for every variant.
     #[inline(always)]
     pub(crate) const fn is_open(&self) -> bool {
-        matches!(self, Known::Nothing)
+        matches!(self, Precomputed::PerVariant)
     }
 
     /// A block to start from: the constant where it is one.
-    pub(crate) fn block(&self) -> FiledBlock<T> {
-        let Filed { status, outcome } = match self {
-            Known::Constant(filed) => *filed,
-            Known::Table { .. } | Known::Nothing => Filed::from(Ok(T::NONE)),
+    pub(crate) fn block(&self) -> OutcomeBlock<T> {
+        let Outcome { status, value } = match self {
+            Precomputed::Constant(outcome) => *outcome,
+            Precomputed::Table { .. } | Precomputed::PerVariant => Outcome::from(Ok(T::NONE)),
         };
-        FiledBlock {
+        OutcomeBlock {
             statuses: [status; BLOCK],
-            outcomes: outcome.block(),
+            values: value.block(),
         }
     }
 
     /// Looks up `len` rows of a block in the table, if there is one.
     #[inline]
-    pub(crate) fn look_up(&self, rows: Rows<'_>, len: usize, out: &mut FiledBlock<T>) {
-        let Known::Table { entries, axes } = self else {
+    pub(crate) fn look_up(&self, rows: Rows<'_>, len: usize, out: &mut OutcomeBlock<T>) {
+        let Precomputed::Table { entries, axes } = self else {
             return;
         };
         let start = match rows {
@@ -177,13 +178,13 @@ impl<T: Stage> Known<T> {
             };
             let to = len.min(from + run.min(BLOCK as u64) as usize);
             if last.stride == 1 {
-                for (row, filed) in (from..to).zip(&entries[at..]) {
-                    out.put(*filed, row);
+                for (row, outcome) in (from..to).zip(&entries[at..]) {
+                    out.put(*outcome, row);
                 }
             } else {
-                let Filed { status, outcome } = entries[at];
+                let Outcome { status, value } = entries[at];
                 out.statuses[from..to].fill(status);
-                outcome.put_all(&mut out.outcomes, from..to);
+                value.put_all(&mut out.values, from..to);
             }
             from = to;
         }

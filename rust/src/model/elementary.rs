@@ -56,7 +56,7 @@ pub fn asin(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::random;
+    use crate::model::random;
 
     fn ulps(found: f64, expected: f64) -> f64 {
         (found - expected).abs() / (expected.abs() * f64::EPSILON)

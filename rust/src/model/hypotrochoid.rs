@@ -2,9 +2,9 @@
 
 use nalgebra::{Rotation2, Vector2};
 
-use crate::elementary::asin;
-use crate::error::DesignError;
-use crate::judge::Judge;
+use crate::model::checks::Checks;
+use crate::model::elementary::asin;
+use crate::model::error::DesignError;
 
 /// Unit vector at `angle` (rad), clockwise from ring pin 0.
 #[inline]
@@ -34,9 +34,13 @@ pub fn hole_centre(
 ///
 /// Requires `e < 2 R_OP`.
 #[inline(always)]
-pub fn crossing_angle(eccentricity: f64, pin_circle_radius: f64, judge: &mut impl Judge) -> f64 {
+pub(crate) fn crossing_angle(
+    eccentricity: f64,
+    pin_circle_radius: f64,
+    checks: &mut impl Checks,
+) -> f64 {
     let ratio = eccentricity / (2.0 * pin_circle_radius);
-    judge.require(ratio < 1.0, || DesignError::HoleNeverCrossesPitchCircle {
+    checks.require(ratio < 1.0, || DesignError::HoleNeverCrossesPitchCircle {
         ratio,
     });
     asin(ratio)
@@ -45,12 +49,12 @@ pub fn crossing_angle(eccentricity: f64, pin_circle_radius: f64, judge: &mut imp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::judged;
+    use crate::model::checks::checked;
 
     #[test]
     fn a_centre_crosses_the_pitch_circle_where_the_window_opens() {
         let (e, radius, ratio, phi) = (0.00062, 0.045, 87.0, 0.7);
-        let delta = judged(|judge| crossing_angle(e, radius, judge)).expect("crosses");
+        let delta = checked(|checks| crossing_angle(e, radius, checks)).expect("crosses");
         let opening = (phi + std::f64::consts::FRAC_PI_2 + delta) * ratio / (ratio + 1.0);
         let at = |theta| hole_centre(e, radius, ratio, phi, theta).norm() - radius;
         approx::assert_abs_diff_eq!(at(opening), 0.0, epsilon = 1e-15);
@@ -59,6 +63,6 @@ mod tests {
 
     #[test]
     fn too_large_an_eccentricity_is_refused() {
-        assert!(judged(|judge| crossing_angle(0.1, 0.05, judge)).is_err());
+        assert!(checked(|checks| crossing_angle(0.1, 0.05, checks)).is_err());
     }
 }

@@ -1,16 +1,15 @@
 //! Points of a study as functions of their index alone: grid, Sobol, Latin hypercube, random.
 
-use crate::joe_kuo::DIRECTIONS;
+use crate::sampling::joe_kuo::DIRECTIONS;
 
 /// Most axes a Sobol study may have.
-pub const MAX_SOBOL_AXES: usize = DIRECTIONS.len() + 1;
+pub(crate) const MAX_SOBOL_AXES: usize = DIRECTIONS.len() + 1;
 
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): a bijection that mixes well.
 #[inline]
-#[must_use]
-pub const fn mix(mut x: u64) -> u64 {
+pub(crate) const fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     x ^ (x >> 31)
@@ -18,15 +17,13 @@ pub const fn mix(mut x: u64) -> u64 {
 
 /// The key of one axis of a study.
 #[inline]
-#[must_use]
-pub const fn key(seed: u64, axis: u64) -> u64 {
+pub(crate) const fn key(seed: u64, axis: u64) -> u64 {
     mix(mix(seed.wrapping_add(GOLDEN)).wrapping_add(axis.wrapping_add(1).wrapping_mul(GOLDEN)))
 }
 
 /// A number in [0, 1) of the leading 53 bits.
 #[inline]
-#[must_use]
-pub const fn unit_interval(bits: u64) -> f64 {
+pub(crate) const fn unit_interval(bits: u64) -> f64 {
     // Halves of 32 and 21 bits as the last places of 2^52 and 2^84, for which there are vector
     // instructions; every step is exact.
     const ONE: f64 = (1_u64 << 52) as f64;
@@ -38,15 +35,14 @@ pub const fn unit_interval(bits: u64) -> f64 {
 
 /// Independent uniform number number `index` of an axis.
 #[inline]
-#[must_use]
-pub const fn random(key: u64, index: u64) -> f64 {
+pub(crate) const fn random(key: u64, index: u64) -> f64 {
     unit_interval(mix(key ^ mix(index.wrapping_mul(GOLDEN))))
 }
 
 /// One axis of a Sobol sequence of 64 bits, scrambled by a random lower-triangular matrix and a
 /// shift (Matousek 1998), or not at all.
 #[derive(Debug, Clone)]
-pub struct SobolAxis {
+pub(crate) struct SobolAxis {
     directions: [u64; 64],
     shift: u64,
     /// What the last digits of an index change in the bits of its point.
@@ -58,8 +54,7 @@ const RUN: usize = 128;
 
 impl SobolAxis {
     /// The axis number `axis` (from 0); `scramble` is its key, or none for the plain sequence.
-    #[must_use]
-    pub fn new(axis: usize, scramble: Option<u64>) -> Self {
+    pub(crate) fn new(axis: usize, scramble: Option<u64>) -> Self {
         let mut directions = [0_u64; 64];
         if axis == 0 {
             for (bit, v) in directions.iter_mut().enumerate() {
@@ -108,8 +103,7 @@ impl SobolAxis {
 
     /// The bits of point `index`.
     #[inline]
-    #[must_use]
-    pub fn bits(&self, index: u64) -> u64 {
+    pub(crate) fn bits(&self, index: u64) -> u64 {
         let mut gray = index ^ (index >> 1);
         let mut bits = self.shift;
         while gray != 0 {
@@ -121,7 +115,7 @@ impl SobolAxis {
 
     /// Numbers in [0, 1) of consecutive points from `start` on.
     #[inline(always)]
-    pub fn fill_units(&self, start: u64, out: &mut [f64]) {
+    pub(crate) fn fill_units(&self, start: u64, out: &mut [f64]) {
         let mut index = start;
         let mut rest = out;
         while !rest.is_empty() {
@@ -140,7 +134,7 @@ impl SobolAxis {
 
 /// A keyed bijection of 0..count (a Feistel network with cycle walking).
 #[derive(Debug, Clone, Copy)]
-pub struct Permutation {
+pub(crate) struct Permutation {
     count: u64,
     key: u64,
     half_bits: u32,
@@ -148,8 +142,7 @@ pub struct Permutation {
 
 impl Permutation {
     /// The bijection of 0..count under a key.
-    #[must_use]
-    pub const fn new(count: u64, key: u64) -> Self {
+    pub(crate) const fn new(count: u64, key: u64) -> Self {
         let bits = 64 - count.saturating_sub(1).leading_zeros();
         let half = bits.div_ceil(2);
         Self {
@@ -161,8 +154,7 @@ impl Permutation {
 
     /// Where `index` goes.
     #[inline]
-    #[must_use]
-    pub fn at(&self, index: u64) -> u64 {
+    pub(crate) fn at(&self, index: u64) -> u64 {
         let mask = (1_u64 << self.half_bits) - 1;
         let mut x = index;
         loop {
@@ -180,8 +172,7 @@ impl Permutation {
 
     /// The point of a Latin hypercube of `count` strata, jittered within its stratum.
     #[inline]
-    #[must_use]
-    pub fn stratified(&self, index: u64) -> f64 {
+    pub(crate) fn stratified(&self, index: u64) -> f64 {
         let inside = random(self.key.rotate_left(32), index);
         let u = (self.at(index) as f64 + inside) / self.count as f64;
         u.min(1.0 - f64::EPSILON / 2.0)
@@ -191,6 +182,7 @@ impl Permutation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use std::collections::HashSet;
 
     #[test]
@@ -243,5 +235,45 @@ mod tests {
         }
         let huge = Permutation::new(1 << 63, 7);
         assert!(huge.at((1 << 63) - 1) < 1 << 63);
+    }
+
+    proptest! {
+        #[test]
+        fn a_run_of_sobol_points_is_the_points(
+            axis in 0..128_usize, scramble in any::<Option<u64>>(),
+            start in 0..(1_u64 << 63) - 400, len in 0..400_usize,
+        ) {
+            let axis = SobolAxis::new(axis, scramble);
+            let mut run = vec![0.0; len];
+            axis.fill_units(start, &mut run);
+            for (unit, index) in run.iter().zip(start..) {
+                prop_assert_eq!(*unit, unit_interval(axis.bits(index)));
+            }
+        }
+
+        #[test]
+        fn a_permutation_is_a_bijection(count in 1..3000_u64, key in any::<u64>()) {
+            let permutation = Permutation::new(count, key);
+            let mut hit = vec![false; count as usize];
+            for index in 0..count {
+                let image = permutation.at(index) as usize;
+                prop_assert!(!hit[image]);
+                hit[image] = true;
+            }
+        }
+
+        #[test]
+        fn points_lie_in_the_unit_interval(
+            count in 1..=1_u64 << 63, key_of in any::<u64>(), at in any::<u64>(),
+        ) {
+            let index = at % count;
+            for u in [
+                Permutation::new(count, key_of).stratified(index),
+                random(key(key_of, 3), index),
+                unit_interval(at),
+            ] {
+                prop_assert!((0.0..1.0).contains(&u));
+            }
+        }
     }
 }

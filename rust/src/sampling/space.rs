@@ -4,119 +4,18 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use crate::rounding::floor;
-use crate::sampling::{MAX_SOBOL_AXES, Permutation, SobolAxis, key, random, unit_interval};
+use crate::sampling::sequences::{
+    MAX_SOBOL_AXES, Permutation, SobolAxis, key, random, unit_interval,
+};
+use crate::sampling::values::Values;
 
 /// Most variants a space may hold.
 pub const MAX_VARIANTS: u64 = 1 << 63;
 
-/// The values one axis can take, in the user's unit.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Values {
-    /// These, in this order. The only kind a table has: value k belongs to variant k.
-    List(Vec<f64>),
-    /// `steps` equidistant numbers, both ends included.
-    Linspace {
-        /// First value.
-        from: f64,
-        /// Last value.
-        to: f64,
-        /// How many, at least one.
-        steps: u64,
-    },
-    /// Any number from `low` to `high`; not for a grid.
-    Interval {
-        /// Lower end.
-        low: f64,
-        /// Upper end.
-        high: f64,
-    },
-    /// Any whole number from `low` to `high`, both included; not for a grid.
-    Whole {
-        /// Smallest.
-        low: f64,
-        /// Largest.
-        high: f64,
-    },
-}
-
-impl Values {
-    /// How many there are; none for an interval.
-    #[must_use]
-    pub fn count(&self) -> Option<u64> {
-        match self {
-            Values::List(values) => Some(values.len() as u64),
-            Values::Linspace { steps, .. } => Some(*steps),
-            Values::Interval { .. } | Values::Whole { .. } => None,
-        }
-    }
-
-    /// Value number `digit`; of a countable axis only.
-    #[inline]
-    #[must_use]
-    pub fn nth(&self, digit: u64) -> f64 {
-        match self {
-            Values::List(values) => values[digit as usize],
-            Values::Linspace { from, to, steps } => {
-                if digit + 1 == *steps && digit > 0 {
-                    *to
-                } else {
-                    from + digit as f64 * ((to - from) / (steps - 1).max(1) as f64)
-                }
-            }
-            Values::Interval { low, .. } | Values::Whole { low, .. } => *low,
-        }
-    }
-
-    /// Turns numbers in [0, 1) into the values there.
-    #[inline(always)]
-    fn place(&self, units: &mut [f64]) {
-        match self {
-            Values::Interval { low, high } => {
-                for u in units {
-                    *u = in_interval(*low, *high, *u);
-                }
-            }
-            Values::Whole { low, high } => {
-                for u in units {
-                    *u = whole_within(*low, *high, *u);
-                }
-            }
-            _ => {
-                for u in units {
-                    *u = self.at(*u);
-                }
-            }
-        }
-    }
-
-    /// The value at `u` in [0, 1).
-    #[inline]
-    #[must_use]
-    pub fn at(&self, u: f64) -> f64 {
-        match self {
-            Values::Interval { low, high } => in_interval(*low, *high, u),
-            Values::Whole { low, high } => whole_within(*low, *high, u),
-            Values::List(values) => values[(u * values.len() as f64) as usize],
-            Values::Linspace { steps, .. } => self.nth((u * *steps as f64) as u64),
-        }
-    }
-}
-
-#[inline(always)]
-fn in_interval(low: f64, high: f64, u: f64) -> f64 {
-    low + u * (high - low)
-}
-
-#[inline(always)]
-fn whole_within(low: f64, high: f64, u: f64) -> f64 {
-    low + floor(u * (high - low + 1.0))
-}
-
 /// One axis: which input varies, and over what.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// Position of the input (see `inputs.rs`).
+    /// Position of the input; see [`crate::model::inputs`].
     pub input: usize,
     /// Its values.
     pub values: Values,
@@ -271,8 +170,7 @@ impl Space {
     }
 
     /// For a grid, how many variants lie between neighbours on each axis.
-    #[must_use]
-    pub fn grid_strides(&self) -> Option<&[u64]> {
+    pub(crate) fn grid_strides(&self) -> Option<&[u64]> {
         match &self.points {
             Points::Grid { strides } => Some(strides),
             _ => None,
@@ -281,7 +179,7 @@ impl Space {
 
     /// Writes the values of one axis for the asked variants.
     #[inline(always)]
-    pub fn fill(&self, axis: usize, rows: Rows<'_>, out: &mut [f64]) {
+    pub(crate) fn fill(&self, axis: usize, rows: Rows<'_>, out: &mut [f64]) {
         let values = &self.axes[axis].values;
         match (&self.points, rows) {
             (Points::Grid { strides }, Rows::From(start)) => {

@@ -1,24 +1,24 @@
 //! The model cut into stages by the inputs each needs, so that a study computes a stage once per
 //! combination of the axes it depends on.
 //!
-//! A stage's formulas are written once, without branches. With a judge that keeps the first reason
-//! they compute one variant; with one that only notes whether all is well, a block at a time.
+//! A stage's formulas are written once, without branches. With checks that keep the first reason they
+//! compute one variant; with checks that only keep whether all hold, a block at a time.
 
 use std::ops::Range;
 
-use crate::active_pins::MAX_PINS;
-use crate::error::DesignError;
-use crate::inputs::Input;
-use crate::judge::Judge;
-use crate::lanes::Variant;
-use crate::pin::{Pin, pin_compliance};
-use crate::rounding::{is_whole_within, smaller};
+use crate::kernel::lanes::Variant;
+use crate::model::MAX_PINS;
+use crate::model::checks::Checks;
+use crate::model::error::DesignError;
+use crate::model::inputs::Input;
+use crate::model::pin::{Pin, pin_compliance};
+use crate::model::rounding::{is_whole_within, smaller};
 
 /// K1 this close to one is one but for rounding: the profile has cusps.
 const CUSP: f64 = 1e-12;
 
 /// What a stage gives for one variant. Where the variant is refused it is meaningless.
-pub trait Stage: Copy + Send + Sync {
+pub(crate) trait Stage: Copy + Send + Sync {
     /// The same for every variant of a block.
     type Block: Send;
     /// Before anything is known.
@@ -33,6 +33,7 @@ pub trait Stage: Copy + Send + Sync {
     fn get(block: &Self::Block, row: usize) -> Self;
 }
 
+/// Declares a stage's outcome, its block of variants, and [`Stage`] for them.
 macro_rules! stage {
     (
         $(#[$doc:meta])*
@@ -40,22 +41,30 @@ macro_rules! stage {
     ) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy)]
-        pub struct $name {
+        pub(crate) struct $name {
             $($(#[$field_doc])* pub $field: f64,)+
         }
 
+        $crate::kernel::stages::blocks_of!($name, $block { $($(#[$field_doc])* $field,)+ });
+    };
+}
+pub(crate) use stage;
+
+/// Declares the block of variants of a struct of numbers, and [`Stage`] for them.
+macro_rules! blocks_of {
+    ($name:ident, $block:ident { $($(#[$field_doc:meta])* $field:ident,)+ }) => {
         #[doc = concat!("[`", stringify!($name), "`] of every variant of a block.")]
         #[derive(Debug, Clone)]
-        pub struct $block {
-            $($(#[$field_doc])* pub $field: $crate::lanes::Lanes,)+
+        pub(crate) struct $block {
+            $($(#[$field_doc])* pub $field: $crate::kernel::lanes::Lanes,)+
         }
 
-        impl $crate::stages::Stage for $name {
+        impl $crate::kernel::stages::Stage for $name {
             type Block = $block;
             const NONE: Self = Self { $($field: f64::NAN,)+ };
 
             fn block(self) -> Box<$block> {
-                Box::new($block { $($field: [self.$field; $crate::lanes::BLOCK],)+ })
+                Box::new($block { $($field: [self.$field; $crate::kernel::lanes::BLOCK],)+ })
             }
 
             #[inline(always)]
@@ -75,7 +84,7 @@ macro_rules! stage {
         }
     };
 }
-pub(crate) use stage;
+pub(crate) use blocks_of;
 
 stage! {
     /// Whether discs, holes and pins fit; hole and web.
@@ -133,17 +142,17 @@ pub(crate) struct WholeNumbers {
 
 impl WholeNumbers {
     #[inline(always)]
-    pub(crate) fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
-        let ratio = judge.finite("ratio", inputs.get(Input::Ratio));
-        judge.require(is_whole_within(ratio, 3.0, 300.0), || {
+    pub(crate) fn of(inputs: &impl Variant, checks: &mut impl Checks) -> Self {
+        let ratio = checks.finite("ratio", inputs.get(Input::Ratio));
+        checks.require(is_whole_within(ratio, 3.0, 300.0), || {
             DesignError::RatioOutOfRange { ratio }
         });
-        let discs = judge.finite("disc_count", inputs.get(Input::DiscCount));
-        judge.require(is_whole_within(discs, 1.0, 4.0), || {
+        let discs = checks.finite("disc_count", inputs.get(Input::DiscCount));
+        checks.require(is_whole_within(discs, 1.0, 4.0), || {
             DesignError::DiscCountOutOfRange { discs }
         });
-        let pins = judge.finite("output_pin_count", inputs.get(Input::OutputPinCount));
-        judge.require(is_whole_within(pins, 3.0, MAX_PINS as f64), || {
+        let pins = checks.finite("output_pin_count", inputs.get(Input::OutputPinCount));
+        checks.require(is_whole_within(pins, 3.0, MAX_PINS as f64), || {
             DesignError::PinCountOutOfRange { pins }
         });
         Self { ratio, pins }
@@ -152,7 +161,7 @@ impl WholeNumbers {
 
 impl Geometry {
     /// The scalar inputs this stage reads; it reads the shaft's diameter at the flange too.
-    pub const INPUTS: [Input; 11] = [
+    pub(crate) const INPUTS: [Input; 11] = [
         Input::Ratio,
         Input::DiscCount,
         Input::Eccentricity,
@@ -168,36 +177,36 @@ impl Geometry {
 
     /// Checks and computes.
     #[inline(always)]
-    pub fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
-        let WholeNumbers { ratio, .. } = WholeNumbers::of(inputs, judge);
-        let e = judge.positive("eccentricity", inputs.get(Input::Eccentricity));
-        let ring = judge.positive(
+    pub(crate) fn of(inputs: &impl Variant, checks: &mut impl Checks) -> Self {
+        let WholeNumbers { ratio, .. } = WholeNumbers::of(inputs, checks);
+        let e = checks.positive("eccentricity", inputs.get(Input::Eccentricity));
+        let ring = checks.positive(
             "ring_pin_circle_radius",
             inputs.get(Input::RingPinCircleRadius),
         );
-        let circle = judge.positive(
+        let circle = checks.positive(
             "output_pin_circle_radius",
             inputs.get(Input::OutputPinCircleRadius),
         );
-        let diameter = judge.positive("output_pin_diameter", inputs.get(Input::OutputPinDiameter));
-        let bore = judge.non_negative("output_pin_bore", inputs.get(Input::OutputPinBore));
-        let wall = judge.non_negative("bush_wall", inputs.get(Input::BushWall));
-        let rim = judge.positive("disc_outer_radius", inputs.get(Input::DiscOuterRadius));
-        let hub = judge.non_negative("disc_bore_radius", inputs.get(Input::DiscBoreRadius));
+        let diameter = checks.positive("output_pin_diameter", inputs.get(Input::OutputPinDiameter));
+        let bore = checks.non_negative("output_pin_bore", inputs.get(Input::OutputPinBore));
+        let wall = checks.non_negative("bush_wall", inputs.get(Input::BushWall));
+        let rim = checks.positive("disc_outer_radius", inputs.get(Input::DiscOuterRadius));
+        let hub = checks.non_negative("disc_bore_radius", inputs.get(Input::DiscBoreRadius));
         let k1 = e * (ratio + 1.0) / ring;
-        judge.require(k1 < 1.0 - CUSP, || {
+        checks.require(k1 < 1.0 - CUSP, || {
             DesignError::EccentricityTooLargeForRing { k1 }
         });
-        judge.require(rim < ring, || DesignError::DiscExceedsRing {
+        checks.require(rim < ring, || DesignError::DiscExceedsRing {
             disc_radius: rim,
             ring_radius: ring,
         });
-        judge.require(e < 2.0 * circle, || {
+        checks.require(e < 2.0 * circle, || {
             DesignError::HoleNeverCrossesPitchCircle {
                 ratio: e / (2.0 * circle),
             }
         });
-        judge.require(bore < diameter, || DesignError::PinBoreTooLarge {
+        checks.require(bore < diameter, || DesignError::PinBoreTooLarge {
             bore,
             diameter,
         });
@@ -205,12 +214,12 @@ impl Geometry {
         let between = 2.0 * circle * inputs.half_pitch_sine() - hole;
         let outer = rim - circle - 0.5 * hole;
         let inner = circle - 0.5 * hole - hub;
-        judge.require(between > 0.0, || DesignError::HolesOverlap { web: between });
-        judge.require(outer > 0.0, || DesignError::HoleBreaksRim { web: outer });
-        judge.require(inner > 0.0, || DesignError::HoleBreaksBore { web: inner });
+        checks.require(between > 0.0, || DesignError::HolesOverlap { web: between });
+        checks.require(outer > 0.0, || DesignError::HoleBreaksRim { web: outer });
+        checks.require(inner > 0.0, || DesignError::HoleBreaksBore { web: inner });
         let flange = inputs.flange_diameter();
         let beyond = (flange > 2.0 * circle) & (flange <= f64::MAX);
-        judge.require(!beyond, || DesignError::FlangeCutsPinCircle {
+        checks.require(!beyond, || DesignError::FlangeCutsPinCircle {
             flange_radius: 0.5 * flange,
             pin_circle_radius: circle,
         });
@@ -224,8 +233,8 @@ impl Geometry {
 
 impl Shaft {
     /// The scalar inputs this stage reads; it reads every segment's too. Computed by
-    /// [`crate::shaft_plan::ShaftPlan`].
-    pub const INPUTS: [Input; 3] = [
+    /// [`crate::kernel::shaft_plan::ShaftPlan`].
+    pub(crate) const INPUTS: [Input; 3] = [
         Input::YoungsModulus,
         Input::PoissonRatio,
         Input::KeywayCoefficient,
@@ -234,7 +243,7 @@ impl Shaft {
 
 impl PinBending {
     /// The inputs this stage reads.
-    pub const INPUTS: [Input; 6] = [
+    pub(crate) const INPUTS: [Input; 6] = [
         Input::YoungsModulus,
         Input::PoissonRatio,
         Input::OutputPinDiameter,
@@ -245,13 +254,13 @@ impl PinBending {
 
     /// Checks and computes.
     #[inline(always)]
-    pub fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
+    pub(crate) fn of(inputs: &impl Variant, checks: &mut impl Checks) -> Self {
         let pin = Pin {
             diameter: inputs.get(Input::OutputPinDiameter),
             bore: inputs.get(Input::OutputPinBore),
             length: inputs.get(Input::OutputPinLength),
         };
-        pin.require(judge);
+        pin.require(checks);
         let flexibility = pin.flexibility(
             inputs.get(Input::YoungsModulus),
             inputs.get(Input::PoissonRatio),
@@ -267,7 +276,7 @@ impl PinBending {
 
 impl Rating {
     /// The inputs this stage reads.
-    pub const INPUTS: [Input; 6] = [
+    pub(crate) const INPUTS: [Input; 6] = [
         Input::InputPower,
         Input::InputSpeed,
         Input::OutputTorque,
@@ -278,19 +287,23 @@ impl Rating {
 
     /// Computes. `needs_stiffness`: there is no shaft to compute it from.
     #[inline(always)]
-    pub fn of(inputs: &impl Variant, needs_stiffness: bool, judge: &mut impl Judge) -> Self {
-        let power = judge.positive("input_power", inputs.get(Input::InputPower));
-        let speed = judge.positive("input_speed", inputs.get(Input::InputSpeed));
+    pub(crate) fn of(
+        inputs: &impl Variant,
+        needs_stiffness: bool,
+        checks: &mut impl Checks,
+    ) -> Self {
+        let power = checks.positive("input_power", inputs.get(Input::InputPower));
+        let speed = checks.positive("input_speed", inputs.get(Input::InputSpeed));
         let inertia = inputs.get(Input::InputInertia);
         let stiffness = inputs.get(Input::OutputStiffness);
         let given = if inertia.is_nan() { 1.0 } else { inertia };
-        judge.positive("input_inertia", given);
+        checks.positive("input_inertia", given);
         let is_given = needs_stiffness | !stiffness.is_nan();
-        judge.positive("output_stiffness", if is_given { stiffness } else { 1.0 });
+        checks.positive("output_stiffness", if is_given { stiffness } else { 1.0 });
         Self {
             nominal_torque: power / speed,
-            output_torque: judge.positive("output_torque", inputs.get(Input::OutputTorque)),
-            free_play_deg: judge.non_negative("free_play", inputs.get(Input::FreePlay)),
+            output_torque: checks.positive("output_torque", inputs.get(Input::OutputTorque)),
+            free_play_deg: checks.non_negative("free_play", inputs.get(Input::FreePlay)),
             inertia,
             given_compliance: 1.0 / stiffness,
         }

@@ -3,11 +3,12 @@
 //! Angles in this file are in turns (1 turn = 2 pi rad): an eighth of a turn is then a binary
 //! number and the ideal map comes out exact.
 
-use crate::arrangement::{Arrangement, Counts, TIE, first_hole, fold, reduced_clocking};
-use crate::rounding::floor;
-
-/// Most output pins a design may have.
-pub const MAX_PINS: usize = 64;
+use crate::model::arrangement::{
+    Arrangement, Counts, MAX_PINS, TIE, first_hole, fold, reduced_clocking,
+};
+use crate::model::error::DesignError;
+use crate::model::published_map::{counts_by_walking, windows};
+use crate::model::rounding::floor;
 
 /// Rule by which a hole-pin contact counts as active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,23 +84,98 @@ pub struct Sector {
     pub active: u32,
 }
 
-/// An arrangement of oversized holes and pins, checked by the caller.
+/// An arrangement of oversized holes and pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PinMap {
-    /// Reduction ratio i.
-    pub ratio: f64,
-    /// Discs, equally phased.
-    pub discs: u32,
-    /// Output pins N_OP.
-    pub pins: u32,
-    /// delta = asin(e / (2 R_OP)) (turns).
-    pub delta: f64,
-    /// Clocking of the hole pattern from the position symmetric about ring pin 0 (turns): hole j
-    /// stands at `clocking + (j + 1/2) / N_OP`.
-    pub clocking: f64,
+    ratio: f64,
+    discs: u32,
+    pins: u32,
+    delta: f64,
+    clocking: f64,
 }
 
 impl PinMap {
+    /// The arrangement of `pins` holes on each of `discs` equally phased discs.
+    ///
+    /// `delta` is asin(e / (2 R_OP)) (turns), `clocking` the turn of the hole pattern from the
+    /// position symmetric about ring pin 0 (turns): hole j stands at `clocking + (j + 1/2) / N_OP`.
+    ///
+    /// # Errors
+    /// [`DesignError`] for a ratio below 3, other than 1 to 4 discs or 3 to 64 pins, a `delta`
+    /// outside 0 to a quarter turn, or what is not a number.
+    pub fn new(
+        ratio: f64,
+        discs: u32,
+        pins: u32,
+        delta: f64,
+        clocking: f64,
+    ) -> Result<Self, DesignError> {
+        if ratio.is_nan() || ratio < 3.0 {
+            return Err(DesignError::RatioOutOfRange { ratio });
+        }
+        if !(1..=4).contains(&discs) {
+            let discs = f64::from(discs);
+            return Err(DesignError::DiscCountOutOfRange { discs });
+        }
+        if !(3..=MAX_PINS as u32).contains(&pins) {
+            let pins = f64::from(pins);
+            return Err(DesignError::PinCountOutOfRange { pins });
+        }
+        for (parameter, value) in [("delta", delta), ("hole_clocking", clocking)] {
+            if !value.is_finite() {
+                return Err(DesignError::NonFinite { parameter });
+            }
+        }
+        if delta < 0.0 {
+            let parameter = "delta";
+            return Err(DesignError::Negative {
+                parameter,
+                value: delta,
+            });
+        }
+        if delta >= 0.25 {
+            let ratio = (delta * std::f64::consts::TAU).sin();
+            return Err(DesignError::HoleNeverCrossesPitchCircle { ratio });
+        }
+        Ok(Self {
+            ratio,
+            discs,
+            pins,
+            delta,
+            clocking,
+        })
+    }
+
+    /// Reduction ratio i.
+    #[must_use]
+    pub const fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// Number of discs.
+    #[must_use]
+    pub const fn discs(&self) -> u32 {
+        self.discs
+    }
+
+    /// Number of output pins N_OP.
+    #[must_use]
+    pub const fn pins(&self) -> u32 {
+        self.pins
+    }
+
+    /// delta = asin(e / (2 R_OP)) (turns).
+    #[must_use]
+    pub const fn delta(&self) -> f64 {
+        self.delta
+    }
+
+    /// Clocking of the hole pattern (turns).
+    #[must_use]
+    pub const fn clocking(&self) -> f64 {
+        self.clocking
+    }
+
     /// The same with real numbers, the clocking reduced.
     pub(crate) fn arrangement(&self) -> Arrangement {
         let pins = f64::from(self.pins);
@@ -131,6 +207,20 @@ impl PinMap {
         self.arrangement().inside().into()
     }
 
+    /// Counts by the criterion `published-map`, a reconstruction that matches the published map
+    /// and not the authors' own rule.
+    ///
+    /// Hole angles are reduced to (-180, 180] deg; a hole at or below zero belongs to the left
+    /// half. A left hole's window is `[phi + 90 + delta, phi + 270 - delta] i / (i + 1)`; its
+    /// start is clipped at 0, its end at 180 except for the hole of that half nearest ring pin 0
+    /// (which, at a low ratio, opens a second time before the turn ends). The right half follows
+    /// the same rule on its own holes and is then mirrored, theta -> 360 - theta. One disc's
+    /// count is multiplied by the number of discs.
+    #[must_use]
+    pub fn published_map(&self) -> ActiveCount {
+        published_counts(&self.arrangement()).into()
+    }
+
     /// Counts by `statics`: the hole pushes its pin in the sense of the torque.
     #[must_use]
     pub fn statics(&self) -> ActiveCount {
@@ -158,11 +248,8 @@ impl PinMap {
             };
         }
         let half_swing = 0.25 * (1.0 / (std::f64::consts::PI / m).cos() - 1.0);
-        let travel = 1.0 + 1.0 / self.ratio;
-        let origin = self.first_hole();
-        let total = odd_integral((travel - origin) * m, m) - odd_integral(-origin * m, m);
         Participation {
-            mean: share * total / (m * travel),
+            mean: mean_participation(&self.arrangement()),
             min: share * (0.25 * m - half_swing),
             max: share * (0.25 * m + half_swing),
         }
@@ -177,8 +264,7 @@ impl PinMap {
             _ => sectors.push(Sector { start, end, active }),
         };
         match criterion {
-            Criterion::PublishedMap => self
-                .published_windows()
+            Criterion::PublishedMap => windows(&self.arrangement())
                 .for_each_sector(|start, end, count| add(start, end, count * self.discs)),
             Criterion::Inside => {
                 self.equal_window_sectors(0.25 + self.delta, 0.75 - self.delta, add);
@@ -234,6 +320,26 @@ impl PinMap {
     }
 }
 
+/// Counts by `published-map`, in closed form where it holds.
+pub(crate) fn published_counts(map: &Arrangement) -> Counts {
+    let (counts, holds) = map.published_map();
+    if holds {
+        counts
+    } else {
+        counts_by_walking(map)
+    }
+}
+
+/// Mean participation by statics; `first_hole` in pitches.
+pub(crate) fn mean_participation(map: &Arrangement) -> f64 {
+    let lattice = map.lattice();
+    let travel = 1.0 + 1.0 / map.ratio;
+    let origin = map.first_hole / map.pins;
+    let total = odd_integral((travel - origin) * lattice, lattice)
+        - odd_integral(-origin * lattice, lattice);
+    map.fold / map.pins * total / (lattice * travel)
+}
+
 /// Integral from 0 to `y` (in lattice steps) of the sum of sin^2 over the loaded half of an odd
 /// lattice of `m` points.
 #[inline]
@@ -257,125 +363,4 @@ fn odd_integral(y: f64, m: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::{assert_abs_diff_eq, assert_relative_eq};
-
-    /// e -> 0, no spin, symmetric clocking.
-    const IDEAL: PinMap = PinMap {
-        ratio: 1e30,
-        discs: 2,
-        pins: 8,
-        delta: 0.0,
-        clocking: 0.0,
-    };
-
-    #[test]
-    fn the_ideal_map_is_the_published_one_exactly() {
-        let count = IDEAL.published_map();
-        assert_eq!(
-            count,
-            ActiveCount {
-                mean: 6.75,
-                min: 4,
-                max: 8
-            }
-        );
-        assert_eq!(IDEAL.efficiency(count.mean), 0.84375);
-        let at = |turn: f64| {
-            let turn = turn.rem_euclid(1.0);
-            let inside = |s: &&Sector| s.start <= turn && turn < s.end;
-            IDEAL
-                .sectors(Criterion::PublishedMap)
-                .iter()
-                .find(inside)
-                .map(|s| s.active)
-        };
-        let centres: Vec<_> = (0..8).map(|k| at(f64::from(k) / 8.0 + 1e-6)).collect();
-        assert_eq!(centres, [4, 6, 8, 8, 6, 8, 8, 6].map(Some));
-    }
-
-    #[test]
-    fn with_its_own_spin_and_clocking_the_mean_falls_by_a_percent() {
-        let delta = (0.0125_f64 / 2.0).asin() / std::f64::consts::TAU;
-        let clocking = 66.0 / 360.0 * 88.0 / 87.0 - 0.1875 - delta;
-        let map = PinMap {
-            ratio: 87.0,
-            delta,
-            clocking,
-            ..IDEAL
-        };
-        assert_relative_eq!(
-            map.first_hole_window().0 * 360.0,
-            66.0,
-            max_relative = 1e-12
-        );
-        assert_abs_diff_eq!(map.published_map().mean, 6.676, epsilon = 5e-4);
-    }
-
-    #[test]
-    fn statics_shares_agree_with_a_direct_sum() {
-        for (pins, discs) in [(3, 1), (5, 3), (7, 1), (8, 1), (9, 2), (9, 3), (64, 4)] {
-            let map = PinMap {
-                ratio: 11.0,
-                discs,
-                pins,
-                delta: 0.01,
-                clocking: 0.013,
-            };
-            let steps = 200_000;
-            let (mut sum, mut low, mut high) = (0.0, f64::INFINITY, 0.0_f64);
-            for k in 0..steps {
-                let x = (f64::from(k) + 0.5) / f64::from(steps) * (1.0 + 1.0 / map.ratio);
-                let mut total = 0.0;
-                for d in 0..discs {
-                    for j in 0..pins {
-                        let phi = map.clocking + (f64::from(j) + 0.5) / f64::from(pins);
-                        let psi = x + f64::from(d) / f64::from(discs) - phi;
-                        total += (psi * std::f64::consts::TAU).sin().max(0.0).powi(2);
-                    }
-                }
-                let p = total / f64::from(pins);
-                sum += p;
-                low = low.min(p);
-                high = high.max(p);
-            }
-            let p = map.participation();
-            assert_abs_diff_eq!(p.mean, sum / f64::from(steps), epsilon = 1e-7);
-            assert_abs_diff_eq!(p.min, low, epsilon = 1e-7);
-            assert_abs_diff_eq!(p.max, high, epsilon = 1e-7);
-        }
-    }
-
-    #[test]
-    fn sectors_cover_the_turn_and_average_to_the_mean() {
-        for criterion in Criterion::ALL {
-            for (pins, discs, ratio) in [(8, 2, 87.0), (9, 2, 3.0), (3, 4, 5.0), (64, 3, 299.0)] {
-                let map = PinMap {
-                    ratio,
-                    discs,
-                    pins,
-                    delta: 0.004,
-                    clocking: -0.003,
-                };
-                let sectors = map.sectors(criterion);
-                let mut at = 0.0;
-                let mut mean = 0.0;
-                for s in &sectors {
-                    assert_abs_diff_eq!(s.start, at, epsilon = 1e-11);
-                    mean += (s.end - s.start) * f64::from(s.active);
-                    at = s.end;
-                }
-                assert_abs_diff_eq!(at, 1.0, epsilon = 1e-11);
-                let count = match criterion {
-                    Criterion::PublishedMap => map.published_map(),
-                    Criterion::Inside => map.inside(),
-                    Criterion::Statics => map.statics(),
-                };
-                assert_abs_diff_eq!(mean, count.mean, epsilon = 1e-9);
-                assert_eq!(sectors.iter().map(|s| s.active).min(), Some(count.min));
-                assert_eq!(sectors.iter().map(|s| s.active).max(), Some(count.max));
-            }
-        }
-    }
-}
+mod tests;

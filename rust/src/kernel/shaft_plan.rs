@@ -1,16 +1,17 @@
 //! What of the shaft does not vary in a study, computed once.
 
-use crate::inputs::{Input, Inputs, SEGMENT_FIELDS, segment_input};
-use crate::judge::{Judge, judged};
-use crate::lanes::{BLOCK, InputLanes, Lanes, Mask, Variant, for_each_lane};
-use crate::shaft::{Segment, SegmentKind, shaft_scale, shoulder};
+use crate::kernel::lanes::{BLOCK, InputLanes, Lanes, Mask, Variant, for_each_lane};
+use crate::kernel::packed::Inputs;
+use crate::model::checks::{Checks, checked};
+use crate::model::inputs::{Input, SEGMENT_FIELDS, segment_input};
+use crate::model::shaft::{Segment, SegmentKind, shaft_scale, shoulder};
 
 /// A shaft's segments, with what of Eq. (4) is the same for every variant.
 ///
 /// Sums run over the same terms in the same order whatever is known: the bits do not depend on
 /// what varies.
 #[derive(Debug, Clone)]
-pub struct ShaftPlan {
+pub(crate) struct ShaftPlan {
     segments: Vec<SegmentPlan>,
     /// The coefficient of the keyways, unless it varies or is refused.
     coefficient: Option<f64>,
@@ -30,8 +31,11 @@ const DIAMETER: usize = 0;
 
 impl ShaftPlan {
     /// The plan of a study whose unvaried inputs are `base`.
-    #[must_use]
-    pub fn new(kinds: &[SegmentKind], base: &Inputs, varies: impl Fn(usize) -> bool) -> Self {
+    pub(crate) fn new(
+        kinds: &[SegmentKind],
+        base: &Inputs,
+        varies: impl Fn(usize) -> bool,
+    ) -> Self {
         let scalar_varies = |input: Input| varies(input as usize);
         let known = |open: bool, value: Option<f64>| value.filter(|_| !open);
         let coefficient = base.get(Input::KeywayCoefficient);
@@ -42,8 +46,8 @@ impl ShaftPlan {
             let segment = segment(*kind, base.segments()[k]);
             let field_varies = |field| varies(segment_input(k, field));
             let any_varies = (0..SEGMENT_FIELDS.len()).any(field_varies) || coefficient_varies;
-            let factor = judged(|judge| segment.factor(coefficient, judge)).ok();
-            let shoulder = judged(|judge| shoulder(before.0, segment.diameter, judge)).ok();
+            let factor = checked(|checks| segment.factor(coefficient, checks)).ok();
+            let shoulder = checked(|checks| shoulder(before.0, segment.diameter, checks)).ok();
             segments.push(SegmentPlan {
                 kind: *kind,
                 factor: known(any_varies, factor),
@@ -56,8 +60,9 @@ impl ShaftPlan {
             first.shoulder = Some(0.0);
         }
         let (modulus, poisson) = (Input::YoungsModulus, Input::PoissonRatio);
-        let scale = judged(|judge| shaft_scale(base.get(modulus), base.get(poisson), judge)).ok();
-        let checked = judged(|judge| judge.non_negative("keyway_coefficient", coefficient)).ok();
+        let scale =
+            checked(|checks| shaft_scale(base.get(modulus), base.get(poisson), checks)).ok();
+        let checked = checked(|checks| checks.non_negative("keyway_coefficient", coefficient)).ok();
         Self {
             segments,
             coefficient: known(coefficient_varies, checked),
@@ -66,8 +71,7 @@ impl ShaftPlan {
     }
 
     /// A plan in which nothing is known.
-    #[must_use]
-    pub fn open(kinds: &[SegmentKind]) -> Self {
+    pub(crate) fn open(kinds: &[SegmentKind]) -> Self {
         let open = |kind: &SegmentKind| SegmentPlan {
             kind: *kind,
             factor: None,
@@ -81,8 +85,7 @@ impl ShaftPlan {
     }
 
     /// True for a drive that gives its stiffness instead of a shaft.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
+    pub(crate) const fn is_empty(&self) -> bool {
         self.segments.is_empty()
     }
 
@@ -90,20 +93,20 @@ impl ShaftPlan {
     ///
     /// Requires what its segments require, on the way from the free end to the flange.
     #[inline]
-    pub fn compliance(&self, inputs: &Inputs, judge: &mut impl Judge) -> f64 {
-        let scale = self.scale.unwrap_or_else(|| scale(inputs, judge));
+    pub(crate) fn compliance(&self, inputs: &Inputs, checks: &mut impl Checks) -> f64 {
+        let scale = self.scale.unwrap_or_else(|| scale(inputs, checks));
         let coefficient = self
             .coefficient
-            .unwrap_or_else(|| coefficient(inputs, judge));
+            .unwrap_or_else(|| coefficient(inputs, checks));
         let (mut sum, mut before) = (0.0, f64::NAN);
         for (plan, fields) in self.segments.iter().zip(inputs.segments()) {
             let segment = segment(plan.kind, *fields);
             let factor = plan
                 .factor
-                .unwrap_or_else(|| segment.factor(coefficient, judge));
+                .unwrap_or_else(|| segment.factor(coefficient, checks));
             let shoulder = plan
                 .shoulder
-                .unwrap_or_else(|| shoulder(before, segment.diameter, judge));
+                .unwrap_or_else(|| shoulder(before, segment.diameter, checks));
             sum += factor + shoulder;
             before = segment.flange_diameter();
         }
@@ -112,10 +115,10 @@ impl ShaftPlan {
 
     /// [`ShaftPlan::compliance`] of a block of variants.
     #[inline(always)]
-    pub fn compliances(&self, inputs: &InputLanes, mask: &mut Mask, out: &mut Lanes) {
+    pub(crate) fn compliances(&self, inputs: &InputLanes, mask: &mut Mask, out: &mut Lanes) {
         let mut sum = [0.0; BLOCK];
         if self.coefficient.is_none() {
-            for_each_lane!(inputs, mask, |_row, lane, judge| coefficient(lane, judge));
+            for_each_lane!(inputs, mask, |_row, lane, checks| coefficient(lane, checks));
         }
         for (k, plan) in self.segments.iter().enumerate() {
             // One loop a case, so that none chooses within.
@@ -144,9 +147,9 @@ impl ShaftPlan {
             match (plan.shoulder, k.checked_sub(1)) {
                 (None, Some(last)) => {
                     let before = &inputs.segments()[last][self.segments[last].kind.flange_field()];
-                    for_each_lane!(inputs, mask, |row, _lane, judge| {
+                    for_each_lane!(inputs, mask, |row, _lane, checks| {
                         sum[row] +=
-                            factors[row] + shoulder(before[row], fields[DIAMETER][row], judge);
+                            factors[row] + shoulder(before[row], fields[DIAMETER][row], checks);
                     });
                 }
                 (known, _) => {
@@ -162,8 +165,8 @@ impl ShaftPlan {
                 *out = self.of_sum(scale, *sum);
             }
         } else {
-            for_each_lane!(inputs, mask, |row, lane, judge| {
-                out[row] = self.of_sum(scale(lane, judge), sum[row]);
+            for_each_lane!(inputs, mask, |row, lane, checks| {
+                out[row] = self.of_sum(scale(lane, checks), sum[row]);
             });
         }
     }
@@ -186,22 +189,22 @@ fn find_factors(
     mask: &mut Mask,
     factors: &mut Lanes,
 ) {
-    for_each_lane!(inputs, mask, |row, lane, judge| {
+    for_each_lane!(inputs, mask, |row, lane, checks| {
         let [a, b, c, d] = fields;
         let segment = segment(kind, [a[row], b[row], c[row], d[row]]);
-        factors[row] = segment.factor(lane.get(Input::KeywayCoefficient), judge);
+        factors[row] = segment.factor(lane.get(Input::KeywayCoefficient), checks);
     });
 }
 
 #[inline(always)]
-fn scale(inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
+fn scale(inputs: &impl Variant, checks: &mut impl Checks) -> f64 {
     let (modulus, poisson) = (Input::YoungsModulus, Input::PoissonRatio);
-    shaft_scale(inputs.get(modulus), inputs.get(poisson), judge)
+    shaft_scale(inputs.get(modulus), inputs.get(poisson), checks)
 }
 
 #[inline(always)]
-fn coefficient(inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
-    judge.non_negative("keyway_coefficient", inputs.get(Input::KeywayCoefficient))
+fn coefficient(inputs: &impl Variant, checks: &mut impl Checks) -> f64 {
+    checks.non_negative("keyway_coefficient", inputs.get(Input::KeywayCoefficient))
 }
 
 #[inline(always)]

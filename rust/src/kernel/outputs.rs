@@ -1,17 +1,17 @@
 //! The result columns of a sweep: their names and how each follows from the stages.
 
-use crate::compliance::{
-    natural_frequency, output_compliance, output_compliance_statics, reflected, slope_deg,
-    twist_deg,
-};
-use crate::inputs::NM_PER_RAD_OF_NM_PER_ARCMIN;
-use crate::lanes::{BLOCK, Lanes};
-use crate::map_stage::{Map, MapBlock};
-use crate::pin::{force_per_pin, torque_per_pin};
-use crate::stages::{
+use crate::kernel::lanes::{BLOCK, Lanes};
+use crate::kernel::map_stage::{Map, MapBlock};
+use crate::kernel::stages::{
     GeometryBlock, PinBending, PinBendingBlock, Rating, RatingBlock, Shaft, ShaftBlock, Stage,
     stage,
 };
+use crate::model::compliance::{
+    natural_frequency, output_compliance, output_compliance_statics, reflected, slope_deg,
+    twist_deg,
+};
+use crate::model::inputs::NM_PER_RAD_OF_NM_PER_ARCMIN;
+use crate::model::pin::{force_per_pin, torque_per_pin};
 
 /// A result column; the twists are numbered by the study's list of loads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,7 +123,9 @@ impl Output {
             Output::ForcePerPin => "force_per_pin_n",
             Output::PinForceMax => "pin_force_max_n",
             Output::PinBendingStress => "pin_bending_stress_mpa",
-            Output::Twist(k) => return twist_name(loads[k]),
+            Output::Twist(k) => {
+                return twist_name(loads.get(k).copied().unwrap_or(f64::NAN));
+            }
         };
         name.to_owned()
     }
@@ -149,7 +151,7 @@ impl Output {
 
     /// True when the figures of every criterion are needed for it.
     #[must_use]
-    pub const fn needs_every_criterion(self) -> bool {
+    pub(crate) const fn needs_every_criterion(self) -> bool {
         matches!(
             self,
             Output::TorqueTransferEfficiencyInside
@@ -161,13 +163,13 @@ impl Output {
 
     /// True when the largest pin force by statics is needed for it.
     #[must_use]
-    pub const fn needs_pin_force(self) -> bool {
+    pub(crate) const fn needs_pin_force(self) -> bool {
         matches!(self, Output::PinForceMax | Output::PinBendingStress)
     }
 
     /// True when nothing of the active-pin map is needed for it.
     #[must_use]
-    pub const fn is_free_of_map(self) -> bool {
+    pub(crate) const fn is_free_of_map(self) -> bool {
         matches!(
             self,
             Output::HoleDiameter
@@ -183,7 +185,10 @@ impl Output {
 /// `twist_4p5tn_deg` for 4.5 times the nominal torque, `twist_minus_4p5tn_deg` for -4.5 times.
 #[must_use]
 pub fn twist_name(load: f64) -> String {
-    format!("twist_{}tn_deg", format!("{load}").replace('.', "p").replace('-', "minus_"))
+    format!(
+        "twist_{}tn_deg",
+        format!("{load}").replace('.', "p").replace('-', "minus_")
+    )
 }
 
 stage! {
@@ -207,8 +212,7 @@ stage! {
 impl Assembly {
     /// Assembles one variant.
     #[inline(always)]
-    #[must_use]
-    pub fn of(map: &Map, shaft: &Shaft, pin: &PinBending, rating: &Rating) -> Self {
+    pub(crate) fn of(map: &Map, shaft: &Shaft, pin: &PinBending, rating: &Rating) -> Self {
         let is_given = !rating.given_compliance.is_nan();
         let computed = output_compliance(shaft.compliance, pin.compliance, map.pins_in_twist);
         let compliance = if is_given {
@@ -230,7 +234,7 @@ impl Assembly {
 
 /// The stages of a block of variants.
 #[derive(Debug, Clone, Copy)]
-pub struct Block<'a> {
+pub(crate) struct Block<'a> {
     /// Discs, holes and pins.
     pub geometry: &'a GeometryBlock,
     /// Active pins.
@@ -246,7 +250,7 @@ pub struct Block<'a> {
 impl Block<'_> {
     /// Assembles every variant.
     #[inline(always)]
-    pub fn assemble(&self, out: &mut AssemblyBlock) {
+    pub(crate) fn assemble(&self, out: &mut AssemblyBlock) {
         for row in 0..BLOCK {
             let map = Map::get(self.map, row);
             let shaft = Shaft::get(self.shaft, row);
@@ -258,7 +262,13 @@ impl Block<'_> {
 
     /// Writes one column, in its own unit, for the first variants of the block.
     #[inline(always)]
-    pub fn write(&self, assembly: &AssemblyBlock, output: Output, loads: &[f64], out: &mut [f64]) {
+    pub(crate) fn write(
+        &self,
+        assembly: &AssemblyBlock,
+        output: Output,
+        loads: &[f64],
+        out: &mut [f64],
+    ) {
         let Block {
             geometry,
             map,

@@ -1,13 +1,13 @@
 //! Counts of active pins in closed form, without branches: what a block of variants is computed by.
 //!
-//! Angles are in turns, as in [`crate::active_pins`], or in pitches of the pins.
+//! Angles are in turns (1 turn = 2 pi rad) or in pitches of the pins.
 
-use crate::active_pins::ActiveCount;
-use crate::rounding::{ceil, floor, larger, nearest, smaller};
-use crate::stages::stage;
+use crate::model::rounding::{ceil, floor, larger, nearest, smaller};
 
 /// Angles closer than this (turns) count as equal: sectors shorter than it are rounding.
 pub(crate) const TIE: f64 = 1e-12;
+/// Most output pins a design may have.
+pub const MAX_PINS: usize = 64;
 /// Whole numbers of pitches closer than this to a tie are left to the walk over all windows.
 const NEAR_TIE: f64 = 1e-9;
 
@@ -28,26 +28,15 @@ pub(crate) struct Arrangement {
     pub fold: f64,
 }
 
-stage! {
-    /// Active contacts, all discs together, over one turn of the mesh zone.
-    Counts, CountsBlock {
-        /// Mean.
-        mean,
-        /// Smallest.
-        min,
-        /// Largest.
-        max,
-    }
-}
-
-impl From<ActiveCount> for Counts {
-    fn from(count: ActiveCount) -> Self {
-        Self {
-            mean: count.mean,
-            min: f64::from(count.min),
-            max: f64::from(count.max),
-        }
-    }
+/// Active contacts, all discs together, over one turn of the mesh zone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Counts {
+    /// Mean.
+    pub mean: f64,
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
 }
 
 impl Counts {

@@ -1,17 +1,18 @@
-//! The stages of a block of variants: looked up where they are known, computed a block at a time
-//! elsewhere, and once more, alone, for the few variants that a block cannot settle.
+//! The stages of a block of variants: looked up where they are computed beforehand, computed a block
+//! at a time elsewhere, and once more, alone, for the few variants whose checks fail in the block.
 
-use crate::error::DesignError;
-use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
-use crate::judge::judged;
-use crate::known::{FiledBlock, Known};
-use crate::lanes::{BLOCK, InputLanes, Mask, for_each_lane};
-use crate::map_stage::{Criteria, Map, MapParts};
-use crate::outputs::{Assembly, AssemblyBlock, Block, Output};
-use crate::shaft::SegmentKind;
-use crate::shaft_plan::ShaftPlan;
-use crate::space::{Rows, Space};
-use crate::stages::{Geometry, PinBending, Rating, Shaft, Stage};
+use crate::kernel::cache::{OutcomeBlock, Precomputed};
+use crate::kernel::lanes::{BLOCK, InputLanes, Mask, for_each_lane};
+use crate::kernel::map_stage::{Criteria, Map, MapParts};
+use crate::kernel::outputs::{Assembly, AssemblyBlock, Block, Output};
+use crate::kernel::packed::Inputs;
+use crate::kernel::shaft_plan::ShaftPlan;
+use crate::kernel::stages::{Geometry, PinBending, Rating, Shaft, Stage};
+use crate::model::checks::checked;
+use crate::model::error::DesignError;
+use crate::model::inputs::{Input, SCALARS, SEGMENT_FIELDS, factor};
+use crate::model::shaft::SegmentKind;
+use crate::sampling::{Rows, Space};
 
 /// What of the stages is needed.
 #[derive(Clone, Copy)]
@@ -23,14 +24,14 @@ pub(crate) struct Wanted {
     pub one_by_one: bool,
 }
 
-/// What of a study's stages is known before any variant.
+/// A study's stages, with what of them is computed before any variant.
 pub(crate) struct Stages {
-    geometry: Known<Geometry>,
-    map: Known<Map>,
-    shaft: Known<Shaft>,
-    pin: Known<PinBending>,
-    rating: Known<Rating>,
-    /// What of the shaft is known where the whole is not.
+    geometry: Precomputed<Geometry>,
+    map: Precomputed<Map>,
+    shaft: Precomputed<Shaft>,
+    pin: Precomputed<PinBending>,
+    rating: Precomputed<Rating>,
+    /// What of the shaft is computed beforehand where the whole is not.
     plan: ShaftPlan,
     /// Axes that a stage computed for every variant reads: number and input.
     open_axes: Vec<(usize, usize)>,
@@ -43,17 +44,17 @@ pub(crate) struct Scratch {
     inputs: InputLanes,
     /// The inputs of a variant looked at alone.
     alone: Inputs,
-    geometry: FiledBlock<Geometry>,
+    geometry: OutcomeBlock<Geometry>,
     map_parts: MapParts,
-    map: FiledBlock<Map>,
-    shaft: FiledBlock<Shaft>,
-    pin: FiledBlock<PinBending>,
-    rating: FiledBlock<Rating>,
+    map: OutcomeBlock<Map>,
+    shaft: OutcomeBlock<Shaft>,
+    pin: OutcomeBlock<PinBending>,
+    rating: OutcomeBlock<Rating>,
     assembly: Box<AssemblyBlock>,
 }
 
 impl Stages {
-    /// Computes what can be known before any variant.
+    /// Computes what can be computed before any variant.
     pub(crate) fn new(space: &Space, base: &Inputs, kinds: &[SegmentKind]) -> Self {
         let axes = space.axes();
         let of_inputs = |inputs: &[Input]| inputs.iter().map(|i| *i as usize).collect();
@@ -68,13 +69,13 @@ impl Stages {
         let plan = ShaftPlan::new(kinds, base, varies);
         let needs_stiffness = plan.is_empty();
         let mut stages = Stages {
-            geometry: Known::of(space, base, &geometry_inputs, &geometry),
-            map: Known::of(space, base, &map_inputs, &|inputs| {
+            geometry: Precomputed::of(space, base, &geometry_inputs, &geometry),
+            map: Precomputed::of(space, base, &map_inputs, &|inputs| {
                 map(inputs, Criteria::ALL)
             }),
-            shaft: Known::of(space, base, &shaft_inputs, &|inputs| shaft(inputs, &plan)),
-            pin: Known::of(space, base, &pin_inputs, &pin),
-            rating: Known::of(space, base, &rating_inputs, &|inputs| {
+            shaft: Precomputed::of(space, base, &shaft_inputs, &|inputs| shaft(inputs, &plan)),
+            pin: Precomputed::of(space, base, &pin_inputs, &pin),
+            rating: Precomputed::of(space, base, &rating_inputs, &|inputs| {
                 rating(inputs, needs_stiffness)
             }),
             open_axes: Vec::new(),
@@ -140,11 +141,11 @@ impl Stages {
             self.compute(wanted, scratch, len);
         }
         Block {
-            geometry: &scratch.geometry.outcomes,
-            map: &scratch.map.outcomes,
-            shaft: &scratch.shaft.outcomes,
-            pin: &scratch.pin.outcomes,
-            rating: &scratch.rating.outcomes,
+            geometry: &scratch.geometry.values,
+            map: &scratch.map.values,
+            shaft: &scratch.shaft.values,
+            pin: &scratch.pin.values,
+            rating: &scratch.rating.values,
         }
         .assemble(&mut scratch.assembly);
         for (row, status) in status.iter_mut().enumerate() {
@@ -164,8 +165,8 @@ impl Stages {
         if self.geometry.is_open() {
             inputs.find_half_pitch_sines();
             let out = scratch.geometry.open();
-            for_each_lane!(inputs, mask, |row, lane, judge| {
-                Geometry::of(lane, judge).put(out, row);
+            for_each_lane!(inputs, mask, |row, lane, checks| {
+                Geometry::of(lane, checks).put(out, row);
             });
         }
         if self.map.is_open() {
@@ -180,15 +181,15 @@ impl Stages {
         }
         if self.pin.is_open() {
             let out = scratch.pin.open();
-            for_each_lane!(inputs, mask, |row, lane, judge| {
-                PinBending::of(lane, judge).put(out, row);
+            for_each_lane!(inputs, mask, |row, lane, checks| {
+                PinBending::of(lane, checks).put(out, row);
             });
         }
         if self.rating.is_open() {
             let out = scratch.rating.open();
             let needs_stiffness = self.plan.is_empty();
-            for_each_lane!(inputs, mask, |row, lane, judge| {
-                Rating::of(lane, needs_stiffness, judge).put(out, row);
+            for_each_lane!(inputs, mask, |row, lane, checks| {
+                Rating::of(lane, needs_stiffness, checks).put(out, row);
             });
         }
         if mask[..len].iter().fold(1, |all, holds| all & holds) == 0 {
@@ -234,11 +235,11 @@ impl Scratch {
     #[inline(always)]
     pub(crate) fn write(&self, output: Output, loads: &[f64], out: &mut [f64]) {
         Block {
-            geometry: &self.geometry.outcomes,
-            map: &self.map.outcomes,
-            shaft: &self.shaft.outcomes,
-            pin: &self.pin.outcomes,
-            rating: &self.rating.outcomes,
+            geometry: &self.geometry.values,
+            map: &self.map.values,
+            shaft: &self.shaft.values,
+            pin: &self.pin.values,
+            rating: &self.rating.values,
         }
         .write(&self.assembly, output, loads, out);
     }
@@ -254,23 +255,23 @@ fn criteria(wanted: Wanted, code: Option<f64>) -> Criteria {
 }
 
 fn geometry(inputs: &Inputs) -> Result<Geometry, DesignError> {
-    judged(|judge| Geometry::of(inputs, judge))
+    checked(|checks| Geometry::of(inputs, checks))
 }
 
 fn map(inputs: &Inputs, needed: Criteria) -> Result<Map, DesignError> {
-    judged(|judge| Map::of(inputs, needed, judge))
+    checked(|checks| Map::of(inputs, needed, checks))
 }
 
 fn shaft(inputs: &Inputs, plan: &ShaftPlan) -> Result<Shaft, DesignError> {
-    judged(|judge| plan.compliance(inputs, judge)).map(|compliance| Shaft { compliance })
+    checked(|checks| plan.compliance(inputs, checks)).map(|compliance| Shaft { compliance })
 }
 
 fn pin(inputs: &Inputs) -> Result<PinBending, DesignError> {
-    judged(|judge| PinBending::of(inputs, judge))
+    checked(|checks| PinBending::of(inputs, checks))
 }
 
 fn rating(inputs: &Inputs, needs_stiffness: bool) -> Result<Rating, DesignError> {
-    judged(|judge| Rating::of(inputs, needs_stiffness, judge))
+    checked(|checks| Rating::of(inputs, needs_stiffness, checks))
 }
 
 /// Why a design cannot be built: the first reason of its stages, in their order.

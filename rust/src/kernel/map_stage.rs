@@ -1,16 +1,26 @@
 //! The stage of the active pins: counts by each criterion that is needed, and what goes with them.
 
-use crate::active_pins::{Criterion, PinMap};
-use crate::arrangement::{
-    Arrangement, Counts, CountsBlock, first_hole, fold, reduced_clocking, statics_apply,
-};
-use crate::error::DesignError;
-use crate::hypotrochoid::crossing_angle;
-use crate::inputs::Input;
-use crate::judge::Judge;
-use crate::lanes::{BLOCK, InputLanes, Lanes, Mask, Variant, for_each_lane};
-use crate::pin_force::{factors, tabulated_factor};
-use crate::stages::{Stage, WholeNumbers, stage};
+use crate::kernel::lanes::{BLOCK, InputLanes, Lanes, Mask, Variant, for_each_lane};
+use crate::kernel::stages::{Stage, WholeNumbers, blocks_of, stage};
+use crate::model::active_pins::{Criterion, mean_participation, published_counts};
+use crate::model::checks::Checks;
+use crate::model::error::DesignError;
+use crate::model::hypotrochoid::crossing_angle;
+use crate::model::inputs::Input;
+use crate::model::pin_force::{factors, tabulated_factor};
+use crate::model::{Arrangement, Counts, first_hole, fold, reduced_clocking, statics_apply};
+
+blocks_of!(
+    Counts,
+    CountsBlock {
+        /// Mean.
+        mean,
+        /// Smallest.
+        min,
+        /// Largest.
+        max,
+    }
+);
 
 stage! {
     /// The active-pin map and what goes with its inputs alone.
@@ -38,7 +48,7 @@ stage! {
         /// i^2.
         ratio_squared,
         /// Largest pin force per output torque (1/m) at the worst position; see
-        /// [`crate::pin_force`].
+        /// [`crate::model::pin_force`].
         force_per_torque,
         /// One where the statics hold: at most two discs.
         statics_applicable,
@@ -47,7 +57,7 @@ stage! {
 
 /// Which criteria's figures are needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Criteria {
+pub(crate) struct Criteria {
     /// Those of `published-map`.
     pub published_map: bool,
     /// Those of `inside`.
@@ -62,7 +72,7 @@ pub struct Criteria {
 
 impl Criteria {
     /// All of them.
-    pub const ALL: Self = Self {
+    pub(crate) const ALL: Self = Self {
         published_map: true,
         inside: true,
         statics: true,
@@ -70,7 +80,7 @@ impl Criteria {
         pin_force: true,
     };
     /// None of them: only the checks.
-    pub const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         published_map: false,
         inside: false,
         statics: false,
@@ -80,8 +90,7 @@ impl Criteria {
     /// What the chosen criterion needs, of which this is the code, and what columns of every
     /// criterion and the pin force need if they are asked for.
     #[inline(always)]
-    #[must_use]
-    pub fn of(code: f64, columns: bool, pin_force: bool) -> Self {
+    pub(crate) fn of(code: f64, columns: bool, pin_force: bool) -> Self {
         let statics = code >= Criterion::Statics as u8 as f64;
         let published_map = code < Criterion::Inside as u8 as f64;
         Self {
@@ -133,18 +142,18 @@ impl MapParts {
 impl Angles {
     /// Checks all that the stage reads, and computes.
     #[inline(always)]
-    fn of(inputs: &impl Variant, judge: &mut impl Judge) -> Self {
-        let WholeNumbers { pins, .. } = WholeNumbers::of(inputs, judge);
+    fn of(inputs: &impl Variant, checks: &mut impl Checks) -> Self {
+        let WholeNumbers { pins, .. } = WholeNumbers::of(inputs, checks);
         let (e, circle) = (Input::Eccentricity, Input::OutputPinCircleRadius);
-        let angle = crossing_angle(inputs.get(e), inputs.get(circle), judge);
-        let clocking = judge.finite("hole_clocking", inputs.get(Input::HoleClocking));
-        let code = judge.finite("criterion", inputs.get(Input::Criterion));
-        judge.require((code >= 0.0) & (code < Criterion::ALL.len() as f64), || {
+        let angle = crossing_angle(inputs.get(e), inputs.get(circle), checks);
+        let clocking = checks.finite("hole_clocking", inputs.get(Input::HoleClocking));
+        let code = checks.finite("criterion", inputs.get(Input::Criterion));
+        checks.require((code >= 0.0) & (code < Criterion::ALL.len() as f64), || {
             DesignError::NonFinite {
                 parameter: "criterion",
             }
         });
-        let in_a_turn = judge.settle(clocking.abs() <= 1.0, clocking, || {
+        let in_a_turn = checks.value_or_else(clocking.abs() <= 1.0, clocking, || {
             reduced_clocking(clocking, pins)
         });
         Self {
@@ -166,35 +175,24 @@ impl Angles {
         }
     }
 
-    /// For what stands in where a closed form does not hold.
-    fn pin_map(&self, inputs: &impl Variant) -> PinMap {
-        PinMap {
-            ratio: inputs.get(Input::Ratio),
-            discs: inputs.get(Input::DiscCount) as u32,
-            pins: inputs.get(Input::OutputPinCount) as u32,
-            delta: self.delta,
-            clocking: inputs.get(Input::HoleClocking),
-        }
+    #[inline(always)]
+    fn published_map(&self, inputs: &impl Variant, checks: &mut impl Checks) -> Counts {
+        let map = self.arrangement(inputs);
+        let (counts, holds) = map.published_map();
+        checks.value_or_else(holds, counts, || published_counts(&map))
     }
 
     #[inline(always)]
-    fn published_map(&self, inputs: &impl Variant, judge: &mut impl Judge) -> Counts {
-        let (counts, holds) = self.arrangement(inputs).published_map();
-        judge.settle(holds, counts, || {
-            self.pin_map(inputs).published_map().into()
-        })
-    }
-
-    #[inline(always)]
-    fn participation(&self, inputs: &impl Variant, judge: &mut impl Judge) -> f64 {
-        let (even, holds) = self.arrangement(inputs).even_participation();
-        judge.settle(holds, even, || self.pin_map(inputs).participation().mean)
+    fn participation(&self, inputs: &impl Variant, checks: &mut impl Checks) -> f64 {
+        let map = self.arrangement(inputs);
+        let (even, holds) = map.even_participation();
+        checks.value_or_else(holds, even, || mean_participation(&map))
     }
 }
 
 impl Map {
     /// The inputs this stage reads.
-    pub const INPUTS: [Input; 7] = [
+    pub(crate) const INPUTS: [Input; 7] = [
         Input::Ratio,
         Input::DiscCount,
         Input::Eccentricity,
@@ -206,12 +204,12 @@ impl Map {
 
     /// Checks and computes; figures that go with a criterion that is not needed are NaN.
     #[inline]
-    pub fn of(inputs: &impl Variant, needed: Criteria, judge: &mut impl Judge) -> Self {
-        let angles = Angles::of(inputs, judge);
+    pub(crate) fn of(inputs: &impl Variant, needed: Criteria, checks: &mut impl Checks) -> Self {
+        let angles = Angles::of(inputs, checks);
         let (mut published_map, mut participation) = (Counts::NONE, f64::NAN);
         let (mut inside, mut statics) = (Counts::NONE, Counts::NONE);
         if needed.published_map {
-            published_map = angles.published_map(inputs, judge);
+            published_map = angles.published_map(inputs, checks);
         }
         if needed.inside {
             inside = angles.arrangement(inputs).inside();
@@ -220,7 +218,7 @@ impl Map {
             statics = angles.arrangement(inputs).statics();
         }
         if needed.participation {
-            participation = angles.participation(inputs, judge);
+            participation = angles.participation(inputs, checks);
         }
         let map = angles.arrangement(inputs);
         let force_factor = if needed.pin_force {
@@ -244,14 +242,14 @@ impl Map {
         mask: &mut Mask,
     ) {
         let angles = &mut *parts.angles;
-        for_each_lane!(inputs, mask, |row, lane, judge| {
-            Angles::of(lane, judge).put(angles, row);
+        for_each_lane!(inputs, mask, |row, lane, checks| {
+            Angles::of(lane, checks).put(angles, row);
         });
         if needed.published_map {
             let out = &mut *parts.published_map;
-            for_each_lane!(inputs, mask, |row, lane, judge| {
+            for_each_lane!(inputs, mask, |row, lane, checks| {
                 let angles = Angles::get(angles, row);
-                angles.published_map(lane, judge).put(out, row);
+                angles.published_map(lane, checks).put(out, row);
             });
         }
         if needed.inside {
@@ -270,8 +268,8 @@ impl Map {
         }
         if needed.participation {
             let out = &mut parts.participation;
-            for_each_lane!(inputs, mask, |row, lane, judge| {
-                out[row] = Angles::get(angles, row).participation(lane, judge);
+            for_each_lane!(inputs, mask, |row, lane, checks| {
+                out[row] = Angles::get(angles, row).participation(lane, checks);
             });
         }
         if needed.pin_force {

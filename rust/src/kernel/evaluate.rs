@@ -1,43 +1,19 @@
-//! A study's variants to columns of results, in parallel; the only rayon in the crate.
+//! A study's variants to columns of results, in parallel; the only rayon beside the tables.
 
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
-use thiserror::Error;
 
-use crate::active_pins::Criterion;
-use crate::blocks::{Scratch, Stages, Wanted, explained};
-use crate::error::{DesignError, Status};
-
-use crate::inputs::{Input, Inputs, SCALARS, SEGMENT_FIELDS, factor};
-use crate::lanes::{BLOCK, Wide, with_widest};
-use crate::outputs::Output;
-use crate::shaft::SegmentKind;
-use crate::space::{Rows, Space};
+use crate::kernel::blocks::{Scratch, Stages, Wanted};
+use crate::kernel::lanes::{BLOCK, Wide, with_widest};
+use crate::kernel::outputs::Output;
+use crate::kernel::study::{Limited, Study, StudyError};
+use crate::model::error::Status;
+use crate::model::inputs::factor;
+use crate::sampling::{Rows, Space};
 
 /// Variants a thread takes at a time.
 const TASK: usize = 32 * BLOCK;
-
-/// What a limit of a study looks at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Limited {
-    /// An input, by position.
-    Input(usize),
-    /// A result.
-    Output(Output),
-}
-
-/// A range that a variant must keep, in the column's own unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
-    /// The column.
-    pub column: Limited,
-    /// Least value.
-    pub min: f64,
-    /// Greatest value.
-    pub max: f64,
-}
 
 /// The columns of a stretch of variants. Refused variants have NaN in every one.
 #[derive(Debug, Clone, Default)]
@@ -48,52 +24,6 @@ pub struct Columns {
     pub any_refused: bool,
     /// One column an asked output.
     pub values: Vec<Vec<f64>>,
-}
-
-/// Why a study cannot be.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-pub enum StudyError {
-    /// A load is no number.
-    #[error("loads_tn: found {load}, expected finite numbers")]
-    LoadNotFinite {
-        /// The load found.
-        load: f64,
-    },
-    /// The base design lacks inputs, or has too many.
-    #[error("a design with this shaft has {expected} inputs, found {found}")]
-    InputCount {
-        /// How many there are to be.
-        expected: usize,
-        /// How many there are.
-        found: usize,
-    },
-    /// An axis or a limit is on an input that the design does not have.
-    #[error("no input number {input} in a design of {inputs} inputs")]
-    NoSuchInput {
-        /// Place of the input.
-        input: usize,
-        /// Inputs of the design.
-        inputs: usize,
-    },
-    /// A limit is on the twist at a load that the study does not have.
-    #[error("no load number {load} in a study of {loads} loads")]
-    NoSuchLoad {
-        /// Place of the load.
-        load: usize,
-        /// Loads of the study.
-        loads: usize,
-    },
-}
-
-/// The definition of a study, ready to evaluate.
-pub struct Study {
-    space: Space,
-    base: Inputs,
-    kinds: Vec<SegmentKind>,
-    loads: Vec<f64>,
-    limits: Vec<Limit>,
-    stages: OnceLock<Stages>,
-    evaluated: AtomicU64,
 }
 
 /// How variants are computed.
@@ -110,135 +40,44 @@ struct Task<'a> {
     values: Vec<&'a mut [f64]>,
 }
 
-impl std::fmt::Debug for Study {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Study")
-            .field("space", &self.space)
-            .field("base", &self.base)
-            .field("kinds", &self.kinds)
-            .field("loads", &self.loads)
-            .field("limits", &self.limits)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Study {
-    /// A study of a base design (core units, all inputs in order) varied over `space`.
+    /// Values of one axis for `len` variants, in the user's unit.
     ///
     /// # Errors
-    /// [`StudyError`] when `base` does not hold every input of a design with these segments, an axis
-    /// or a limit is on an input or a load beyond them, or a load is no number.
-    pub fn new(
-        space: Space,
-        base: Vec<f64>,
-        kinds: Vec<SegmentKind>,
-        loads: Vec<f64>,
-        limits: Vec<Limit>,
-    ) -> Result<Self, StudyError> {
-        let inputs = SCALARS + SEGMENT_FIELDS.len() * kinds.len();
-        if base.len() != inputs {
-            return Err(StudyError::InputCount {
-                expected: inputs,
-                found: base.len(),
-            });
-        }
-        let limited = limits.iter().filter_map(|limit| match limit.column {
-            Limited::Input(input) => Some(input),
-            Limited::Output(_) => None,
-        });
-        let mut named = space.axes().iter().map(|axis| axis.input).chain(limited);
-        if let Some(input) = named.find(|input| *input >= inputs) {
-            return Err(StudyError::NoSuchInput { input, inputs });
-        }
-        for limit in &limits {
-            if let Limited::Output(Output::Twist(load)) = limit.column
-                && load >= loads.len()
-            {
-                let loads = loads.len();
-                return Err(StudyError::NoSuchLoad { load, loads });
-            }
-        }
-        if let Some(load) = loads.iter().find(|load| !load.is_finite()) {
-            return Err(StudyError::LoadNotFinite { load: *load });
-        }
-        let base = Inputs::new(&base, &kinds);
-        let (stages, evaluated) = (OnceLock::new(), AtomicU64::new(0));
-        Ok(Self {
-            space,
-            base,
-            kinds,
-            loads,
-            limits,
-            stages,
-            evaluated,
-        })
-    }
-
-    /// Whether a column may be NaN for a variant that can be built: without an inertia or a shaft,
-    /// and what rests on statics for more than two discs.
-    #[must_use]
-    pub fn may_not_apply(&self, output: Output) -> bool {
-        let axes = self.space.axes();
-        let may_be = |input: Input, is: fn(f64) -> bool| {
-            let varies = axes.iter().any(|axis| axis.input == input as usize);
-            varies || is(self.base.get(input))
-        };
-        let beyond_statics = may_be(Input::DiscCount, |discs| discs > 2.0);
-        let by_statics = may_be(Input::Criterion, |code| {
-            code >= f64::from(Criterion::Statics as u8)
-        });
-        match output {
-            Output::ShaftCompliance => self.kinds.is_empty(),
-            Output::PinParticipationStatics | Output::OutputComplianceStatics => beyond_statics,
-            Output::NaturalFrequency | Output::NaturalFrequencyWithEfficiency => {
-                may_be(Input::InputInertia, f64::is_nan) || (beyond_statics && by_statics)
-            }
-            Output::OutputCompliance
-            | Output::ReflectedCompliance
-            | Output::ReflectedStiffness
-            | Output::OutputStiffness
-            | Output::Twist(_) => beyond_statics && by_statics,
-            _ => false,
-        }
-    }
-
-    /// The space of variants.
-    #[must_use]
-    pub const fn space(&self) -> &Space {
-        &self.space
-    }
-
-    /// Loads, in nominal torques, at which twists are computed.
-    #[must_use]
-    pub fn loads(&self) -> &[f64] {
-        &self.loads
-    }
-
-    /// Number of shaft segments.
-    #[must_use]
-    pub fn segments(&self) -> usize {
-        self.kinds.len()
-    }
-
-    /// How many variants the kernel has evaluated since the study was made.
-    #[must_use]
-    pub fn evaluated(&self) -> u64 {
-        self.evaluated.load(Ordering::Relaxed)
-    }
-
-    /// Values of one axis for `len` variants, in the user's unit.
-    #[must_use]
-    pub fn axis_values(&self, axis: usize, rows: Rows<'_>, len: usize) -> Vec<f64> {
+    /// [`StudyError`] for an axis or variants that the study does not have.
+    pub fn axis_values(
+        &self,
+        axis: usize,
+        rows: Rows<'_>,
+        len: usize,
+    ) -> Result<Vec<f64>, StudyError> {
+        self.check_rows(rows, len)?;
         let mut values = vec![0.0; len];
-        self.axes_into(&[axis], rows, vec![&mut values]);
-        values
+        self.axes_into(&[axis], rows, vec![&mut values])?;
+        Ok(values)
     }
 
     /// Values of some axes, in the user's unit, into memory of the caller's: one column an axis,
     /// all of a length.
-    pub fn axes_into(&self, axes: &[usize], rows: Rows<'_>, values: Vec<&mut [f64]>) {
+    ///
+    /// # Errors
+    /// [`StudyError`] for an axis or variants that the study does not have, or columns that differ
+    /// in length.
+    pub fn axes_into(
+        &self,
+        axes: &[usize],
+        rows: Rows<'_>,
+        values: Vec<&mut [f64]>,
+    ) -> Result<(), StudyError> {
+        let count = self.space.axes().len();
+        if let Some(axis) = axes.iter().find(|axis| **axis >= count) {
+            let (axis, axes) = (*axis, count);
+            return Err(StudyError::NoSuchAxis { axis, axes });
+        }
         let (space, mut nothing) = (&self.space, Vec::new());
         nothing.resize(values.first().map_or(0, |column| column.len()), 0);
+        self.check_rows(rows, nothing.len())?;
+        check_shape(axes.len(), nothing.len(), &values)?;
         tasks(&mut nothing, values)
             .into_par_iter()
             .for_each(|task| {
@@ -249,56 +88,70 @@ impl Study {
                     task,
                 })
             });
-    }
-
-    /// Why one variant cannot be built, with its numbers; limits are not looked at.
-    #[must_use]
-    pub fn explain(&self, variant: u64) -> Option<DesignError> {
-        let mut inputs = self.base.clone();
-        for (number, axis) in self.space.axes().iter().enumerate() {
-            let mut value = [0.0];
-            self.space.fill(number, Rows::At(&[variant]), &mut value);
-            inputs.set(axis.input, value[0] * factor(axis.input));
-        }
-        explained(&inputs, &self.kinds)
+        Ok(())
     }
 
     /// Evaluates `len` variants. Bits do not depend on the number of threads, nor on how a
     /// study is cut.
-    #[must_use]
-    pub fn evaluate(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
+    ///
+    /// # Errors
+    /// [`StudyError`] for variants or loads that the study does not have.
+    pub fn evaluate(
+        &self,
+        rows: Rows<'_>,
+        len: usize,
+        outputs: &[Output],
+    ) -> Result<Columns, StudyError> {
         self.columns(rows, len, outputs, Path::Blocks)
     }
 
     /// [`Study::evaluate`] into memory of the caller's, one column an output, each as long as
     /// `status`. True when any variant is refused.
+    ///
+    /// # Errors
+    /// [`StudyError`] for variants or loads that the study does not have, or memory of another
+    /// shape.
     pub fn evaluate_into(
         &self,
         rows: Rows<'_>,
         outputs: &[Output],
         status: &mut [u8],
         values: Vec<&mut [f64]>,
-    ) -> bool {
+    ) -> Result<bool, StudyError> {
         self.run(rows, outputs, status, values, Path::Blocks)
     }
 
     /// [`Study::evaluate`] the slow way, for tests: every variant alone, without the machine's own
     /// vector instructions. The bits are the same.
-    #[must_use]
-    pub fn evaluate_one_by_one(&self, rows: Rows<'_>, len: usize, outputs: &[Output]) -> Columns {
+    ///
+    /// # Errors
+    /// As [`Study::evaluate`].
+    pub fn evaluate_one_by_one(
+        &self,
+        rows: Rows<'_>,
+        len: usize,
+        outputs: &[Output],
+    ) -> Result<Columns, StudyError> {
         self.columns(rows, len, outputs, Path::OneByOne)
     }
 
-    fn columns(&self, rows: Rows<'_>, len: usize, outputs: &[Output], path: Path) -> Columns {
+    fn columns(
+        &self,
+        rows: Rows<'_>,
+        len: usize,
+        outputs: &[Output],
+        path: Path,
+    ) -> Result<Columns, StudyError> {
+        self.check_rows(rows, len)?;
         let mut status = vec![0; len];
         let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
         let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
-        let any_refused = self.run(rows, outputs, &mut status, slices, path);
-        Columns {
+        let any_refused = self.run(rows, outputs, &mut status, slices, path)?;
+        Ok(Columns {
             status,
             any_refused,
             values,
-        }
+        })
     }
 
     fn run(
@@ -308,7 +161,12 @@ impl Study {
         status: &mut [u8],
         values: Vec<&mut [f64]>,
         path: Path,
-    ) -> bool {
+    ) -> Result<bool, StudyError> {
+        self.check_rows(rows, status.len())?;
+        check_shape(outputs.len(), status.len(), &values)?;
+        for output in outputs {
+            self.check_load(*output)?;
+        }
         self.evaluated
             .fetch_add(status.len() as u64, Ordering::Relaxed);
         let stages = self
@@ -330,10 +188,32 @@ impl Study {
                 Path::OneByOne => work.run(),
             }
         };
-        tasks(status, values)
+        Ok(tasks(status, values)
             .into_par_iter()
             .map_init(|| stages.scratch(&self.base), work)
-            .reduce(|| false, |a, b| a | b)
+            .reduce(|| false, |a, b| a | b))
+    }
+
+    /// Requires rows of this study, `len` of them.
+    fn check_rows(&self, rows: Rows<'_>, len: usize) -> Result<(), StudyError> {
+        let variants = self.space.len();
+        let last = match rows {
+            Rows::From(start) => start.saturating_add(len as u64),
+            Rows::At(indices) if indices.len() != len => {
+                return Err(StudyError::Shape {
+                    expected: indices.len(),
+                    found: len,
+                });
+            }
+            Rows::At(indices) => indices
+                .iter()
+                .max()
+                .map_or(0, |last| last.saturating_add(1)),
+        };
+        if last > variants {
+            return Err(StudyError::NoSuchVariant { last, variants });
+        }
+        Ok(())
     }
 
     /// What of the stages the outputs and limits need.
@@ -390,6 +270,23 @@ impl Study {
                 factor(input)
             }
         }
+    }
+}
+
+/// Requires `columns` columns of `rows` rows to write to; without rows there is nothing to write.
+fn check_shape(columns: usize, rows: usize, values: &[&mut [f64]]) -> Result<(), StudyError> {
+    if rows > 0 && values.len() != columns {
+        return Err(StudyError::Shape {
+            expected: columns,
+            found: values.len(),
+        });
+    }
+    match values.iter().find(|column| column.len() != rows) {
+        Some(column) => Err(StudyError::Shape {
+            expected: rows,
+            found: column.len(),
+        }),
+        None => Ok(()),
     }
 }
 

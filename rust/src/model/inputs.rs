@@ -1,8 +1,6 @@
-//! The inputs of a design: names as users type them, their units, and their order in the core.
+//! The inputs of a design by name, with their units, and the order in which studies number them.
 
 use std::f64::consts::PI;
-
-use crate::shaft::SegmentKind;
 
 /// A scalar input of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +37,7 @@ pub enum Input {
 
 /// Number of scalar inputs; the shaft's follow them, four a segment.
 pub const SCALARS: usize = 23;
-/// A segment's inputs, in their order in the core.
+/// A segment's inputs, in order.
 pub const SEGMENT_FIELDS: [&str; 4] = [
     "diameter_mm",
     "end_diameter_mm",
@@ -54,7 +52,7 @@ const TURNS_PER_DEG: f64 = 1.0 / 360.0;
 pub const NM_PER_RAD_OF_NM_PER_ARCMIN: f64 = 10_800.0 / PI;
 
 impl Input {
-    /// Every scalar input, in the order of the core.
+    /// Every scalar input, in order.
     pub const ALL: [Input; SCALARS] = [
         Input::Ratio,
         Input::DiscCount,
@@ -81,7 +79,7 @@ impl Input {
         Input::Criterion,
     ];
 
-    /// Name and unit as in a drive file, and what turns a value into the core's unit: SI, but
+    /// Name and unit as in a drive file, and what turns a value into the kernel's unit: SI, but
     /// turns for the clocking and degrees for the free play, which is only ever added to degrees.
     #[must_use]
     pub const fn name_and_factor(self) -> (&'static str, f64) {
@@ -137,86 +135,10 @@ impl Input {
     }
 }
 
-/// All inputs of one variant, in the core's units.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Inputs {
-    scalars: [f64; SCALARS],
-    segments: Vec<[f64; SEGMENT_FIELDS.len()]>,
-    /// Place among all inputs of the shaft's diameter at the flange.
-    flange: Option<usize>,
-}
-
-impl Inputs {
-    /// From all inputs in the order of the core, for a shaft of these segments; inputs that
-    /// `values` lacks are NaN.
-    #[must_use]
-    pub fn new(values: &[f64], kinds: &[SegmentKind]) -> Self {
-        let value = |k: usize| values.get(k).copied().unwrap_or(f64::NAN);
-        let fields = |segment| std::array::from_fn(|field| value(segment_input(segment, field)));
-        Self {
-            scalars: std::array::from_fn(value),
-            segments: (0..kinds.len()).map(fields).collect(),
-            flange: flange_input(kinds),
-        }
-    }
-
-    /// The shaft's diameter at the flange; NaN without a shaft.
-    #[inline(always)]
-    #[must_use]
-    pub fn flange_diameter(&self) -> f64 {
-        self.flange.map_or(f64::NAN, |input| self.at(input))
-    }
-
-    /// Place among all inputs of the shaft's diameter at the flange.
-    #[must_use]
-    pub const fn flange_input(&self) -> Option<usize> {
-        self.flange
-    }
-
-    /// Value of a scalar input.
-    #[inline(always)]
-    #[must_use]
-    pub const fn get(&self, input: Input) -> f64 {
-        self.scalars[input as usize]
-    }
-
-    /// Value of the input at this position among all inputs.
-    #[must_use]
-    pub fn at(&self, input: usize) -> f64 {
-        match input.checked_sub(SCALARS) {
-            None => self.scalars[input],
-            Some(k) => self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()],
-        }
-    }
-
-    /// Changes the input at this position among all inputs.
-    #[inline(always)]
-    pub fn set(&mut self, input: usize, value: f64) {
-        match input.checked_sub(SCALARS) {
-            None => self.scalars[input] = value,
-            Some(k) => self.segments[k / SEGMENT_FIELDS.len()][k % SEGMENT_FIELDS.len()] = value,
-        }
-    }
-
-    /// The shaft's segments: their inputs in the order of [`SEGMENT_FIELDS`].
-    #[inline(always)]
-    #[must_use]
-    pub fn segments(&self) -> &[[f64; SEGMENT_FIELDS.len()]] {
-        &self.segments
-    }
-}
-
 /// Position of a segment's field among all inputs; segments count from 0 here.
 #[must_use]
 pub const fn segment_input(segment: usize, field: usize) -> usize {
     SCALARS + SEGMENT_FIELDS.len() * segment + field
-}
-
-/// Place among all inputs of the diameter at the flange of a shaft of these segments.
-#[must_use]
-pub fn flange_input(kinds: &[SegmentKind]) -> Option<usize> {
-    let last = kinds.last()?;
-    Some(segment_input(kinds.len() - 1, last.flange_field()))
 }
 
 /// Position of an input named as in a study's axes (`eccentricity_mm`, `shaft_2_diameter_mm`).
@@ -237,16 +159,6 @@ pub fn factor(index: usize) -> f64 {
     Input::ALL
         .get(index)
         .map_or(MILLI, |input| input.name_and_factor().1)
-}
-
-/// True for the fields that a segment of a kind has.
-#[must_use]
-pub const fn segment_has_field(kind: SegmentKind, field: usize) -> bool {
-    match field {
-        1 => matches!(kind, SegmentKind::Frustum),
-        3 => matches!(kind, SegmentKind::Keyway),
-        _ => true,
-    }
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 
 use std::f64::consts::PI;
 
-use crate::error::DesignError;
-use crate::judge::Judge;
+use crate::model::checks::{Checks, checked};
+use crate::model::error::DesignError;
 
 /// A round, possibly hollow, cantilevered pin. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,14 +18,22 @@ pub struct Pin {
 }
 
 impl Pin {
+    /// Whether the pin can be made.
+    ///
+    /// # Errors
+    /// The first [`DesignError`]: a dimension below its limit or a bore without a wall around it.
+    pub fn check(&self) -> Result<(), DesignError> {
+        checked(|checks| self.require(checks))
+    }
+
     /// Requires a pin that can be made.
     #[inline(always)]
-    pub fn require(&self, judge: &mut impl Judge) {
+    pub(crate) fn require(&self, checks: &mut impl Checks) {
         let (bore, diameter) = (self.bore, self.diameter);
-        judge.positive("output_pin_diameter", diameter);
-        judge.non_negative("output_pin_bore", bore);
-        judge.positive("output_pin_length", self.length);
-        judge.require(bore < diameter, || DesignError::PinBoreTooLarge {
+        checks.positive("output_pin_diameter", diameter);
+        checks.non_negative("output_pin_bore", bore);
+        checks.positive("output_pin_length", self.length);
+        checks.require(bore < diameter, || DesignError::PinBoreTooLarge {
             bore,
             diameter,
         });

@@ -1,0 +1,285 @@
+//! Slip elements: angle and friction of a torque history, state of a given angle history.
+//!
+//! A locked-output torsion test is quasi-static, so at every sample the applied torque balances the
+//! elastic torque of the drive and the friction in its contacts:
+//!
+//! ```text
+//! T_i = T_e(theta_i - offset_i) + sum_j w_j (Y + mu |T_e|) clip((theta_i - z_j)/delta_j, -1, 1)
+//! ```
+//!
+//! with `T_e` a spring behind a dead zone, linear or given point by point, and `z_j` the anchor of slip element `j`
+//! (Maxwell-slip or generalised Prandtl-Ishlinskii model, see Al-Bender, Lampaert and Swevers,
+//! IEEE Trans. Autom. Control 50(11), 2005, doi 10.1109/TAC.2005.858676). The equation is monotone in
+//! the angle, so it has one solution a sample, found by a safeguarded Newton step.
+
+use crate::model::hysteresis::checks::{
+    HistoryError, not_negative, numbers, numbers_at_starts, same_length, within,
+};
+
+/// Friction of the contacts: slip elements in parallel that share one limit.
+#[derive(Debug, Clone)]
+pub struct SlipElements<'a> {
+    /// Presliding distance of each element, in the unit of the angle, positive.
+    pub slip_angle: &'a [f64],
+    /// Share of the friction limit that each element carries; the shares normally add up to one.
+    pub share: &'a [f64],
+    /// Friction limit without load, in the unit of the torque.
+    pub limit: f64,
+    /// Friction limit in proportion to the transmitted torque, below one.
+    pub load_factor: f64,
+    /// 0: presliding distance independent of load. 1: it grows with the limit (constant stiffness).
+    pub growth: f64,
+    /// Elastic torque at which the given slip distances hold when they grow with the limit.
+    pub reference_torque: f64,
+}
+
+/// Elastic law of the drive behind a symmetric dead zone: a line, or points joined by lines.
+#[derive(Debug, Clone, Copy)]
+pub struct Spring<'a> {
+    /// Half width of the dead zone, in the unit of the angle.
+    pub free_play: f64,
+    /// Twist for one unit of torque where no points are given.
+    pub compliance: f64,
+    /// Points of the law: torques, rising through zero; none for a line.
+    pub law_torque: &'a [f64],
+    /// Twist beyond the dead zone at these torques, rising strictly.
+    pub law_twist: &'a [f64],
+}
+
+impl Spring<'_> {
+    /// Requires what the law's own numbers must be.
+    fn check(&self) -> Result<(), HistoryError> {
+        same_length(self.law_torque.len(), &[self.law_twist.len()])?;
+        numbers("free_play", &[self.free_play])?;
+        numbers("compliance", &[self.compliance])?;
+        numbers("law_torque", self.law_torque)?;
+        numbers("law_twist", self.law_twist)
+    }
+
+    /// Elastic torque and its slope at a twist measured from the datum.
+    pub(super) fn torque(&self, twist: f64) -> (f64, f64) {
+        let beyond = if twist > self.free_play {
+            twist - self.free_play
+        } else if twist < -self.free_play {
+            twist + self.free_play
+        } else {
+            return (0.0, 0.0);
+        };
+        if self.law_twist.len() < 2 {
+            let slope = 1.0 / self.compliance;
+            return (beyond * slope, slope);
+        }
+        let (from, to) = self.segment(self.law_twist, beyond);
+        let slope = (self.law_torque[to] - self.law_torque[from])
+            / (self.law_twist[to] - self.law_twist[from]);
+        (
+            self.law_torque[from] + slope * (beyond - self.law_twist[from]),
+            slope,
+        )
+    }
+
+    /// Largest twist beyond the dead zone that a torque of this magnitude can make.
+    fn reach(&self, torque: f64) -> f64 {
+        if self.law_twist.len() < 2 {
+            return self.compliance * torque;
+        }
+        let at = |value: f64| {
+            let (from, to) = self.segment(self.law_torque, value);
+            let slope = (self.law_twist[to] - self.law_twist[from])
+                / (self.law_torque[to] - self.law_torque[from]);
+            self.law_twist[from] + slope * (value - self.law_torque[from])
+        };
+        at(torque).abs().max(at(-torque).abs())
+    }
+
+    /// The two points of the law around a value; the outermost pair goes on beyond the ends.
+    fn segment(&self, points: &[f64], value: f64) -> (usize, usize) {
+        let to = points
+            .partition_point(|&p| p < value)
+            .clamp(1, points.len() - 1);
+        (to - 1, to)
+    }
+}
+
+impl SlipElements<'_> {
+    /// Requires what the elements' own numbers must be.
+    fn check(&self) -> Result<(), HistoryError> {
+        same_length(self.slip_angle.len(), &[self.share.len()])?;
+        not_negative("slip_angle", self.slip_angle)?;
+        numbers("share", self.share)?;
+        numbers("limit", &[self.limit])?;
+        numbers("load_factor", &[self.load_factor])?;
+        numbers("growth", &[self.growth])?;
+        numbers("reference_torque", &[self.reference_torque])
+    }
+
+    fn load_limit(&self, elastic_torque: f64) -> f64 {
+        self.limit + self.load_factor * elastic_torque.abs()
+    }
+
+    /// How much longer than given the slip distances are under this limit.
+    fn stretch(&self, limit: f64) -> f64 {
+        if self.growth == 0.0 {
+            return 1.0;
+        }
+        let reference = self.load_limit(self.reference_torque);
+        (limit / reference).max(1e-9).powf(self.growth)
+    }
+
+    /// Sum of the elements' states (each within its share), its slope in the angle, and the part of
+    /// the sum that elements hold which do not slide.
+    fn state(&self, angle: f64, anchor: &[f64], stretch: f64) -> (f64, f64, f64) {
+        let mut sum = 0.0;
+        let mut slope = 0.0;
+        let mut held = 0.0;
+        for ((&slip, &share), &z) in self.slip_angle.iter().zip(self.share).zip(anchor) {
+            let reach = slip * stretch;
+            let ratio = (angle - z) / reach;
+            let clipped = ratio.clamp(-1.0, 1.0);
+            sum += share * clipped;
+            if clipped == ratio {
+                slope += share / reach;
+                held += share * clipped;
+            }
+        }
+        (sum, slope, held)
+    }
+
+    /// Drags every anchor along so that no element is stretched beyond its reach.
+    fn drag_anchors(&self, angle: f64, anchor: &mut [f64], stretch: f64) {
+        for (&slip, z) in self.slip_angle.iter().zip(anchor) {
+            let reach = slip * stretch;
+            *z = within(*z, angle - reach, angle + reach);
+        }
+    }
+}
+
+/// Angle and friction torque for a torque history.
+///
+/// `offset` is everything that shifts the datum, sample by sample; `restart[i]` marks a sample before
+/// which the elements are fresh, anchored at `start_angle[i]`.
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length or hold what is not a number.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one slice per column of the history, two of them to fill"
+)]
+pub fn solve_slip(
+    torque: &[f64],
+    offset: &[f64],
+    restart: &[bool],
+    start_angle: &[f64],
+    spring: Spring<'_>,
+    elements: &SlipElements<'_>,
+    angle: &mut [f64],
+    friction: &mut [f64],
+) -> Result<(), HistoryError> {
+    let columns = [offset.len(), restart.len(), start_angle.len()];
+    same_length(torque.len(), &columns)?;
+    same_length(torque.len(), &[angle.len(), friction.len()])?;
+    numbers("torque", torque)?;
+    numbers("offset", offset)?;
+    numbers_at_starts("start_angle", start_angle, restart)?;
+    spring.check()?;
+    elements.check()?;
+    let mut anchor = vec![0.0; elements.slip_angle.len()];
+    let mut guess = 0.0;
+    for i in 0..torque.len() {
+        if i == 0 || restart[i] {
+            anchor.fill(start_angle[i]);
+            guess = start_angle[i];
+        }
+        let (solved, force, stretch) =
+            balance(torque[i], offset[i], spring, elements, &anchor, guess);
+        elements.drag_anchors(solved, &mut anchor, stretch);
+        angle[i] = solved;
+        friction[i] = force;
+        guess = solved;
+    }
+    Ok(())
+}
+
+/// The one angle at which elastic torque and friction add up to the applied torque.
+fn balance(
+    torque: f64,
+    offset: f64,
+    spring: Spring<'_>,
+    elements: &SlipElements<'_>,
+    anchor: &[f64],
+    guess: f64,
+) -> (f64, f64, f64) {
+    let evaluate = |angle: f64| {
+        let (elastic, stiffness) = spring.torque(angle - offset);
+        let limit = elements.load_limit(elastic);
+        let stretch = elements.stretch(limit);
+        let (state, slope, held) = elements.state(angle, anchor, stretch);
+        // A growing limit also stretches the elements that hold.
+        let growth =
+            elements.load_factor * stiffness * elastic.signum() * (state - elements.growth * held);
+        let force = limit * state;
+        (
+            elastic + force - torque,
+            stiffness + growth + limit * slope,
+            force,
+            stretch,
+        )
+    };
+    // The friction can never exceed its limit, which brackets the elastic torque.
+    let bound = (torque.abs() + elements.limit) / (1.0 - elements.load_factor).max(0.05);
+    let reach = spring.free_play + spring.reach(bound) * (1.0 + 1e-9) + 1e-9;
+    let (mut low, mut high) = (offset - reach, offset + reach);
+    let mut angle = within(guess, low, high);
+    let tolerance = 1e-9 * (1e-3 + torque.abs());
+    let mut best = evaluate(angle);
+    for _ in 0..100 {
+        if best.0.abs() <= tolerance || high - low <= 1e-13 * (1.0 + high.abs()) {
+            break;
+        }
+        if best.0 > 0.0 {
+            high = angle;
+        } else {
+            low = angle;
+        }
+        let newton = angle - best.0 / best.1;
+        angle = if newton.is_finite() && newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        best = evaluate(angle);
+    }
+    (angle, best.2, best.3)
+}
+
+/// State of slip elements along a given angle history: sum of the shares, each between -1 and 1.
+///
+/// `stretch[i]` is how much longer than given the slip distances are at sample `i`.
+///
+/// # Errors
+/// [`HistoryError`] when columns differ in length or hold what is not a number, or a slip distance
+/// or its stretch is negative.
+pub fn slip_state(
+    angle: &[f64],
+    restart: &[bool],
+    start_angle: &[f64],
+    stretch: &[f64],
+    elements: &SlipElements<'_>,
+    out: &mut [f64],
+) -> Result<(), HistoryError> {
+    let columns = [restart.len(), start_angle.len(), stretch.len(), out.len()];
+    same_length(angle.len(), &columns)?;
+    numbers("angle", angle)?;
+    numbers_at_starts("start_angle", start_angle, restart)?;
+    not_negative("stretch", stretch)?;
+    elements.check()?;
+    let mut anchor = vec![0.0; elements.slip_angle.len()];
+    for i in 0..angle.len() {
+        if i == 0 || restart[i] {
+            anchor.fill(start_angle[i]);
+        }
+        elements.drag_anchors(angle[i], &mut anchor, stretch[i]);
+        out[i] = elements.state(angle[i], &anchor, stretch[i]).0;
+    }
+    Ok(())
+}

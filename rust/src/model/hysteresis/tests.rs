@@ -1,0 +1,151 @@
+//! Loops, ramps and refusals of the operators.
+
+use super::*;
+use proptest::prelude::*;
+
+fn single(limit: f64, slip: &[f64]) -> SlipElements<'_> {
+    SlipElements {
+        slip_angle: slip,
+        share: &[1.0],
+        limit,
+        load_factor: 0.0,
+        growth: 0.0,
+        reference_torque: 1.0,
+    }
+}
+
+#[test]
+fn loop_width_is_twice_friction_times_compliance() {
+    let up: Vec<f64> = (0..=100).map(|k| k as f64 * 0.1).collect();
+    let torque: Vec<f64> = up.iter().chain(up.iter().rev()).copied().collect();
+    let n = torque.len();
+    let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
+    let spring = Spring {
+        free_play: 0.0,
+        compliance: 2.0,
+        law_torque: &[],
+        law_twist: &[],
+    };
+    solve_slip(
+        &torque,
+        &vec![0.0; n],
+        &vec![false; n],
+        &vec![0.0; n],
+        spring,
+        &single(0.5, &[0.01]),
+        &mut angle,
+        &mut friction,
+    )
+    .expect("numbers");
+    let width = angle[151] - angle[50];
+    assert!((width - 2.0 * 0.5 * 2.0).abs() < 1e-9, "{width}");
+}
+
+#[test]
+fn creep_reaches_the_load_and_a_ramp_lags_by_the_time_constant() {
+    let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.1).collect();
+    let mut out = vec![0.0; time.len()];
+    let mut restart = vec![false; time.len()];
+    restart[0] = true;
+    creep_state(&time, &time, &restart, 5.0, &mut out).expect("lengths");
+    assert!((time[1999] - out[1999] - 5.0).abs() < 1e-9);
+}
+
+#[test]
+fn drag_delays_a_ramp_by_its_lag() {
+    let ramp: Vec<f64> = (1..=400).map(|k| f64::from(k) * 0.1).collect();
+    let mut out = vec![0.0; ramp.len()];
+    dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 2.0, &mut out).expect("lengths");
+    assert!((ramp[399] - out[399] - 2.0).abs() < 1e-6);
+    dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 0.0, &mut out).expect("lengths");
+    assert_eq!(ramp, out);
+}
+
+#[test]
+fn remembered_datum_saturates() {
+    let mut out = vec![0.0; 200];
+    remembered_datum(&[1.0; 200], 0.5, &mut out);
+    assert!(out[0] == 0.0 && (out[199] - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_not_a_number_is_refused_and_does_not_panic() {
+    let (mut out, mut force) = (vec![0.0; 2], vec![0.0; 2]);
+    let (zero, fresh) = ([0.0; 2], [false; 2]);
+    let bad = [0.0, f64::NAN];
+    let elements = single(0.5, &[0.01]);
+    let refused = |what| HistoryError::NotANumber { what, place: 1 };
+    assert_eq!(
+        slip_state(&bad, &fresh, &zero, &[1.0; 2], &elements, &mut out),
+        Err(refused("angle"))
+    );
+    assert_eq!(
+        slip_state(&zero, &fresh, &zero, &bad, &elements, &mut out),
+        Err(refused("stretch"))
+    );
+    assert_eq!(
+        play(&bad, 1.0, &fresh, &zero, &mut out),
+        Err(refused("signal"))
+    );
+    assert_eq!(
+        play(&zero, -1.0, &fresh, &zero, &mut out),
+        Err(HistoryError::Negative {
+            what: "half_width",
+            value: -1.0
+        })
+    );
+    let spring = Spring {
+        free_play: 0.0,
+        compliance: 2.0,
+        law_torque: &[],
+        law_twist: &[],
+    };
+    let mut solve = |torque: &[f64], slip: &[f64]| {
+        let elements = single(0.5, slip);
+        let (angle, friction) = (&mut out[..], &mut force[..]);
+        solve_slip(
+            torque, &zero, &fresh, &zero, spring, &elements, angle, friction,
+        )
+    };
+    assert_eq!(solve(&bad, &[0.01]), Err(refused("torque")));
+    assert_eq!(
+        solve(&zero[..1], &[0.01]),
+        Err(HistoryError::Length {
+            expected: 1,
+            found: 2
+        })
+    );
+    assert!(solve(&zero, &[-0.01]).is_err());
+    assert!(solve(&[f64::INFINITY, 1.0], &[0.01]).is_ok());
+}
+
+proptest! {
+    #[test]
+    fn balance_holds_and_friction_stays_within_its_limit(
+        torque in prop::collection::vec(-30.0..30.0f64, 2..60),
+        limit in 0.0..2.0f64, load in 0.0..0.3f64, growth in prop::sample::select(vec![0.0, 1.0]),
+        curved: bool,
+    ) {
+        let torques = [-60.0, -20.0, -2.0, 0.0, 2.0, 20.0, 60.0];
+        let n = torque.len();
+        let slip = [0.05, 0.4, 2.0];
+        let elements = SlipElements {
+            slip_angle: &slip, share: &[0.5, 0.3, 0.2], limit, load_factor: load, growth,
+            reference_torque: 10.0,
+        };
+        let bent = [-90.0, -60.0, -2.0, 0.0, 2.0, 60.0, 90.0];
+        let spring = if curved {
+            Spring { free_play: 3.0, compliance: 2.5, law_torque: &torques, law_twist: &bent }
+        } else {
+            Spring { free_play: 3.0, compliance: 2.5, law_torque: &[], law_twist: &[] }
+        };
+        let (mut angle, mut friction) = (vec![0.0; n], vec![0.0; n]);
+        solve_slip(&torque, &vec![0.0; n], &vec![false; n], &vec![0.0; n], spring, &elements,
+                   &mut angle, &mut friction).expect("numbers");
+        for i in 0..n {
+            let elastic = spring.torque(angle[i]).0;
+            prop_assert!(friction[i].abs() <= limit + load * elastic.abs() + 1e-9);
+            prop_assert!((elastic + friction[i] - torque[i]).abs() < 1e-6);
+        }
+    }
+}
