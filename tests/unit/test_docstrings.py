@@ -21,7 +21,9 @@ def functions(folder: str) -> list[tuple[str, ast.FunctionDef, int]]:
     return found
 
 
-@pytest.mark.parametrize(("folder", "private"), [("recording", True), ("diagnosis", False)])
+@pytest.mark.parametrize(
+    ("folder", "private"), [("recording", True), ("diagnosis", False), ("simulation", False)]
+)
 def test_arguments_and_results_are_documented(folder: str, private: bool) -> None:
     without: list[str] = []
     for name, node, count in functions(folder):

@@ -145,7 +145,7 @@ def runs_of(history: History) -> list[slice]:
 
 
 def pushes_of(history: History, push: int) -> Floats:
-    """Push by each run, shape (runs,) [10 N m, or a number].
+    """Push by each run.
 
     Parameters
     ----------
@@ -153,6 +153,11 @@ def pushes_of(history: History, push: int) -> Floats:
         Load history.
     push : int
         Index of the push, see `PUSH_NAMES`.
+
+    Returns
+    -------
+    ndarray, shape (runs,)
+        In 10 N m, or a number [1].
     """
     return np.array([PUSHES[push](history, run.start, run.stop) for run in runs_of(history)])
 

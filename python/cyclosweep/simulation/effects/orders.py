@@ -14,7 +14,19 @@ def distinct_positions(history: History) -> int:
 
 
 def harmonics(history: History, shape: Shape) -> Floats:
-    """Cosine and sine of every order in the shape, one pair of columns an order."""
+    """Cosine and sine of every order in the shape, one pair of columns an order.
+
+    Parameters
+    ----------
+    history : History
+        Load history with the position of the mesh zone at each sample.
+    shape : mapping of str to float
+        The orders [1], by name.
+
+    Returns
+    -------
+    ndarray, shape (n, 2 orders)
+    """
     assert history.crank_deg is not None
     angle = np.radians(history.crank_deg)
     return np.column_stack(
@@ -28,7 +40,21 @@ def order_shapes(sets: list[tuple[int, ...]]) -> list[Shape]:
 
 
 def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...]:
-    """One cosine and one sine amplitude an order."""
+    """One cosine and one sine amplitude an order.
+
+    Parameters
+    ----------
+    shape : mapping of str to float
+        The orders [1], by name.
+    what : str
+        What the amplitude is of, for its meaning.
+    unit : str
+        Unit of the amplitude.
+
+    Returns
+    -------
+    tuple of Parameter
+    """
     return tuple(
         Parameter(f"{wave}_{int(order)}", unit, f"{what}, {wave} of order {int(order)}")
         for order in shape.values()
