@@ -1,5 +1,6 @@
 """A record is bound to the code that decides its numbers, and to nothing else."""
 
+import ast
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -52,6 +53,21 @@ def other_docstring(source: str) -> str:
     return source.replace('"""', '"""Other words. ', 1)
 
 
+def other_constant(source: str) -> str:
+    """The first number with a point, doubled."""
+    numbers = [
+        node
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Constant) and isinstance(node.value, float)
+    ]
+    first = numbers[0]
+    lines = source.splitlines(keepends=True)
+    line = lines[first.lineno - 1]
+    before, after = line[: first.col_offset], line[first.end_col_offset :]
+    lines[first.lineno - 1] = f"{before}{2.0 * float(str(first.value))}{after}"
+    return "".join(lines)
+
+
 @pytest.mark.parametrize(
     ("name", "change"),
     [
@@ -74,7 +90,7 @@ def test_what_decides_nothing_does_not_count(
 @pytest.mark.parametrize(
     ("name", "change"),
     [
-        (f"python/{EFFECT}", lambda s: s.replace("FEWEST_STEPS = 3.0", "FEWEST_STEPS = 3.5")),
+        (f"python/{EFFECT}", other_constant),
         ("python/cyclosweep/recording/recording.py", lambda s: f"{s}\nMORE = 1\n"),
         ("python/cyclosweep/design/drive.py", lambda s: f"{s}\nMORE = 1\n"),
         ("python/cyclosweep/diagnosis/diagnose.py", lambda s: f"{s}\nMORE = 1\n"),
