@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.datum_laws import DatumLaw
 from cyclosweep.simulation.effects.history import History
 from cyclosweep.simulation.model import EffectValue
@@ -187,6 +188,20 @@ def test_shifts_of_each_law() -> None:
     np.testing.assert_allclose(DatumLaw(1, 1.0, resets=True).shifts_deg(of), [0, 1.0, 2.4, 3.6])
     # The last excursion of every run goes down to -t and comes back.
     np.testing.assert_allclose(DatumLaw(6, 0.0).shifts_deg(of), [0, -1.0, -1.0, -1.0])
+
+
+@pytest.mark.parametrize("runs", [4, 6])
+def test_random_offsets_of_few_runs_are_seldom_put_down_to_a_law(runs: int) -> None:
+    rng = np.random.default_rng(runs)
+    of, datum = history(list(rng.uniform(8.0, 24.0, runs))), find("datum_drift")
+    turns = (-1.0) ** np.arange(runs)
+    drawn = [turns * rng.uniform(0.1, 1.0, runs) for _ in range(60)]
+    amplitudes = [(each - each.mean())[1:] for each in drawn]
+    shape = {"each_run": 1.0}
+    named = [each for each in amplitudes if datum.is_recognised(of, shape, each)]
+    laws = [datum.portable(of, shape, each)[0] for each in named]
+    assert len(named) == 60
+    assert sum("push" in law for law in laws) < 0.1 * len(laws)
 
 
 def test_offsets_written_before_are_still_counted_from_the_first_run() -> None:

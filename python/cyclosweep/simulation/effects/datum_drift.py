@@ -23,6 +23,8 @@ __all__ = ["PUSHES", "PUSH_NAMES", "DatumDrift"]
 
 FEWEST_RUNS, MOST_RUNS = 4, 60
 """Runs between which a datum without a law is looked for."""
+FEWEST_FOR_LAW = 8
+"""Runs from which a law is believed of free offsets that go to and fro."""
 UNEXPLAINED = 0.1
 """Share of the offsets of the runs up to which the laws that explain the rest are believed."""
 TO_AND_FRO = 1.0
@@ -119,7 +121,7 @@ class DatumDrift(Effect):
         if "each_run" not in shape:
             return f"Found: {'; '.join(map(str, DatumLaw.all_of(shape)))}."
         offsets = _offsets(amplitudes)
-        law = _law_of(history, offsets)
+        law = _believed_law(history, offsets)
         if law is not None:
             laws = "; ".join(map(str, law.laws))
             return f"Found: {laws}; {100 * law.left:.2g} % of the offsets are left."
@@ -131,7 +133,7 @@ class DatumDrift(Effect):
 
     def notes(self, history: History, shape: Shape, amplitudes: Floats) -> tuple[str, ...]:
         """Say that an erratic datum is not predicted."""
-        if "each_run" not in shape or _law_of(history, _offsets(amplitudes)) is not None:
+        if "each_run" not in shape or _believed_law(history, _offsets(amplitudes)) is not None:
             return ()
         return (
             "datum_drift: the datum is erratic, so that a prediction gives no run an offset; expect"
@@ -149,7 +151,7 @@ class DatumDrift(Effect):
         if "each_run" not in shape:
             return shape, amplitudes.tolist()
         offsets = _offsets(amplitudes)
-        law = _law_of(history, offsets)
+        law = _believed_law(history, offsets)
         if law is not None:
             return _shape(*law.laws), law.shifts_deg.tolist()
         return {"erratic": 1.0}, [float(np.std(offsets, ddof=1))]
@@ -191,6 +193,16 @@ def _law_of(history: History, offsets: Floats) -> Explanation | None:
     """Laws that explain the offsets of the runs; None where none does."""
     best = best_laws(history, offsets)
     return best if best is not None and best.left < UNEXPLAINED else None
+
+
+def _believed_law(history: History, offsets: Floats) -> Explanation | None:
+    """Laws that explain the offsets, and do so by more than chance; None where none does.
+
+    With few runs some law fits a quarter of all offsets drawn at random.
+    """
+    law = _law_of(history, offsets)
+    few = history.run_count < FEWEST_FOR_LAW
+    return None if law is not None and few and _erratic(history, offsets) else law
 
 
 def _erratic(history: History, offsets: Floats) -> bool:
