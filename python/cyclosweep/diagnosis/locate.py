@@ -7,7 +7,7 @@ from itertools import chain, pairwise
 import numpy as np
 
 from cyclosweep.diagnosis.decide import Conclusion
-from cyclosweep.diagnosis.hypotheses.unnamed_shapes import clock_of
+from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.problem import Problem

@@ -94,6 +94,19 @@ def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) ->
         shape: Shape | None = None,
         unnamed: UnnamedShape | None = None,
     ) -> None:
+        """Add the columns of one shape, unless the fitted rows show nothing of them.
+
+        Parameters
+        ----------
+        name : str
+            Name of the hypothesis.
+        made : ndarray, shape (n, k)
+            Twist for unit amplitudes [deg].
+        signs : ndarray, shape (k,)
+            +1 where the amplitude cannot be negative, else 0.
+        effect, shape, unnamed : optional
+            As in `Signature`.
+        """
         kept = made[fitted]
         if not np.all(np.isfinite(kept)) or not np.any(kept):
             return
@@ -121,7 +134,20 @@ def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) ->
 
 
 def _signs(effect: Effect, shape: Shape, count: int) -> Floats:
-    """+1 for each amplitude that cannot be negative, else 0."""
+    """+1 for each amplitude that cannot be negative, else 0.
+
+    Parameters
+    ----------
+    effect : Effect
+    shape : mapping of str to float
+        Shape parameters.
+    count : int
+        Number of columns.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+    """
     signs = np.zeros(count)
     lower = [parameter.lower for parameter in effect.amplitudes(shape)][:count]
     signs[: len(lower)] = np.where(np.array(lower) >= 0, 1.0, 0.0)

@@ -10,7 +10,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import gumbel_r
 
-from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape, clock_of
+from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 IN_TIME = "hum"
@@ -59,7 +60,23 @@ def find_sinusoid(
 def _in_time(
     history: History, fitted: Flags, residual: Floats, *, with_torque: bool = False
 ) -> tuple[float, UnnamedShape | None]:
-    """Strongest sinusoid in time, of even amplitude or in proportion to torque."""
+    """Strongest sinusoid in time, of even amplitude or in proportion to torque.
+
+    Parameters
+    ----------
+    history : History
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+    residual : ndarray, shape (fitted,)
+        White residual of unit variance.
+    with_torque : bool
+        Whether the amplitude is proportional to the torque.
+
+    Returns
+    -------
+    float, UnnamedShape or None
+        Evidence [nat] and columns.
+    """
     clock = clock_of(history)[fitted]
     count = len(clock)
     steps = np.diff(clock)
@@ -92,7 +109,21 @@ def _in_time(
 def _along_twist(
     history: History, fitted: Flags, residual: Floats
 ) -> tuple[float, UnnamedShape | None]:
-    """Strongest sinusoid along the twist beyond the free play."""
+    """Strongest sinusoid along the twist beyond the free play.
+
+    Parameters
+    ----------
+    history : History
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+    residual : ndarray, shape (fitted,)
+        White residual of unit variance.
+
+    Returns
+    -------
+    float, UnnamedShape or None
+        Evidence [nat] and columns.
+    """
     twist = history.angle_deg[fitted] - history.side[fitted] * history.free_play_deg
     span = float(np.ptp(twist))
     if len(twist) < 60 or span <= 0:

@@ -9,7 +9,21 @@ from functools import partial
 
 import numpy as np
 
-import cyclosweep._core as _core
+from cyclosweep.diagnosis.hypotheses.shape_columns import (
+    after,
+    beyond,
+    bump,
+    clipped,
+    clock_of,
+    constant,
+    hats,
+    lapse,
+    one_run,
+    rates,
+    relaxing,
+    softer_after,
+    wider_after,
+)
 from cyclosweep.simulation.effects.base import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
@@ -90,31 +104,19 @@ def unnamed_shapes(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
     yield from _positions(history)
 
 
-def clock_of(history: History) -> Floats:
-    """Time of each row [s], or its number where there is no clock."""
-    if history.time_s is None:
-        return np.arange(len(history), dtype=np.float64)
-    return history.time_s
-
-
-def hats(values: Floats, knots: Floats) -> Floats:
-    """Piecewise linear basis functions.
+def _steps(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
+    """Steps of angle, play or compliance at places spread evenly over the fitted rows.
 
     Parameters
     ----------
-    values : ndarray, shape (n,)
-    knots : ndarray, shape (k,)
-        Where one of the functions is one and all others are zero.
+    history : History
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
 
-    Returns
-    -------
-    ndarray, shape (n, k)
+    Yields
+    ------
+    UnnamedShape
     """
-    return np.column_stack([np.interp(values, knots, row) for row in np.eye(len(knots))])
-
-
-def _steps(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
-    """Steps of angle, play or compliance at places spread evenly over the fitted rows."""
     index = np.flatnonzero(fitted)
     count = min(60, len(index) // 8)
     if count < 1:
@@ -127,49 +129,21 @@ def _steps(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
         yield UnnamedShape(
             "step of the angle",
             label,
-            partial(_after, place, None),
+            partial(after, place, None),
         )
         yield UnnamedShape(
             "slip within a run",
             label + " to the end of that run",
-            partial(_after, place, int(history.run[place])),
+            partial(after, place, int(history.run[place])),
         )
         if np.any(history.side > 0) and np.any(history.side < 0):
-            yield UnnamedShape("change of play", label, partial(_wider_after, place))
+            yield UnnamedShape("change of play", label, partial(wider_after, place))
     for place in places[::3]:
         yield UnnamedShape(
             "change of compliance",
             f"from {what.format(clock[place])} (run {history.run[place] + 1})",
-            partial(_softer_after, place),
+            partial(softer_after, place),
         )
-
-
-def _after(place: int, run: int | None, history: History) -> Floats:
-    """One from a row on, to the end of the recording or of one run."""
-    rows = np.arange(len(history)) >= place
-    if run is not None:
-        rows &= history.run == run
-    return np.asarray(rows, dtype=np.float64)[:, None]
-
-
-def _wider_after(place: int, history: History) -> Floats:
-    """More free play from a row on."""
-    return np.asarray((np.arange(len(history)) >= place) * history.side)[:, None]
-
-
-def _softer_after(place: int, history: History) -> Floats:
-    """More compliance from a row on."""
-    return np.asarray((np.arange(len(history)) >= place) * history.elastic_nm)[:, None]
-
-
-def _one_run(number: int, history: History) -> Floats:
-    """One during one run."""
-    return np.asarray(history.run == number, dtype=np.float64)[:, None]
-
-
-def _constant(columns: Floats, history: History) -> Floats:
-    """Columns that do not depend on the path of the shaft."""
-    return columns
 
 
 def _bumps(history: History) -> Iterator[UnnamedShape]:
@@ -184,14 +158,8 @@ def _bumps(history: History) -> Iterator[UnnamedShape]:
                 yield UnnamedShape(
                     "bump at a load",
                     f"near{where} {centre * top:.3g} N m",
-                    partial(_bump, centre=centre * top, width=width * top, flank=flank),
+                    partial(bump, centre=centre * top, width=width * top, flank=flank),
                 )
-
-
-def _bump(history: History, centre: float, width: float, flank: int) -> Floats:
-    """Bell curve about a load, centre and width in N m; flank 0 stands for both."""
-    bump = np.exp(-0.5 * ((np.abs(history.applied_nm) - centre) / width) ** 2)
-    return (bump * (history.side if flank == 0 else (history.side == flank)))[:, None]
 
 
 def _clips(history: History) -> Iterator[UnnamedShape]:
@@ -201,7 +169,7 @@ def _clips(history: History) -> Iterator[UnnamedShape]:
         yield UnnamedShape(
             "saturation at the end of the range",
             f"beyond {share * widest:.3g} deg",
-            partial(_clipped, limit=float(share) * widest),
+            partial(clipped, limit=float(share) * widest),
             positive=True,
         )
     top = history.largest_torque_nm
@@ -212,23 +180,9 @@ def _clips(history: History) -> Iterator[UnnamedShape]:
             yield UnnamedShape(
                 "saturation at the end of the range",
                 f"beyond {(flank or 1) * share * top:.3g} N m",
-                partial(_over, start=share * top, flank=flank),
+                partial(beyond, start=share * top, flank=flank),
                 positive=True,
             )
-
-
-def _clipped(history: History, limit: float) -> Floats:
-    """What an angle reading that stops at a limit [deg] lacks."""
-    # A sensor at its limit shows too little, never too much.
-    over = np.maximum(np.abs(history.angle_deg) - limit, 0.0)
-    return np.asarray(-np.sign(history.angle_deg) * over)[:, None]
-
-
-def _over(history: History, start: float, flank: int) -> Floats:
-    """Lack of twist in proportion to the load beyond a start [N m]; flank 0 stands for both."""
-    over = -np.maximum(np.abs(history.applied_nm) - start, 0.0)
-    here = 1.0 if flank == 0 else (history.side == flank)
-    return np.asarray(over * history.side * here)[:, None]
 
 
 def _curves(history: History) -> Iterator[UnnamedShape]:
@@ -251,40 +205,12 @@ def _curves(history: History) -> Iterator[UnnamedShape]:
         lambda h: h.sense[:, None] * hats(h.load_nm, rough),
     )
     if history.time_s is not None and history.usual_step_s > 0:
-        yield UnnamedShape("loop by rate", "where the rate is high", _rates)
-        longest = float(np.bincount(history.run, _lapse(history)).max())
+        yield UnnamedShape("loop by rate", "where the rate is high", rates)
+        longest = float(np.bincount(history.run, lapse(history)).max())
         delays = np.geomspace(FEWEST_STEPS * history.usual_step_s, max(longest, 1e-9), 5)[:4]
         yield UnnamedShape(
-            "relaxation", "at holds and after reversals", partial(_relaxing, delays=delays)
+            "relaxation", "at holds and after reversals", partial(relaxing, delays=delays)
         )
-
-
-def _lapse(history: History) -> Floats:
-    """Time since the sample before, none at the start of a run [s]."""
-    assert history.time_s is not None
-    step = np.diff(history.time_s, prepend=history.time_s[:1])
-    step[history.run_starts] = 0.0
-    return step
-
-
-def _rates(history: History) -> Floats:
-    """Rate of the torque, plain and with a digressive power."""
-    step, lapse = np.diff(history.applied_nm, prepend=history.applied_nm[:1]), _lapse(history)
-    rate = np.divide(step, lapse, out=np.zeros_like(step), where=lapse > 0)
-    first = history.run_starts
-    rate[first] = rate[np.minimum(first + 1, len(rate) - 1)]
-    return np.column_stack([rate, np.sign(rate) * np.sqrt(np.abs(rate))])
-
-
-def _relaxing(history: History, delays: Floats) -> Floats:
-    """Torque followed late, with any sign."""
-    assert history.time_s is not None
-    return np.column_stack(
-        [
-            _core.creep_state(history.applied_nm, history.time_s, history.restart, float(delay))
-            for delay in delays
-        ]
-    )
 
 
 def _cells(history: History) -> Iterator[UnnamedShape]:
@@ -317,7 +243,7 @@ def _runs(history: History) -> Iterator[UnnamedShape]:
         yield UnnamedShape(
             "one run apart",
             f"run {number + 1}",
-            partial(_one_run, number),
+            partial(one_run, number),
         )
 
 
@@ -340,12 +266,23 @@ def _trends(history: History) -> Iterator[UnnamedShape]:
         yield UnnamedShape(
             "drift in time",
             "dying out over the recording",
-            partial(_constant, np.exp(-share / tau)[:, None]),
+            partial(constant, np.exp(-share / tau)[:, None]),
         )
 
 
 def _windows(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
-    """An offset of its own for each of many consecutive windows."""
+    """An offset of its own for each of many consecutive windows.
+
+    Parameters
+    ----------
+    history : History
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+
+    Yields
+    ------
+    UnnamedShape
+    """
     index = np.flatnonzero(fitted)
     for count in (15, 40):
         if len(index) < 12 * count:
@@ -356,7 +293,7 @@ def _windows(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
         yield UnnamedShape(
             "wandering of the zero",
             "over the whole recording",
-            partial(_constant, (window[:, None] == np.arange(count)).astype(np.float64)),
+            partial(constant, (window[:, None] == np.arange(count)).astype(np.float64)),
         )
 
 

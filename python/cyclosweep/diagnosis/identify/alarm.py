@@ -113,6 +113,11 @@ class Alarm:
             Name of an effect, or family of an unnamed shape.
         evidence : float
             In nat.
+
+        Returns
+        -------
+        float
+            In nat.
         """
         return evidence - self.start.get(name, 0.0)
 
@@ -160,5 +165,16 @@ def tail_quantile(values: Floats, level: float) -> float:
 
 
 def _named(scan: Scan, name: str) -> bool:
-    """Whether a hypothesis is a named effect."""
+    """Whether a hypothesis is a named effect.
+
+    Parameters
+    ----------
+    scan : Scan
+    name : str
+        Name of the hypothesis.
+
+    Returns
+    -------
+    bool
+    """
     return bool(scan.library.signatures[scan.groups[name][0]].named)

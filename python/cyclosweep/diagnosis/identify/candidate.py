@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import FAMILIES_ALIKE, UnnamedShape
 from cyclosweep.diagnosis.identify.alarm import Alarm
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.scan import Scan
+from cyclosweep.diagnosis.identify.scan import Scan, shape_choice_penalty
 from cyclosweep.simulation.effects import Effect, Shape
 
 UNNAMED_PENALTY = 4.0
@@ -34,10 +36,46 @@ def prior_penalty(name: str, effect: Effect | None, shape: Shape) -> float:
     Returns
     -------
     float
+        In nat.
     """
     if effect is None:
         return OTHER_PENALTIES.get(name, UNNAMED_PENALTY)
     return effect.penalty(shape)
+
+
+def shape_penalty(joint: FittedStructure, before: Scan) -> float:
+    """Log of how many of its library's shapes of the last term a recording tells apart.
+
+    Parameters
+    ----------
+    joint : FittedStructure
+        With the term as the last.
+    before : Scan
+        Of the structure without it.
+
+    Returns
+    -------
+    float
+        In nat.
+    """
+    last = len(joint.terms) - 1
+    places, ranges = [], []
+    for k, parameter in enumerate(joint.fit_parameters):
+        if parameter.term != last or parameter.name == "amplitude":
+            continue
+        shapes = [
+            before.library.signatures[member].shape
+            for member in before.groups.get(joint.terms[last].name, ())
+        ]
+        each = [
+            parameter.to_scale(shape[parameter.name]) for shape in shapes if parameter.name in shape
+        ]
+        if len(each) and max(each) > min(each):
+            places.append(len(joint.beta) + k)
+            ranges.append(max(each) - min(each))
+    if not places:
+        return 0.0
+    return shape_choice_penalty(joint.information(places), np.array(ranges))
 
 
 @dataclass(frozen=True, eq=False)

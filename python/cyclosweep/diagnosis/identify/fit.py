@@ -120,6 +120,11 @@ class ContactFit(FittedStructure):
         predictions : sequence of LeftOutPrediction
         baseline_deg, structure_deg : float
             Root mean square errors over all of them [deg].
+
+        Returns
+        -------
+        float
+            At least so many times likelier.
         """
         if not self.terms:
             return 1.0
@@ -139,6 +144,10 @@ class ContactFit(FittedStructure):
             Not needed.
         unsteady : bool
             Not needed.
+
+        Returns
+        -------
+        tuple of Finding
         """
         return ()
 
@@ -223,12 +232,38 @@ def fit(
 
 
 def _value(term: Term, name: str) -> float:
-    """Value of a nonlinear parameter of a term."""
+    """Value of a nonlinear parameter of a term.
+
+    Parameters
+    ----------
+    term : Term
+    name : str
+        Name of a shape parameter, or ``"amplitude"``.
+
+    Returns
+    -------
+    float
+    """
     return term.amplitude if name == "amplitude" else float(term.shape[name])
 
 
 def _log_likelihood_ratio(problem: Problem, noise: Noise, mean: Floats, held: Flags) -> float:
-    """Log likelihood of a block under the trained model over that of its own best baseline."""
+    """Log likelihood of a block under the trained model over that of its own best baseline.
+
+    Parameters
+    ----------
+    problem : Problem
+    noise : Noise
+    mean : ndarray, shape (n,)
+        Twist of all rows by the trained model [deg].
+    held : ndarray of bool, shape (n,)
+        Rows of the block.
+
+    Returns
+    -------
+    float
+        In nat.
+    """
     gap = gaps(held, problem.history.run, problem.history.time_s)
     block = replace(problem, fitted=held, held_out=~held, gap=gap)
     local = replace(noise, gap=gap[held])

@@ -222,6 +222,10 @@ class FittedStructure(ABC):
             Correlation of the residual between runs.
         unsteady : bool
             Whether the loops drift from run to run.
+
+        Returns
+        -------
+        tuple of Finding
         """
 
     @cached_property
@@ -308,6 +312,10 @@ class FittedStructure(ABC):
             Place of a parameter of a linear term among all parameters.
         step : float
             Change of it, in the fit's own scale.
+
+        Returns
+        -------
+        FittedStructure
         """
         if place < len(self.beta):
             beta = self.beta.copy()

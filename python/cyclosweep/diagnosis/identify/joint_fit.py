@@ -29,6 +29,7 @@ def usual_change(parameter: FitParameter, value: float) -> float:
     Returns
     -------
     float
+        In the fit's own scale.
     """
     quantity = parameter.quantity
     if quantity.logarithmic:
@@ -117,7 +118,18 @@ class JointFit:
         )
 
     def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats]:
-        """Columns of the linear parameters, and the precision with which each is known before."""
+        """Columns of the linear parameters, and the precision with which each is known before.
+
+        Parameters
+        ----------
+        terms : tuple of Term
+        history : History
+
+        Returns
+        -------
+        columns : ndarray, shape (n, k)
+        hold : ndarray, shape (k,)
+        """
         parts = [line_design(history, history.elastic_nm, one_sided=self.problem.one_sided)]
         hold = [np.zeros(self.problem.line_columns)]
         for term in terms:
@@ -131,6 +143,13 @@ class JointFit:
 
     def _evaluate(self, values: Floats, inner: int) -> tuple[Floats, History, Floats, Floats]:
         """Solve path and linear parameters at these values of the nonlinear ones.
+
+        Parameters
+        ----------
+        values : ndarray
+            Nonlinear parameters, in the fit's own scale.
+        inner : int
+            Rounds in which path and linear parameters are solved in turn.
 
         Returns
         -------
@@ -155,7 +174,20 @@ class JointFit:
         return shifted - white @ beta, history, mean, beta
 
     def _calibrated(self, history: History, beta: Floats, mean: Floats) -> History:
-        """Path of the shaft with the fitted line, and with the fitted twist where nothing slips."""
+        """Path of the shaft with the fitted line, and with the fitted twist where nothing slips.
+
+        Parameters
+        ----------
+        history : History
+        beta : ndarray
+            Linear parameters.
+        mean : ndarray, shape (n,)
+            Modelled twist of all rows [deg].
+
+        Returns
+        -------
+        History
+        """
         play = history.free_play_deg if self.problem.one_sided else max(float(beta[2]), 0.0)
         compliance = float(beta[1])
         if compliance <= 0:
@@ -192,7 +224,14 @@ class JointFit:
                     break
 
     def _follow_amplitudes(self, history: History, beta: Floats) -> None:
-        """Compute shapes anew that depend on the amplitudes."""
+        """Compute shapes anew that depend on the amplitudes.
+
+        Parameters
+        ----------
+        history : History
+        beta : ndarray
+            Linear parameters.
+        """
         first, terms = self.problem.line_columns, []
         for term in self.terms:
             width = 0 if term.slips else term.columns(history).shape[1]
@@ -236,6 +275,10 @@ def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
     target : ndarray, shape (n,)
     hold : ndarray, shape (k,)
         Precision with which each parameter is known beforehand to be near zero.
+
+    Returns
+    -------
+    ndarray, shape (k,)
     """
     norm = np.sqrt(np.einsum("ij,ij->j", design, design))
     norm = np.where(norm > 0, norm, 1.0)

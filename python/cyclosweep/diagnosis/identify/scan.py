@@ -53,6 +53,7 @@ def vector_penalty(size: Floats, information: Floats) -> float:
     Returns
     -------
     float
+        In nat.
     """
     strength, axes = np.linalg.eigh(information)
     strength = np.maximum(strength, 0.0)
@@ -81,6 +82,7 @@ def shape_choice_penalty(information: Floats, ranges: Floats) -> float:
     Returns
     -------
     float
+        In nat.
     """
     known = np.maximum(np.linalg.eigvalsh(information * np.outer(ranges, ranges)), 0.0)
     return float(0.5 * np.sum(np.log1p(known / (2.0 * np.pi))))
@@ -303,7 +305,19 @@ class Scan:
 
 
 def _whitener(inner: Floats, energy: Floats) -> Floats:
-    """Matrix that turns a signature's scores into independent unit-variance ones."""
+    """Matrix that turns a signature's scores into independent unit-variance ones.
+
+    Parameters
+    ----------
+    inner : ndarray, shape (k, k)
+        Inner products of the projected columns.
+    energy : ndarray, shape (k,)
+        Inner products of the columns before the projection.
+
+    Returns
+    -------
+    ndarray, shape (k, rank)
+    """
     if len(energy) == 1:
         if energy[0] <= 0 or inner[0, 0] < SEEN * energy[0]:
             return np.zeros((1, 0))

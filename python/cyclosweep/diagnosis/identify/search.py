@@ -8,7 +8,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.identify.alarm import Alarm
-from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty
+from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty, shape_penalty
 from cyclosweep.diagnosis.identify.fit import ContactFit, fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import (
@@ -16,7 +16,6 @@ from cyclosweep.diagnosis.identify.scan import (
     evidence,
     likelihood_gain,
     scan,
-    shape_choice_penalty,
     vector_penalty,
 )
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms
@@ -147,6 +146,10 @@ class Search:
         fitted : FittedStructure
         gain : float
             Its log evidence over the baseline [nat].
+
+        Returns
+        -------
+        Candidate
         """
         candidate = self._candidate(fitted, gain, 0.0)
         self.visited[candidate.names] = candidate
@@ -205,7 +208,20 @@ class Search:
         )
 
     def _candidate(self, fitted: FittedStructure, gain: float, prior: float) -> Candidate:
-        """Candidate of a fitted structure, its residual looked through."""
+        """Candidate of a fitted structure, its residual looked through.
+
+        Parameters
+        ----------
+        fitted : FittedStructure
+        gain : float
+            Log evidence over the baseline [nat].
+        prior : float
+            Log prior odds [nat].
+
+        Returns
+        -------
+        Candidate
+        """
         found = find_sinusoid(fitted.history, self.problem.fitted, fitted.residual)
         return Candidate(fitted, gain, prior, self._scan(fitted), found, self.alarm)
 
@@ -219,7 +235,17 @@ class Search:
         return max(fitted.chi2 - self.noise.freedom, 0.0)
 
     def _gain(self, before: FittedStructure, after: FittedStructure) -> float:
-        """Twice the log-likelihood gained from one fit to the next."""
+        """Twice the log-likelihood gained from one fit to the next.
+
+        Parameters
+        ----------
+        before : FittedStructure
+        after : FittedStructure
+
+        Returns
+        -------
+        float
+        """
         drop = before.chi2 - after.chi2
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
@@ -269,41 +295,48 @@ class Search:
     def _added(
         self, parent: Candidate, joint: FittedStructure, rank: float, penalty: float
     ) -> float:
-        """Log evidence that the last term of a joint fit adds to a structure [nat]."""
+        """Log evidence that the last term of a joint fit adds to a structure [nat].
+
+        Parameters
+        ----------
+        parent : Candidate
+            The structure to which something is added.
+        joint : FittedStructure
+            With the new term as the last.
+        rank : float
+            Number of its amplitudes that the recording tells apart.
+        penalty : float
+            Charge for the choice of its shape [nat].
+
+        Returns
+        -------
+        float
+            In nat.
+        """
         gain = self._gain(parent.fit, joint)
         effect = joint.terms[-1].effect
         if effect is not None and effect.vector:
             places = joint.amplitude_places(len(joint.terms) - 1)
             return 0.5 * gain - vector_penalty(joint.beta[places], joint.information(places))
         if effect is None or not effect.dense:
-            penalty = max(penalty, self._shape_penalty(joint, parent.scan))
+            penalty = max(penalty, shape_penalty(joint, parent.scan))
         return float(evidence(gain, rank)) - penalty
 
-    def _shape_penalty(self, joint: FittedStructure, before: Scan) -> float:
-        """Log of how many of its library's shapes of the last term a recording tells apart."""
-        last = len(joint.terms) - 1
-        places, ranges = [], []
-        for k, parameter in enumerate(joint.fit_parameters):
-            if parameter.term != last or parameter.name == "amplitude":
-                continue
-            shapes = [
-                before.library.signatures[member].shape
-                for member in before.groups.get(joint.terms[last].name, ())
-            ]
-            each = [
-                parameter.to_scale(shape[parameter.name])
-                for shape in shapes
-                if parameter.name in shape
-            ]
-            if len(each) and max(each) > min(each):
-                places.append(len(joint.beta) + k)
-                ranges.append(max(each) - min(each))
-        if not places:
-            return 0.0
-        return shape_choice_penalty(joint.information(places), np.array(ranges))
-
     def _hypotheses_to_add(self, candidate: Candidate, most: int, least_named: int) -> list[str]:
-        """Hypotheses worth adding to a structure, strongest first, with so many named effects."""
+        """Hypotheses worth adding to a structure, strongest first, with so many named effects.
+
+        Parameters
+        ----------
+        candidate : Candidate
+        most : int
+            Most hypotheses, whatever they are.
+        least_named : int
+            Named effects that are taken even beyond that.
+
+        Returns
+        -------
+        list of str
+        """
         excesses = candidate.excesses
         good = sorted(
             (name for name, value in excesses.items() if value > self.threshold),

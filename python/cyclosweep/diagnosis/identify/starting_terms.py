@@ -73,7 +73,19 @@ def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, f
 
 
 def _sinusoid_gain(parent: Candidate, term: Term) -> float:
-    """Evidence of the sinusoid in a residual before the penalty for its search [nat]."""
+    """Evidence of the sinusoid in a residual before the penalty for its search [nat].
+
+    Parameters
+    ----------
+    parent : Candidate
+        The structure to which something is added.
+    term : Term
+
+    Returns
+    -------
+    float
+        In nat.
+    """
     fitted = parent.fit
     use, noise = fitted.problem.fitted, fitted.noise
     _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
@@ -82,12 +94,33 @@ def _sinusoid_gain(parent: Candidate, term: Term) -> float:
 
 
 def _amplitude(found: Scan, signature: Signature) -> float:
-    """Friction limit that a scan suggests for a signature."""
+    """Friction limit that a scan suggests for a signature.
+
+    Parameters
+    ----------
+    found : Scan
+    signature : Signature
+
+    Returns
+    -------
+    float
+        In N m, or a share of the torque.
+    """
     column = signature.first
     inner = found.gram[column, column]
     return float(max(found.score[column] / inner / signature.scale[0], 1e-6))
 
 
 def _far_apart(signature: Signature, other: Signature) -> bool:
-    """Whether two shapes of one effect are far enough apart to be worth a second start."""
+    """Whether two shapes of one effect are far enough apart to be worth a second start.
+
+    Parameters
+    ----------
+    signature : Signature
+    other : Signature
+
+    Returns
+    -------
+    bool
+    """
     return signature.effect is not None and signature.effect.far_apart(signature.shape, other.shape)

@@ -146,6 +146,7 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
     Returns
     -------
     float
+        In deg.
     """
     use = fitted.problem.fitted
     recalibrated = _recalibration(fitted)

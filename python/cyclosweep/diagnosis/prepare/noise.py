@@ -111,6 +111,11 @@ class Noise:
             Twist for unit parameters [deg].
         weight : ndarray, shape (n,)
             As `residual` gives it [1/deg].
+
+        Returns
+        -------
+        ndarray, shape (n,) or (n, k)
+            Of unit variance where the noise alone is.
         """
         return self.whiten(columns * (weight if columns.ndim == 1 else weight[:, None]))
 

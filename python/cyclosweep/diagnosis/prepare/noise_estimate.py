@@ -75,10 +75,28 @@ def estimate_noise(
 def _coarse_noise(
     angle: Floats, basis: Floats, gap: Floats, resolution: float, start_sigma: float
 ) -> Noise | None:
-    """Noise below a reading so coarse that its intervals count; None where it is fine enough."""
+    """Noise below a reading so coarse that its intervals count; None where it is fine enough.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Measured twist [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    gap : ndarray, shape (n,)
+        Steps since the row before, zero where unrelated.
+    resolution : float
+        Step of the reading [deg].
+    start_sigma : float
+        Standard deviation from which to start [deg].
+
+    Returns
+    -------
+    Noise or None
+    """
     count = len(angle)
     inner = basis[:, : max(count // 3, 3)]
-    fine = _interval_sigma(angle, basis, resolution, start_sigma)
+    fine = _interval_sigma(angle, basis, resolution)
     if fine >= resolution / COARSE_STEP:
         return None
     freedom = max(count - inner.shape[1], 1)
@@ -93,7 +111,21 @@ def _coarse_noise(
 
 
 def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float]:
-    """Restricted likelihood of the autocorrelation: its best value and an upper one."""
+    """Restricted likelihood of the autocorrelation: its best value and an upper one.
+
+    Parameters
+    ----------
+    left : ndarray, shape (n,)
+        What the basis leaves of the twist, without outliers [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    gap : ndarray, shape (n,)
+        Steps since the row before, zero where unrelated.
+
+    Returns
+    -------
+    best, upper : float
+    """
     near = np.flatnonzero((gap > 0) & (gap < 1.5))
     if len(near) < 20:
         return 0.0, 0.0
@@ -130,7 +162,24 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
 def _size(
     noise: Noise, left: Floats, basis: Floats, freedom: float
 ) -> tuple[float, float, tuple[float, float]]:
-    """Size of the whitened noise, the tail of its distribution, slope and square of its score."""
+    """Size of the whitened noise, the tail of its distribution, slope and square of its score.
+
+    Parameters
+    ----------
+    noise : Noise
+        With the autocorrelation.
+    left : ndarray, shape (n,)
+        What the basis leaves of the twist [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    freedom : float
+        Degrees of freedom that the basis leaves.
+
+    Returns
+    -------
+    sigma, tail, moments
+        Standard deviation [deg], degrees of freedom, mean slope and mean square of the score.
+    """
     white = noise.whiten(left)
     inner = orthonormal(noise.whiten(basis))
     white = white - inner @ (inner.T @ white)
@@ -164,7 +213,26 @@ def _size(
 
 
 def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float) -> Floats:
-    """One damped Fisher-scoring step of the mean of a coarse reading within a basis."""
+    """One damped Fisher-scoring step of the mean of a coarse reading within a basis.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Measured twist [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    mean : ndarray, shape (n,)
+        Modelled twist [deg].
+    sigma : float
+        Standard deviation before rounding [deg].
+    step : float
+        Step of the reading [deg].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In deg.
+    """
     score, information = interval_score(angle, mean, sigma, step)
     gram = basis.T @ (basis * information[:, None])
     gram += (1e-6 * np.trace(gram) / len(gram) + 1e-12) * np.eye(len(gram))
@@ -174,7 +242,23 @@ def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step
 
 
 def _scored_mean(angle: Floats, basis: Floats, noise: Noise, start_sigma: float) -> Floats:
-    """Mean of a coarse reading by Fisher scoring, from wide noise down to the given one."""
+    """Mean of a coarse reading by Fisher scoring, from wide noise down to the given one.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Measured twist [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    noise : Noise
+    start_sigma : float
+        Standard deviation from which to start [deg].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In deg.
+    """
     mean = basis @ (basis.T @ angle)
     sigma = max(start_sigma, noise.sigma_deg)
     while True:
@@ -185,10 +269,24 @@ def _scored_mean(angle: Floats, basis: Floats, noise: Noise, start_sigma: float)
         sigma = max(0.6 * sigma, noise.sigma_deg)
 
 
-def _interval_sigma(angle: Floats, basis: Floats, step: float, start: float) -> float:
+def _interval_sigma(angle: Floats, basis: Floats, step: float) -> float:
     """Standard deviation behind a coarse dial: the largest that the likelihood still allows.
 
     Only readings near a step tell anything, so the model that is taken out is kept small.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Measured twist [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    step : float
+        Step of the reading [deg].
+
+    Returns
+    -------
+    float
+        In deg.
     """
     grid = step / np.geomspace(2.0, 60.0, 24)
     near_a_step = len(angle) * 4.0 * grid / step

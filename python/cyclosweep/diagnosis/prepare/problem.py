@@ -85,6 +85,11 @@ class Problem:
             Modelled twist of all rows [deg].
         rows : ndarray of bool, shape (n,)
             Rows that count, each with the samples averaged in it.
+
+        Returns
+        -------
+        float
+            In deg.
         """
         difference = (self.angle_deg - angle_deg)[rows]
         if not len(difference):
@@ -195,7 +200,18 @@ def prepare(
 
 
 def _rows(recording: Recording, most_rows: int) -> np.ndarray:
-    """Row to which each sample goes; a row never holds samples of two runs, branches or holds."""
+    """Row to which each sample goes; a row never holds samples of two runs, branches or holds.
+
+    Parameters
+    ----------
+    recording : Recording
+    most_rows : int
+        About the largest number of rows.
+
+    Returns
+    -------
+    ndarray of int, shape (samples,)
+    """
     n = len(recording)
     size = int(np.ceil(n / most_rows))
     if size <= 1:

@@ -28,14 +28,41 @@ class Plan:
 
 
 def _line(points: Sequence[float], seconds: float) -> Floats:
-    """Torque along straight ramps of equal duration."""
+    """Torque along straight ramps of equal duration.
+
+    Parameters
+    ----------
+    points : sequence of float
+        Torques at the ends of the ramps [N m].
+    seconds : float
+        Duration of all ramps [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In N m.
+    """
     count = max(int(seconds / STEP_S / max(len(points) - 1, 1)), 4)
     parts = [np.linspace(a, b, count, endpoint=False) for a, b in pairwise(points)]
     return np.concatenate([*parts, [points[-1]]])
 
 
 def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0) -> Load:
-    """Torque, run, position and temperature of consecutive runs."""
+    """Torque, run, position and temperature of consecutive runs.
+
+    Parameters
+    ----------
+    torques : sequence of ndarray
+        Torque of each run [N m].
+    cranks : sequence of float
+        Position of the mesh in each run [deg].
+    warm : float
+        Rise of temperature over all runs [K].
+
+    Returns
+    -------
+    Load
+    """
     run = np.concatenate([np.full(len(t), k, dtype=np.float64) for k, t in enumerate(torques)])
     crank = np.concatenate([np.full(len(t), c) for t, c in zip(torques, cranks, strict=True)])
     share = np.arange(len(run)) / max(len(run) - 1, 1)
@@ -168,7 +195,17 @@ def _contested(rivals: list[Candidate]) -> list[tuple[str, list[Term], Candidate
 
 
 def _history(search: Search, plan: Plan) -> History:
-    """Load history of a programme, with the path of the calibrated line alone."""
+    """Load history of a programme, with the path of the calibrated line alone.
+
+    Parameters
+    ----------
+    search : Search
+    plan : Plan
+
+    Returns
+    -------
+    History
+    """
     base = search.baseline.fit.history
     torque, run, crank, warm = plan.make(base.largest_torque_nm)
     side = np.where(torque < 0, -1.0, 1.0)
@@ -195,7 +232,25 @@ def _detectability(
     weakest: str | None,
     tolerance_deg: float,
 ) -> float:
-    """Signal-to-noise ratio of what separates two explanations, or of the weakest effect."""
+    """Signal-to-noise ratio of what separates two explanations, or of the weakest effect.
+
+    Parameters
+    ----------
+    search : Search
+    history : History
+        Load history of a programme.
+    terms : list of (str, list of Term, Candidate)
+        Two names, each with the terms that only this explanation has; may be empty.
+    weakest : str or None
+        Effect to show where there are no two explanations.
+    tolerance_deg : float
+        Size of that effect [deg].
+
+    Returns
+    -------
+    float
+        -inf where the programme cannot show it.
+    """
     base = np.column_stack([np.ones(len(history)), history.applied_nm, history.side])
     sigma = search.noise.sigma_deg
     if terms:
@@ -223,7 +278,21 @@ def _detectability(
 
 
 def _twist(candidate: Candidate, term: Term, history: History) -> Floats:
-    """Twist of a fitted term on another history."""
+    """Twist of a fitted term on another history.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The fitted structure of the term.
+    term : Term
+    history : History
+        The other load history.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In deg.
+    """
     columns = term.columns(history)
     if term.slips:
         return np.asarray(columns[:, 0] * term.amplitude)

@@ -50,7 +50,17 @@ def judge_left_out(structure: FittedStructure) -> HeldOutResult:
 
 
 def _block(problem: Problem, prediction: LeftOutPrediction) -> HeldOutBlock:
-    """Errors on one block, and where the flank is predicted what stands beside them."""
+    """Errors on one block, and where the flank is predicted what stands beside them.
+
+    Parameters
+    ----------
+    problem : Problem
+    prediction : LeftOutPrediction
+
+    Returns
+    -------
+    HeldOutBlock
+    """
     rows = prediction.rows
     plain = HeldOutBlock(
         block=prediction.label,
@@ -88,6 +98,7 @@ def distance_to_curve(problem: Problem, angle_deg: Floats, rows: Flags) -> float
     Returns
     -------
     float
+        In deg.
     """
     torque, measured = problem.history.applied_nm, problem.angle_deg
     chord = float(np.ptp(measured[rows])) / max(float(np.ptp(torque[rows])), 1e-12)

@@ -57,8 +57,24 @@ def self_check(search: Search, best: Candidate | None, rivals: list[Candidate]) 
 def _twins(
     search: Search, parent: Candidate, candidate: Candidate, index: int, rng: np.random.Generator
 ) -> tuple[float, dict[str, float]]:
-    """Power, and the share of twins in which each hypothesis comes out on top."""
-    signal = _whitened_signal(search, parent, candidate, index)
+    """Power, and the share of twins in which each hypothesis comes out on top.
+
+    Parameters
+    ----------
+    search : Search
+    parent : Candidate
+        The structure without the term.
+    candidate : Candidate
+        The structure with it.
+    index : int
+        Index of the term.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    float, dict of str to float
+    """
+    signal = _whitened_signal(search, candidate, index)
     tangent = parent.fit.tangent
     left = signal - tangent @ (tangent.T @ signal)
     scan = parent.scan
@@ -75,8 +91,20 @@ def _twins(
     return float(np.mean(found)), dict(sorted(row.items(), key=lambda item: -item[1]))
 
 
-def _whitened_signal(search: Search, parent: Candidate, candidate: Candidate, index: int) -> Floats:
-    """Whitened twist of one term, on the fitted rows."""
+def _whitened_signal(search: Search, candidate: Candidate, index: int) -> Floats:
+    """Whitened twist of one term, on the fitted rows.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+    index : int
+        Index of the term.
+
+    Returns
+    -------
+    ndarray, shape (fitted,)
+    """
     use = search.problem.fitted
     part = candidate.fit.contribution(index)[use]
     _, weight = search.noise.residual(search.problem.angle_deg[use], candidate.fit.mean_deg[use])

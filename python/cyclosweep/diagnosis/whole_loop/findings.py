@@ -93,6 +93,16 @@ def hidden_by_friction(problem: Problem, forecast: Forecast) -> str | None:
 
 
 def _finding(topic: str, text: str) -> Finding:
+    """One finding of a topic and its text.
+
+    Parameters
+    ----------
+    topic, text : str
+
+    Returns
+    -------
+    Finding
+    """
     return Finding(topic=topic, text=text)
 
 
@@ -105,6 +115,18 @@ def _half_interval(forecast: Forecast, kind: str, effect: str = "") -> float:
     """Half width of the 95 % interval of a parameter, in its own unit.
 
     ``effect`` is the one whose amplitude is asked for; empty for a parameter of the model itself.
+
+    Parameters
+    ----------
+    forecast : Forecast
+    kind : str
+        Kind of the `ModelParameter`.
+    effect : str
+        Effect whose amplitude it is; empty where it is none.
+
+    Returns
+    -------
+    float
     """
     for k, parameter in enumerate(forecast.parameters):
         if parameter.kind == kind and (not effect or _amplitude_of(forecast, k) == effect):
@@ -115,7 +137,18 @@ def _half_interval(forecast: Forecast, kind: str, effect: str = "") -> float:
 
 
 def _amplitude_of(forecast: Forecast, place: int) -> str:
-    """Effect whose amplitude a parameter is; empty where it is none."""
+    """Effect whose amplitude a parameter is; empty where it is none.
+
+    Parameters
+    ----------
+    forecast : Forecast
+    place : int
+        Index of the parameter.
+
+    Returns
+    -------
+    str
+    """
     parameter = forecast.parameters[place]
     if parameter.term < 0 or parameter.name != "amplitude":
         return ""
@@ -123,7 +156,19 @@ def _amplitude_of(forecast: Forecast, place: int) -> str:
 
 
 def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
-    """Dead zone, and what a gauge reads as play."""
+    """Dead zone, and what a gauge reads as play.
+
+    Parameters
+    ----------
+    problem : Problem
+    forecast : Forecast
+    hidden : str or None
+        Reason why it cannot be read.
+
+    Returns
+    -------
+    Finding
+    """
     if hidden is not None:
         return _finding("play", f"Not reported, as friction hides it: {hidden}.")
     if problem.one_sided:
@@ -166,12 +211,34 @@ def _load_friction(forecast: Forecast) -> Finding:
 
 
 def _stiffening(problem: Problem, forecast: Forecast) -> Finding:
-    """Slope of the elastic line at small and at large torque."""
+    """Slope of the elastic line at small and at large torque.
+
+    Parameters
+    ----------
+    problem : Problem
+    forecast : Forecast
+
+    Returns
+    -------
+    Finding
+    """
     top = float(np.abs(problem.history.applied_nm[problem.fitted]).max())
     law = elastic_law(forecast.model, top)
     assert law is not None
 
     def slope(low: float, high: float) -> float:
+        """Mean slope of the elastic line on both flanks.
+
+        Parameters
+        ----------
+        low, high : float
+            Loads between which it is taken [N m].
+
+        Returns
+        -------
+        float
+            In deg/(N m).
+        """
         ends = [
             float(np.interp(s * t, law.torque_nm, law.twist_deg))
             for s in (1, -1)
@@ -208,7 +275,18 @@ def secant_stiffnesses(problem: Problem) -> Floats:
 
 
 def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
-    """Mean secant stiffness with its interval over runs and flanks."""
+    """Mean secant stiffness with its interval over runs and flanks.
+
+    Parameters
+    ----------
+    problem : Problem
+    unsteady : bool
+        Whether the loops drift from run to run.
+
+    Returns
+    -------
+    Finding
+    """
     if unsteady:
         return _finding(
             "stiffness",
@@ -232,7 +310,19 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
 
 
 def _staircase(problem: Problem, forecast: Forecast, repeats: float) -> Finding:
-    """Steps that repeat at the same positions."""
+    """Steps that repeat at the same positions.
+
+    Parameters
+    ----------
+    problem : Problem
+    forecast : Forecast
+    repeats : float
+        Correlation of the residual between runs.
+
+    Returns
+    -------
+    Finding
+    """
     rows = problem.whole_fitted
     left = (problem.angle_deg - forecast.angle_deg)[rows]
     period = step_period(problem.angle_deg[rows], left)

@@ -118,6 +118,11 @@ class WholeLoopFit(FittedStructure):
             Not needed.
         baseline_deg, structure_deg : float
             Root mean square errors over all of them [deg].
+
+        Returns
+        -------
+        float
+            At least so many times likelier.
         """
         ratio = float(np.log(baseline_deg / max(structure_deg, 1e-12)))
         return float(np.exp(min(INDEPENDENT_PIECES * ratio, 200.0)))
@@ -135,6 +140,10 @@ class WholeLoopFit(FittedStructure):
             Correlation of the residual between runs.
         unsteady : bool
             Whether the loops drift from run to run.
+
+        Returns
+        -------
+        tuple of Finding
         """
         return findings(self.forecast, repeats, unsteady=unsteady)
 

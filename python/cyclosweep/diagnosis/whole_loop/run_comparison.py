@@ -88,14 +88,37 @@ def steadiness(known: Forecast) -> list[Steadiness]:
 
 
 def _by_run(problem: Problem, rows: Flags) -> list[Flags]:
-    """Rows of each run that has enough of them to be compared."""
+    """Rows of each run that has enough of them to be compared.
+
+    Parameters
+    ----------
+    problem : Problem
+    rows : ndarray of bool, shape (n,)
+        Rows that count.
+
+    Returns
+    -------
+    list of ndarray of bool, shape (n,)
+    """
     run = problem.history.run
     parts = [rows & (run == r) for r in np.unique(run[rows])]
     return [part for part in parts if np.count_nonzero(part) > FEWEST_ROWS]
 
 
 def _same_range(first: Floats, second: Floats) -> bool:
-    """Whether the torques of two runs reach about as far on either side."""
+    """Whether the torques of two runs reach about as far on either side.
+
+    Parameters
+    ----------
+    first : ndarray
+        Torques of one run [N m].
+    second : ndarray
+        Torques of the other [N m].
+
+    Returns
+    -------
+    bool
+    """
     room = SAME_RANGE * max(float(np.ptp(first)), float(np.ptp(second)))
     ends = (first.min() - second.min(), first.max() - second.max())
     return bool(np.max(np.abs(ends)) <= room)
@@ -135,7 +158,24 @@ def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
 
 
 def _means(residual: Floats, cell: Floats, first: Flags, second: Flags) -> tuple[Floats, Floats]:
-    """Mean residuals of two runs in every cell that both have visited."""
+    """Mean residuals of two runs in every cell that both have visited.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (n,)
+        Measured less modelled twist [deg].
+    cell : ndarray, shape (n,)
+        Number of the cell of each row.
+    first : ndarray of bool, shape (n,)
+        Rows of one run.
+    second : ndarray of bool, shape (n,)
+        Rows of the other.
+
+    Returns
+    -------
+    ndarray, ndarray, shape (cells,)
+        In deg.
+    """
     a, b = [], []
     for value in np.unique(cell[first]):
         one, two = first & (cell == value), second & (cell == value)

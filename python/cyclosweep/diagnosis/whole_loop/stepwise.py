@@ -64,6 +64,16 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
 
     One at a time, friction takes the place of the stiffening and does not give it back; and the
     crossings of the dead zone leave many small minima.
+
+    Parameters
+    ----------
+    search : Search
+    base : Forecast
+        That of the published model alone.
+
+    Returns
+    -------
+    Forecast or None
     """
     problem = search.problem
     history = problem.history
@@ -95,7 +105,18 @@ def _crosses_late(problem: Problem) -> bool:
 
 
 def _prune(problem: Problem, best: Forecast) -> Forecast:
-    """Leave out what gains less than its parameters are charged."""
+    """Leave out what gains less than its parameters are charged.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    Forecast
+    """
     for name in sorted(best.names):
         kept = [k for k, term in enumerate(best.terms) if term.name != name]
         if not kept:
@@ -109,7 +130,18 @@ def _prune(problem: Problem, best: Forecast) -> Forecast:
 
 
 def _extend(search: Search, best: Forecast) -> Forecast:
-    """Add effects that look like what is left, as long as they gain more than they are charged."""
+    """Add effects that look like what is left, as long as they gain more than they are charged.
+
+    Parameters
+    ----------
+    search : Search
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    Forecast
+    """
     problem = search.problem
     known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
     for _ in range(MOST_ADDED):
@@ -137,12 +169,33 @@ def _cost(model: Forecast) -> float:
 
 
 def _better(first: Forecast, second: Forecast) -> Forecast:
-    """Forecast with the smaller error; the first where they are equal."""
+    """Forecast with the smaller error; the first where they are equal.
+
+    Parameters
+    ----------
+    first : Forecast
+    second : Forecast
+
+    Returns
+    -------
+    Forecast
+    """
     return second if second.error_deg < first.error_deg else first
 
 
 def _predicts_better(model: Forecast, base: Forecast) -> bool:
-    """Whether a model predicts stretches that were left out much better than the baseline."""
+    """Whether a model predicts stretches that were left out much better than the baseline.
+
+    Parameters
+    ----------
+    model : Forecast
+    base : Forecast
+        That of the published model alone.
+
+    Returns
+    -------
+    bool
+    """
     return left_out_error(model) < (1.0 - LEAST_GAIN) * left_out_error(base)
 
 
@@ -159,7 +212,21 @@ def left_out_error(model: Forecast) -> float:
 
 
 def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:
-    """Fit a simulation with one more effect, starting from a small amplitude of it."""
+    """Fit a simulation with one more effect, starting from a small amplitude of it.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : Forecast
+        The best simulation so far.
+    effect : Effect
+    shape : dict of str to float
+        Shape parameters.
+
+    Returns
+    -------
+    Forecast
+    """
     columns = effect.columns(best.history, shape)
     largest = np.abs(columns).max(axis=0, initial=1e-12)
     little = 0.01 * problem.history.largest_twist_deg / np.maximum(largest, 1e-12)
@@ -176,6 +243,17 @@ def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, f
 
     Others are left to recordings with more than one rate, position or temperature: along a single
     ramp each of them can take any shape.
+
+    Parameters
+    ----------
+    search : Search
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    list of (str, dict of str to float)
+        Name and shape, the one that explains most first.
     """
     problem = search.problem
     rows = problem.fitted
