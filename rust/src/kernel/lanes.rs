@@ -55,10 +55,18 @@ pub(crate) trait Variant {
 pub(crate) struct InputLanes {
     scalars: Box<[Lanes; SCALARS]>,
     segments: Vec<[Lanes; SEGMENT_FIELDS.len()]>,
-    half_pitch_sines: Lanes,
+    half_pitch_sines: Box<[Lanes; 1]>,
     /// Place among all inputs of the shaft's diameter at the flange.
     flange: Option<usize>,
-    no_flange: Lanes,
+    no_flange: Box<[Lanes; 1]>,
+}
+
+/// For each value a lane of it.
+fn alike<const N: usize>(values: [f64; N]) -> Box<[Lanes; N]> {
+    let lanes: Vec<Lanes> = values.iter().map(|value| [*value; BLOCK]).collect();
+    lanes
+        .try_into()
+        .unwrap_or_else(|_| Box::new(values.map(|value| [value; BLOCK])))
 }
 
 /// One variant of a block.
@@ -74,15 +82,15 @@ impl InputLanes {
     /// A block of variants that are all alike.
     pub(crate) fn new(inputs: &Inputs) -> Self {
         let mut lanes = Self {
-            scalars: Box::new(Input::ALL.map(|input| [inputs.get(input); BLOCK])),
+            scalars: alike(Input::ALL.map(|input| inputs.get(input))),
             segments: inputs
                 .segments()
                 .iter()
                 .map(|fields| fields.map(|value| [value; BLOCK]))
                 .collect(),
-            half_pitch_sines: [0.0; BLOCK],
+            half_pitch_sines: alike([0.0]),
             flange: inputs.flange_input(),
-            no_flange: [f64::NAN; BLOCK],
+            no_flange: alike([f64::NAN]),
         };
         lanes.find_half_pitch_sines();
         lanes
@@ -116,7 +124,7 @@ impl InputLanes {
     pub(crate) fn find_half_pitch_sines(&mut self) {
         let sines = &half_pitch::SINES.0;
         let pins = &self.scalars[Input::OutputPinCount as usize];
-        for (sine, pins) in self.half_pitch_sines.iter_mut().zip(pins) {
+        for (sine, pins) in self.half_pitch_sines[0].iter_mut().zip(pins) {
             *sine = sines[half_pitch::place(*pins)];
         }
     }
@@ -132,10 +140,10 @@ impl InputLanes {
     pub(crate) fn first(&self) -> Lane<'_> {
         Lane {
             scalars: &self.scalars,
-            half_pitch_sines: &self.half_pitch_sines,
+            half_pitch_sines: &self.half_pitch_sines[0],
             flange: self
                 .flange
-                .map_or(&self.no_flange, |input| self.lanes(input)),
+                .map_or(&self.no_flange[0], |input| self.lanes(input)),
             row: 0,
         }
     }

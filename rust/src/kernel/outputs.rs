@@ -330,9 +330,13 @@ impl Block<'_> {
             }),
             Output::Twist(number) => {
                 let load = loads[number];
-                each(out, |k| {
-                    twist_deg(assembly.slope_deg[k], load, rating.free_play_deg[k])
-                });
+                let (slope, play) = (&assembly.slope_deg, &rating.free_play_deg);
+                // To the other side by as much.
+                if load.is_sign_negative() {
+                    each(out, |k| -twist_deg(slope[k], -load, play[k]));
+                } else {
+                    each(out, |k| twist_deg(slope[k], load, play[k]));
+                }
             }
         }
     }

@@ -22,14 +22,15 @@ pub fn reflected(compliance: f64, ratio_squared: f64) -> f64 {
 }
 
 /// Eq. (13): twist at the input (deg) under n times the nominal torque,
-/// `eta (C* n T_N) 180/pi + gamma`; a negative load turns it to the other side by as much.
+/// `eta (C* n T_N) 180/pi + gamma`, for a load not below zero. A negative load twists to the other
+/// side by as much.
 ///
 /// The whole compliance is multiplied by eta: fewer active pins then mean less twist. An
 /// optimiser will exploit it.
 #[inline(always)]
 #[must_use]
 pub fn twist_deg(slope_deg: f64, load: f64, free_play_deg: f64) -> f64 {
-    slope_deg * load + free_play_deg.copysign(load)
+    slope_deg * load + free_play_deg
 }
 
 /// Twist (deg) at the input for one nominal torque beyond the free play,
