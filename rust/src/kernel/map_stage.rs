@@ -254,14 +254,14 @@ impl Map {
         }
         if needed.inside {
             let out = &mut *parts.inside;
-            for_each_lane!(inputs, mask, |row, lane, _judge| {
+            for_each_lane!(inputs, mask, |row, lane, _checks| {
                 let angles = Angles::get(angles, row);
                 angles.arrangement(lane).inside().put(out, row);
             });
         }
         if needed.statics {
             let out = &mut *parts.statics;
-            for_each_lane!(inputs, mask, |row, lane, _judge| {
+            for_each_lane!(inputs, mask, |row, lane, _checks| {
                 let angles = Angles::get(angles, row);
                 angles.arrangement(lane).statics().put(out, row);
             });
@@ -274,7 +274,7 @@ impl Map {
         }
         if needed.pin_force {
             let (out, factors) = (&mut parts.pin_force_factor, factors());
-            for_each_lane!(inputs, mask, |row, lane, _judge| {
+            for_each_lane!(inputs, mask, |row, lane, _checks| {
                 let map = Angles::get(angles, row).arrangement(lane);
                 out[row] = tabulated_factor(factors, map.lattice());
             });
@@ -282,7 +282,7 @@ impl Map {
         let (published_map, inside) = (&*parts.published_map, &*parts.inside);
         let (statics, participation) = (&*parts.statics, &parts.participation);
         let force_factor = &parts.pin_force_factor;
-        for_each_lane!(inputs, mask, |row, lane, _judge| {
+        for_each_lane!(inputs, mask, |row, lane, _checks| {
             let map = Self::assemble(
                 lane,
                 &Angles::get(angles, row).arrangement(lane),
