@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).parents[3]
-PAGES = [*sorted((ROOT / "proof").glob("*.md")), ROOT / "docs/proof.md", ROOT / "docs/challenge.md"]
+NAMED = ["README.md", "CONTRIBUTING.md", "docs/proof.md", "docs/challenge.md"]
+PAGES = [*sorted((ROOT / "proof").glob("*.md")), *(ROOT / name for name in NAMED)]
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)\s]*)?\)")
 
 
