@@ -47,9 +47,10 @@ solutions, not a measurement.
 _BROKEN = """\
 ## Models with a deliberate error
 
-One error at a time is put into the model, and every row is computed again. A row is broken if it
-agrees for the package as it is and disagrees then. None of the errors may break nothing; a test
-says so.
+One error at a time is put into the model, and every row is computed again. A row is broken if
+its numbers then disagree without an explanation. An explanation is about one computed number: a row
+that disagrees already, and says why, is broken by an error that makes another number of it. None of
+the errors may break nothing; a test says so.
 
 """
 
@@ -158,7 +159,7 @@ def _broken_tables() -> str:
     )
     errors = [name for name in rows.columns if name not in ("kind", "group", "fact")]
     by_row = _grid(
-        ("counted row that agrees", "kind", "broken by"),
+        ("counted row", "kind", "broken by"),
         (
             (row["fact"], row["kind"], ", ".join(e for e in errors if row[e]) or "none of these")
             for row in rows.iter_rows(named=True)
@@ -167,7 +168,6 @@ def _broken_tables() -> str:
     left = "; ".join(untouched(rows)) or "no row"
     return (
         f"{table}\nThe other way round: which errors break a row. Broken by none of them: {left}."
-        " Rows that count and disagree already are not in the list."
         "\n\n"
         f"{by_row}"
     )

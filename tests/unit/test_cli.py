@@ -170,7 +170,7 @@ def test_validate_says_what_counts_and_what_deliberate_errors_break() -> None:
     plain = run("validate", "--broken-models")
     assert plain.returncode == 0, plain.stderr
     assert "disagree and are explained, 0 disagree unexplained" in plain.stdout
-    assert "Broken by none of them: no row." in plain.stdout
+    assert "Broken by none of them: fewest active pins, inside" in plain.stdout
     report = json.loads(run("validate", "--json", "--broken-models").stdout)
     assert report["counts"]["evidence"]["explained"] > 0
     assert report["counts"]["evidence"]["fail"] == report["counts"]["identity"]["fail"] == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
@@ -126,9 +127,34 @@ def test_an_error_breaks_the_row_that_is_about_it(
     assert rows.filter(pl.col("fact") == fact)[error].item()
 
 
-def test_every_counted_row_can_fail(rows: pl.DataFrame) -> None:
-    """Rows that no listed error breaks are known by name; each is a limit of one formula."""
-    assert untouched(rows) == []
+def test_every_counted_row_can_fail(intact: pl.DataFrame, rows: pl.DataFrame) -> None:
+    """Rows that no listed error breaks are known by name; each disagrees by a whole number."""
+    assert untouched(rows) == [
+        "fewest active pins, inside",
+        "McIver: nine pins pulsate less than eight (1 = yes), published-map",
+        "McIver: nine pins pulsate less than eight (1 = yes), statics",
+    ]
+    assert rows.height == intact["counted"].sum()
+
+
+@pytest.mark.parametrize(
+    ("error", "fact", "computed"),
+    [
+        ("E halved", "Eq. (6): extra length of a shoulder / d at D/d = 2", 3.40625),
+        ("E halved", "Eq. (5): 50 mm shaft with its standard keyway, 14 x 5.5 mm / without", 4.2),
+        ("a pin less", "Krol et al. 2019, design 1: inner force", 436.0108),
+        ("e halved", "mean active pins of 8, inside", 7.98266),
+    ],
+)
+def test_an_explanation_does_not_excuse_another_number(
+    intact: pl.DataFrame, error: str, fact: str, computed: float
+) -> None:
+    broken = cs.validate(broken=error)
+    row = broken.row(by_predicate=pl.col("fact") == fact, named=True)
+    assert row["computed"] == pytest.approx(computed, rel=1e-4)
+    assert row["explanation"] == ""
+    assert intact.filter(pl.col("fact") == fact)["explanation"].item() != ""
+    assert tally(broken)["evidence"]["fail"] > 0
 
 
 def test_the_table_of_errors_counts_what_the_rows_say(rows: pl.DataFrame) -> None:
@@ -141,6 +167,15 @@ def test_a_counted_row_needs_a_number_and_a_tolerance() -> None:
         Fact("g", "f", None, 1.0, "1", "derived", "evidence", 0.1)
     with pytest.raises(ValueError, match="needs a number"):
         Fact("g", "f", 1.0, 1.0, "1", "derived", "identity")
+
+
+def test_an_explanation_needs_the_number_that_it_explains() -> None:
+    with pytest.raises(ValueError, match="needs the number"):
+        Fact("g", "f", 1.0, 2.0, "1", "derived", "evidence", 0.1, "", "why")
+    fact = Fact("g", "f", 1.0, 2.0, "1", "derived", "evidence", 0.1, "", "why", 2.0)
+    assert fact.is_explained
+    assert not replace(fact, computed=3.0).is_explained
+    assert not replace(fact, computed=1.0).is_explained
 
 
 def test_an_unknown_error_is_refused_by_name() -> None:

@@ -88,7 +88,9 @@ OUTPUTS: dict[str, Quantity] = {
     "short_width_coefficient": Quantity("K1", "1", "e (i + 1) / R, below 1"),
     "nominal_torque_nm": Quantity("T_N", "N m", "nominal input torque P / omega"),
     "natural_frequency_hz": Quantity(
-        "", "Hz", "sqrt(K*_OS / J) / (2 pi) with the output locked; null without an inertia"
+        "",
+        "Hz",
+        "sqrt(K*_OS / J) / (2 pi) with the output locked; null without an inertia or a K*_OS",
     ),
     "natural_frequency_with_efficiency_hz": Quantity(
         "", "Hz", "the same with the compliance of Eq. (13), compliance_factor C*_OS, for 1 / K*_OS"
@@ -100,13 +102,14 @@ OUTPUTS: dict[str, Quantity] = {
     "output_compliance_rad_per_nm": Quantity(
         "C_OS",
         "rad/(N m)",
-        "at the output, Eq. (11); by statics with the pins' share; given where a stiffness is",
+        "at the output, Eq. (11); by statics with the pins' share; given where a stiffness is; "
+        "null by statics for more than two discs, with all that follows from it, twists included",
     ),
     "output_compliance_statics_rad_per_nm": Quantity(
         "",
         "rad/(N m)",
         "at the output with the pins' share by statics, C_OS^t + C_OP / (N_OP p), whatever the "
-        "criterion",
+        "criterion; given where a stiffness is, else null for more than two discs",
     ),
     "reflected_compliance_rad_per_nm": Quantity("C*_OS", "rad/(N m)", "at the input, Eq. (12)"),
     "reflected_stiffness_nm_per_rad": Quantity("K*_OS", "N m/rad", "1 / C*_OS"),
@@ -117,7 +120,10 @@ OUTPUTS: dict[str, Quantity] = {
         "factor on C*_OS in Eq. (13): eta_OP; 1 by statics and where a stiffness is given",
     ),
     "torque_per_pin_nm": Quantity(
-        "T_O*", "N m", "torque of one pin, T_O over the mean number of active pins, Eqs. (1), (2)"
+        "T_O*",
+        "N m",
+        "torque of one pin, T_O over the mean number of active hole-pin contacts, Eqs. (1), (2); "
+        "of one contact for more than two discs, where a pin has several",
     ),
     "force_per_pin_n": Quantity("F_n", "N", "force of a pin that carries T_O*, Eq. (9)"),
     "pin_force_max_n": Quantity(

@@ -87,6 +87,7 @@ def mciver(model: Model) -> Iterator[Fact]:
             0.0,
             "cited in section 5 of the paper; on the 87:1 drive with another number of pins",
             _MCIVER[criterion],
+            0.0 if _MCIVER[criterion] else None,
         )
 
 

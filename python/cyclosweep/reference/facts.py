@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -51,6 +52,9 @@ class Fact:
         Reason why nothing is computed, source, or what to make of it.
     explanation : str
         Why the two numbers are known to disagree; empty where they should agree.
+    explained : float or None
+        The computed number that the explanation is about. Where another one is computed, the
+        explanation does not hold and the row disagrees without one.
     """
 
     group: str
@@ -63,12 +67,15 @@ class Fact:
     tolerance: float | None = None
     note: str = ""
     explanation: str = ""
+    explained: float | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in get_args(Kind):
             raise ValueError(f"{self.fact}: no such kind of row, {self.kind!r}")
         if self.counted and (self.published is None or self.tolerance is None):
             raise ValueError(f"{self.fact}: a counted row needs a number and a tolerance")
+        if bool(self.explanation) != (self.explained is not None):
+            raise ValueError(f"{self.fact}: an explanation needs the number that it explains")
 
     @property
     def counted(self) -> bool:
@@ -81,3 +88,10 @@ class Fact:
         if self.published is None or self.computed is None or self.tolerance is None:
             return None
         return abs(self.computed - self.published) <= self.tolerance
+
+    @property
+    def is_explained(self) -> bool:
+        """Whether the numbers disagree, and by what the row explains."""
+        if self.ok is not False or self.explained is None or self.computed is None:
+            return False
+        return math.isclose(self.computed, self.explained, rel_tol=1e-3, abs_tol=1e-9)

@@ -83,10 +83,11 @@ def _computed(model: Model) -> Iterator[Fact]:
         tolerance: float,
         note: str,
         explanation: str = "",
+        explained: float | None = None,
     ) -> Fact:
         return Fact(
             GROUP, fact, published, computed, unit, "published", "evidence", tolerance, note,
-            explanation,
+            explanation, explained,
         )  # fmt: skip
 
     force = "pin_force_max_n"
@@ -125,6 +126,7 @@ def _computed(model: Model) -> Iterator[Fact]:
         "11 % more than theirs, which replaces the sum over eight pins by an integral and takes a "
         "pin 45 deg from the worst place: the largest force that holds 23.25 N m with shares by "
         "sine lies between 358.0 and 387.5 N at every position, ours is the worst position",
+        387.5,
     )
 
 

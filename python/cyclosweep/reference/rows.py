@@ -49,7 +49,8 @@ def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.Dat
         ``ok``, ``note``, ``kind``, ``counted``, ``explanation``. ``computed`` is null where the
         model cannot compute the fact, ``ok`` where there is nothing to decide; ``note`` says why.
         ``kind`` says what a row is worth: only ``evidence`` and ``identity`` count.
-        ``explanation`` stands where the two numbers are known to disagree, and says why.
+        ``explanation`` stands where the two numbers are known to disagree, and says why; it is
+        empty where they disagree by more or less than it explains.
 
     Raises
     ------
@@ -68,7 +69,12 @@ def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.Dat
     """
     model = Model() if broken is None else broken_model(broken)
     rows = [
-        {**asdict(fact), "ok": fact.ok, "counted": fact.counted}
+        {
+            **asdict(fact),
+            "ok": fact.ok,
+            "counted": fact.counted,
+            "explanation": fact.explanation if fact.is_explained else "",
+        }
         for fact in _facts(model, drive or Drive.reference_87())
     ]
     table = pl.DataFrame(rows, schema=_SCHEMA)
@@ -123,8 +129,9 @@ def broken_rows() -> pl.DataFrame:
     Returns
     -------
     polars.DataFrame
-        One row for each row of the validation that counts and agrees: ``kind``, ``group``,
-        ``fact``, and one column for each deliberate error, true where the row then disagrees.
+        One row for each row of the validation that counts and does not fail: ``kind``, ``group``,
+        ``fact``, and one column for each deliberate error, true where the row then fails: it
+        disagrees, and by other numbers than it explains.
 
     Examples
     --------
@@ -133,12 +140,16 @@ def broken_rows() -> pl.DataFrame:
     True
     """
     intact = validate()
-    met = intact["counted"] & intact["ok"]
+    met = intact["counted"] & ~_failed(intact)
     columns = {
-        model.name: ~validate(broken=model.name)["ok"].fill_null(value=False).filter(met)
-        for model in BROKEN_MODELS
+        model.name: _failed(validate(broken=model.name)).filter(met) for model in BROKEN_MODELS
     }
     return intact.filter(met).select("kind", "group", "fact").with_columns(**columns)
+
+
+def _failed(table: pl.DataFrame) -> pl.Series:
+    """Rows whose numbers disagree without an explanation, or that have no number."""
+    return ~table["ok"].fill_null(value=False) & (table["explanation"] == "")
 
 
 def broken_table(rows: pl.DataFrame) -> pl.DataFrame:

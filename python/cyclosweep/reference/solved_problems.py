@@ -32,11 +32,12 @@ _SHAPE = (
     "the printed term, (1 - (d/D)^3) / 8, is a fit that meets the solution near D/d = 1.55: too "
     "soft below, too stiff above, and never more than 0.125"
 )
-_SHOULDER_EXPLANATIONS = {
-    1.25: f"35 % more than solved; {_SHAPE}",
-    2.0: f"13 % less than solved; {_SHAPE}",
-    3.0: f"19 % less than solved; {_SHAPE}",
+_SHOULDER_EXPLANATIONS: dict[float, tuple[str, float | None]] = {
+    1.25: (f"35 % more than solved; {_SHAPE}", 0.061),
+    2.0: (f"13 % less than solved; {_SHAPE}", 0.109375),
+    3.0: (f"19 % less than solved; {_SHAPE}", 0.12037),
 }
+"""Why a shoulder disagrees with the solution, and the extra length that this is about."""
 
 
 def facts(model: Model) -> Iterator[Fact]:
@@ -65,6 +66,7 @@ def _shoulders(model: Model, drive: Drive) -> Iterator[Fact]:
         plain = sum(cylinder_compliance(drive, step.diameter_mm, length) for step in steps)
         beyond = model.shaft_compliance(with_shaft(drive, *steps)) - plain
         extra = beyond / cylinder_compliance(drive, diameter, diameter)
+        explanation, explained = _SHOULDER_EXPLANATIONS.get(ratio, ("", None))
         yield Fact(
             GROUP,
             f"Eq. (6): extra length of a shoulder / d at D/d = {ratio:g}",
@@ -75,7 +77,8 @@ def _shoulders(model: Model, drive: Drive) -> Iterator[Fact]:
             "evidence",
             _SAMENESS * solved,
             "the axisymmetric torsion problem, solved numerically; tolerance 5 %",
-            _SHOULDER_EXPLANATIONS.get(ratio, ""),
+            explanation,
+            explained,
         )
 
 
@@ -96,6 +99,7 @@ def _keyway(model: Model, drive: Drive) -> Fact:
         "Saint-Venant's torsion problem, solved numerically (k = 1.19 in Eq. (5)); tolerance 5 %",
         "86 % more than solved: the keyway's own part is 8.4 times too soft. k = 10 is kept as "
         "printed, a reading that is about 75 % sure; keyway_coefficient = 1.19 gives the solution",
+        2.1,
     )
 
 

@@ -60,7 +60,7 @@ def report_json(drive: Drive | None = None, *, broken_models: bool = False) -> d
 
 
 def untouched(rows: pl.DataFrame) -> list[str]:
-    """Counted rows that agree whatever deliberate error is put in, by name."""
+    """Counted rows that fail by no deliberate error, by name."""
     hit = pl.any_horizontal(pl.exclude("kind", "group", "fact"))
     return rows.filter(~hit)["fact"].to_list()
 
@@ -131,7 +131,7 @@ def report_tables(
 
 def _broken_tables() -> Iterable[RenderableType]:
     rows = broken_rows()
-    title = f"deliberate errors, and how many of the {rows.height} rows that agree each breaks"
+    title = f"deliberate errors, and how many of the {rows.height} rows that count each breaks"
     shown = _table(title, "error", ("evidence", "identity"), ("one of them",))
     for row in broken_table(rows).iter_rows(named=True):
         name = f"{row['model']}\n[dim]{row['error']}[/]"
