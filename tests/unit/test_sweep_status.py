@@ -96,6 +96,21 @@ def test_a_refused_row_keeps_its_place_and_inputs_and_has_null_results(
     assert frame.row(0)[3:] == frame.row(2)[3:]
 
 
+@pytest.mark.parametrize(
+    ("eccentricity", "pins", "circle"), [(1.2, 60, 72.0), (0.7, 90, 63.0), (0.45, 160, 72.0)]
+)
+def test_a_cusp_is_refused_whichever_way_its_k1_is_rounded(
+    reference: cs.Drive, eccentricity: float, pins: int, circle: float
+) -> None:
+    changed = reference.replace(
+        eccentricity_mm=eccentricity, ratio=pins - 1, disc_outer_radius_mm=circle - 1
+    )
+    circles = circle * np.array([1 - 1e-9, 1 - 1e-15, 1.0, 1 + 1e-15, 1 + 1e-9])
+    frame = cs.sweep(cs.Space.grid(changed, ring_pin_circle_radius_mm=circles))
+    refused = frame["status"] == "eccentricity_too_large_for_ring"
+    assert refused.to_list() == [True, True, True, True, False]
+
+
 def test_every_status_is_reached() -> None:
     assert {status for status, _, _ in REFUSED} | {"ok"} == set(_core.status_labels())
 

@@ -21,6 +21,22 @@ pub enum HistoryError {
         /// Its place in the column, from 0.
         place: usize,
     },
+    /// A value is infinite.
+    #[error("{what} is infinite at place {place}")]
+    Infinite {
+        /// The column or parameter.
+        what: &'static str,
+        /// Its place in the column, from 0.
+        place: usize,
+    },
+    /// A distance is zero.
+    #[error("{what} must be above zero at place {place}")]
+    Zero {
+        /// The column or parameter.
+        what: &'static str,
+        /// Its place in the column, from 0.
+        place: usize,
+    },
     /// A width or distance is negative.
     #[error("{what} must not be negative, found {value}")]
     Negative {
@@ -51,6 +67,15 @@ pub(super) fn numbers(what: &'static str, values: &[f64]) -> Result<(), HistoryE
     Err(HistoryError::NotANumber { what, place })
 }
 
+/// Requires finite numbers.
+pub(super) fn finite(what: &'static str, values: &[f64]) -> Result<(), HistoryError> {
+    numbers(what, values)?;
+    match values.iter().position(|value| value.is_infinite()) {
+        Some(place) => Err(HistoryError::Infinite { what, place }),
+        None => Ok(()),
+    }
+}
+
 /// Requires numbers where a history starts afresh; elsewhere a start is not read.
 pub(super) fn numbers_at_starts(
     what: &'static str,
@@ -72,6 +97,15 @@ pub(super) fn not_negative(what: &'static str, values: &[f64]) -> Result<(), His
             what,
             value: *value,
         }),
+        None => Ok(()),
+    }
+}
+
+/// Requires numbers above zero.
+pub(super) fn positive(what: &'static str, values: &[f64]) -> Result<(), HistoryError> {
+    not_negative(what, values)?;
+    match values.iter().position(|value| *value == 0.0) {
+        Some(place) => Err(HistoryError::Zero { what, place }),
         None => Ok(()),
     }
 }

@@ -13,7 +13,7 @@
 //! the angle, so it has one solution a sample, found by a safeguarded Newton step.
 
 use crate::model::hysteresis::checks::{
-    HistoryError, not_negative, numbers, numbers_at_starts, same_length, within,
+    HistoryError, finite, not_negative, numbers, numbers_at_starts, positive, same_length, within,
 };
 
 /// Friction of the contacts: slip elements in parallel that share one limit.
@@ -106,7 +106,7 @@ impl SlipElements<'_> {
     fn check(&self) -> Result<(), HistoryError> {
         same_length(self.slip_angle.len(), &[self.share.len()])?;
         not_negative("slip_angle", self.slip_angle)?;
-        numbers("share", self.share)?;
+        finite("share", self.share)?;
         numbers("limit", &[self.limit])?;
         numbers("load_factor", &[self.load_factor])?;
         numbers("growth", &[self.growth])?;
@@ -160,7 +160,8 @@ impl SlipElements<'_> {
 /// which the elements are fresh, anchored at `start_angle[i]`.
 ///
 /// # Errors
-/// [`HistoryError`] when columns differ in length or hold what is not a number.
+/// [`HistoryError`] when columns differ in length or hold what is not a number, or a torque, offset
+/// or share is infinite.
 #[expect(
     clippy::too_many_arguments,
     reason = "one slice per column of the history, two of them to fill"
@@ -178,8 +179,8 @@ pub fn solve_slip(
     let columns = [offset.len(), restart.len(), start_angle.len()];
     same_length(torque.len(), &columns)?;
     same_length(torque.len(), &[angle.len(), friction.len()])?;
-    numbers("torque", torque)?;
-    numbers("offset", offset)?;
+    finite("torque", torque)?;
+    finite("offset", offset)?;
     numbers_at_starts("start_angle", start_angle, restart)?;
     spring.check()?;
     elements.check()?;
@@ -257,8 +258,8 @@ fn balance(
 /// `stretch[i]` is how much longer than given the slip distances are at sample `i`.
 ///
 /// # Errors
-/// [`HistoryError`] when columns differ in length or hold what is not a number, or a slip distance
-/// or its stretch is negative.
+/// [`HistoryError`] when columns differ in length or hold what is not a number, an angle or share is
+/// infinite, or a slip distance or its stretch is not above zero.
 pub fn slip_state(
     angle: &[f64],
     restart: &[bool],
@@ -269,9 +270,10 @@ pub fn slip_state(
 ) -> Result<(), HistoryError> {
     let columns = [restart.len(), start_angle.len(), stretch.len(), out.len()];
     same_length(angle.len(), &columns)?;
-    numbers("angle", angle)?;
+    finite("angle", angle)?;
     numbers_at_starts("start_angle", start_angle, restart)?;
-    not_negative("stretch", stretch)?;
+    positive("stretch", stretch)?;
+    positive("slip_angle", elements.slip_angle)?;
     elements.check()?;
     let mut anchor = vec![0.0; elements.slip_angle.len()];
     for i in 0..angle.len() {

@@ -116,7 +116,13 @@ fn what_is_not_a_number_is_refused_and_does_not_panic() {
         })
     );
     assert!(solve(&zero, &[-0.01]).is_err());
-    assert!(solve(&[f64::INFINITY, 1.0], &[0.01]).is_ok());
+    assert_eq!(
+        solve(&[f64::INFINITY, 1.0], &[0.01]),
+        Err(HistoryError::Infinite {
+            what: "torque",
+            place: 0
+        })
+    );
 }
 
 proptest! {
