@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.reference.broken_models import BROKEN_MODELS
+from cyclosweep.design.drive import Criterion
+from cyclosweep.reference.broken_models import BROKEN_MODELS, broken_model
 from cyclosweep.reference.facts import COUNTED, Fact
 from cyclosweep.reference.rows import broken_rows, broken_table, tally
 from cyclosweep.reference.validation import untouched
@@ -119,6 +121,8 @@ def test_no_error_breaks_nothing(rows: pl.DataFrame, error: str) -> None:
             "29:1, two discs, 4 output pins on 68 mm: force on an output roller",
         ),
         ("rated torque on one pin", "Eqs. (8)-(10): C_OP / C_OP of a drive rated at a hundredth"),
+        ("shares by sine alone", "statics: share of two discs of eight pins"),
+        ("shares by sine alone", "statics: C_OS / (C_OS^t + 2 C_OP / N_OP)"),
     ],
 )
 def test_an_error_breaks_the_row_that_is_about_it(
@@ -190,3 +194,28 @@ def test_the_page_on_the_validation_is_up_to_date() -> None:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     assert (ROOT / "docs" / "validation.md").read_text("utf-8") == module.validation()
+
+
+@pytest.mark.parametrize("criterion", ["published-map", "statics"])
+@pytest.mark.parametrize("error", ERRORS)
+def test_results_of_a_broken_model_still_follow_from_each_other(
+    error: str, criterion: Criterion
+) -> None:
+    """An error is one error: what follows from the number it is in moves with it."""
+    drive = cs.Drive.reference_87().replace(criterion=criterion)
+    moved = broken_model(error).evaluate(drive)
+    if math.isnan(moved["output_compliance_rad_per_nm"]):
+        return
+    reflected = moved["reflected_compliance_rad_per_nm"]
+    found = {
+        "i^2 forgotten": reflected / moved["output_compliance_rad_per_nm"] / drive.ratio**2,
+        "stiffness not reflected": moved["reflected_stiffness_nm_per_rad"] * reflected,
+        "degrees for arc minutes": moved["output_stiffness_nm_per_arcmin"]
+        * moved["output_compliance_rad_per_nm"] * 10800 / math.pi,
+        "2 pi forgotten": (math.tau * moved["natural_frequency_hz"]) ** 2 * 0.002 * reflected,
+    }  # fmt: skip
+    for about, value in found.items():
+        assert (value == pytest.approx(1.0, rel=1e-9)) == (about != error), about
+    if criterion == "statics":
+        by_statics = moved["output_compliance_statics_rad_per_nm"]
+        assert moved["output_compliance_rad_per_nm"] == pytest.approx(by_statics, rel=1e-12)

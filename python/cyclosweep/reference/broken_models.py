@@ -88,8 +88,18 @@ def _free_play_with_every_load(drive: Drive, results: Results) -> Results:
     return {**results, **more}
 
 
-def _shares_by_sine(_: Drive, results: Results) -> Results:
-    return {**results, "pin_participation_statics": 2 / math.pi}
+def _shares_by_sine(drive: Drive, results: Results) -> Results:
+    if math.isnan(results["pin_participation_statics"]):
+        return results
+    share = drive.disc_count / math.pi  # mean of sin over a turn, zero where a hole does not push
+    moved = {**results, "pin_participation_statics": share}
+    if drive.output_stiffness_nm_per_arcmin is not None:
+        return moved
+    pin = results["pin_compliance_rad_per_nm"] / (share * drive.output_pin_count)
+    compliance = results["shaft_compliance_rad_per_nm"] + pin
+    moved["output_compliance_statics_rad_per_nm"] = compliance
+    by_statics = drive.criterion == "statics"
+    return assembled(drive, moved, output_compliance=compliance) if by_statics else moved
 
 
 def _stiffness_not_reflected(_: Drive, results: Results) -> Results:

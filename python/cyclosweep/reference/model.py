@@ -133,6 +133,7 @@ def assembled(
     results: Results,
     *,
     pin_compliance: float | None = None,
+    output_compliance: float | None = None,
     reflection: float = 1.0,
     efficiency: float = 1.0,
 ) -> Results:
@@ -146,6 +147,8 @@ def assembled(
         Its results.
     pin_compliance : float, optional
         Another compliance of one pin [rad/(N m)].
+    output_compliance : float, optional
+        Another compliance at the output, C_OS [rad/(N m)].
     reflection : float
         Factor on the reflection of Eq. (12) [1].
     efficiency : float
@@ -165,6 +168,8 @@ def assembled(
         by_statics = drive.criterion == "statics"
         moved["output_compliance_rad_per_nm"] = output + (more / share if by_statics else more)
         moved["output_compliance_statics_rad_per_nm"] += more / share
+    if output_compliance is not None:
+        moved["output_compliance_rad_per_nm"] = output_compliance
     at_output = moved["output_compliance_rad_per_nm"] / output
     at_input = at_output * reflection
     moved["output_stiffness_nm_per_arcmin"] /= at_output
