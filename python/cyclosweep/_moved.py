@@ -79,13 +79,28 @@ _DIAGNOSIS = {
 _RIG = "aliens balance bristles creep datum dial elastic joint nominal noise pins profile programme"
 _RIG += " rig sideload specimen warmth"
 _TRIAL = "case concealment oracle plan prediction seal signature tiers"
+_SAME_FOLDER = {
+    "board": "curves gallery page svg terminal",
+    "opponents": "contest gaussian_process ladder lasso ljung_box runs_test stlsq subset",
+    "runner": "folders run stages work",
+    "scoring": "calibration confusion curves intervals outcome power score",
+}
 _CHALLENGE = (
     {"": "", ".record": ".record.command"}
+    | {f".{folder}": f".{folder}" for folder in _SAME_FOLDER}
+    | {
+        f".{folder}.{n}": f".{folder}.{n}"
+        for folder, ns in _SAME_FOLDER.items()
+        for n in ns.split()
+    }
     | {f".{name}": f".rig.{name}" for name in _RIG.split()}
     | {f".{name}": f".trial.{name}" for name in _TRIAL.split()}
     | {
         ".diagnosing": ".runner.diagnosing",
         ".verify": ".runner.verify",
+        ".opponents.seen": ".opponents.view",
+        ".scoring.figures": ".scoring.criteria",
+        ".scoring.rivals": ".scoring.opponents",
         ".measured": ".measured.loops",
         ".measured_run": ".measured.run",
     }

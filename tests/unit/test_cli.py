@@ -227,6 +227,11 @@ def test_a_quick_diagnosis_writes_the_same_verdict_without_a_report(tmp_path: Pa
     said = [json.loads((tmp_path / name / "diagnosis.json").read_text()) for name in files]
     for key in ("verdict", "mismatch", "explanation_set"):
         assert said[0][key] == said[1][key]
+    for part in ("baseline", "repaired"):
+        assert said[0][part]["holdout_rmse_deg"] is None, "nothing was held out"
+        assert said[1][part]["holdout_rmse_deg"] > 0.0
+    assert "held-out error" in whole.stdout
+    assert "held-out error" not in quick.stdout
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
 from cyclosweep.result import NextExperiment, RunToRunDrift, SelfCheck
 
-NOTHING_HELD_OUT = HeldOutResult((), 0.0, 0.0, 1.0, "")
+NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, 1.0, "")
 MOST_RIVALS = 2
 """Other explanations of which synthetic twins are made."""
 EXAMPLE_EFFECT = "friction_hysteresis"
