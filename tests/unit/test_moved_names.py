@@ -11,7 +11,6 @@ import pytest
 import cyclosweep as cs
 from cyclosweep._moved import MOVED, RENAMED
 
-
 FOLDERS_WITHOUT_NAMES = {"cyclosweep.challenge.board", "cyclosweep.challenge.opponents"}
 
 

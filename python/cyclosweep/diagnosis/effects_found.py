@@ -158,7 +158,7 @@ def _explanation(candidate: Candidate, probability: float) -> Explanation:
 def tried_effects(
     concluded: Conclusion, found: tuple[FoundEffect, ...], hidden: tuple[str, ...]
 ) -> tuple[Hypothesis, ...]:
-    """Return every effect of the library, as it fared.
+    """Return every effect of the library, accepted or not, with its size or upper bound.
 
     Parameters
     ----------

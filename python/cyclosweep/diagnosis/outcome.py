@@ -27,7 +27,7 @@ class Diagnosis:
     before_deg, after_deg : ndarray of float, shape (samples,), or None
         Twist by the calibrated published model and by the repaired one [deg].
     hypotheses : tuple of Hypothesis
-        Every effect of the library, as it fared.
+        Every effect of the library, accepted or not.
     rated_torque_nm : float or None
         Rated torque at the measured shaft [N m].
     ratio : float or None

@@ -1,4 +1,4 @@
-"""One door to every form of the report, by the file's name."""
+"""Writing of a report in the form that the name of its file asks for."""
 
 from pathlib import Path
 

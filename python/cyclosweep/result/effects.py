@@ -110,7 +110,7 @@ class Remainder(Part):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hypothesis:
-    """One effect of the library, as it fared.
+    """One effect of the library: whether it was accepted, and its size or how large it could be.
 
     Attributes
     ----------

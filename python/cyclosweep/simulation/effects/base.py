@@ -253,7 +253,7 @@ class Effect(FormerNames):
         return 0.0
 
     def expected(self, history: History, shape: Shape) -> Floats | None:
-        """Size that amplitudes are expected to have, which holds those that nothing else holds.
+        """Prior size of amplitudes, for those that the recording leaves open.
 
         Parameters
         ----------

@@ -172,7 +172,7 @@ def full_runs(history: History) -> Flags:
 
 
 def given_pushes(history: History) -> list[int]:
-    """Torques that the runs of a recording push by, other than in proportion to one before.
+    """Kinds of push by the runs of a recording; one in proportion to another is left out.
 
     The number of runs stands before all of them: where all runs are alike it is the one law.
     """
@@ -210,7 +210,7 @@ def single_laws(history: History) -> list[DatumLaw]:
 
 
 def pairs_of_laws(history: History, memories: Sequence[float]) -> Iterator[tuple[DatumLaw, ...]]:
-    """Two torques that push one datum, which has one memory.
+    """Laws of two kinds of push that move the datum together, with one memory.
 
     Parameters
     ----------

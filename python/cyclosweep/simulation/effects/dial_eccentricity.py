@@ -34,15 +34,15 @@ class DialEccentricity(Effect):
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """One turn a turn, in every direction.
+        """Sinusoids of one period a turn of the dial, at phases all round.
 
-        Both waves at once would claim a freedom that the recording may not have: over part of a
-        turn the calibration takes up nearly all of the sine.
+        Sine and cosine together would claim a freedom that the recording may not have: over part
+        of a turn the calibration takes up nearly all of the sine.
         """
         return [{"order": 1.0, "phase_deg": phase} for phase in PHASES_DEG]
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Both waves, whatever direction was found."""
+        """Sine and cosine together, whatever phase fits best."""
         return [{"order": shape["order"]}]
 
     def columns(self, history: History, shape: Shape) -> Floats:
