@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.simulation import effects
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -33,6 +34,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder with the examples in it, as a reader of README has them."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
+    # A block may register an effect of its own, which other tests must not see.
+    monkeypatch.setattr(effects, "_REGISTERED", dict(effects._REGISTERED))
     return tmp_path
 
 
