@@ -81,7 +81,23 @@ def _answer(
     repaired: RepairedModel,
     verified: Verification,
 ) -> Answer:
-    """Fill every part of the answer; the statement comes last, from all others."""
+    """Fill every part of the answer; the statement comes last, from all others.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    regions : tuple of Region
+        Where the calibrated model fails.
+    repaired : RepairedModel
+        The model before and after the repair.
+    verified : Verification
+        What held-out data and synthetic twins say.
+
+    Returns
+    -------
+    Answer
+    """
     recording = concluded.search.problem.recording
     answer = Answer(
         tolerance_deg=concluded.tolerance_deg,
@@ -125,7 +141,19 @@ def _noise(search: Search) -> NoiseEstimate:
 
 
 def _mismatch(search: Search, regions: tuple[Region, ...]) -> Mismatch:
-    """Global test of the calibrated published model."""
+    """Global test of the calibrated published model.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    regions : tuple of Region
+        Where the calibrated model fails.
+
+    Returns
+    -------
+    Mismatch
+    """
     left = search.baseline.largest_excess
     return Mismatch(
         p_value=search.alarm.p_value(left),
@@ -136,7 +164,19 @@ def _mismatch(search: Search, regions: tuple[Region, ...]) -> Mismatch:
 
 
 def _bounds(concluded: Conclusion, *, excluded: bool) -> tuple[Bound, ...]:
-    """Upper bounds of the effects that are ruled out, or of those that are not."""
+    """Upper bounds of the effects that are ruled out, or of those that are not.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    excluded : bool
+        Bounds of the effects below the tolerance; else of those that may be above it.
+
+    Returns
+    -------
+    tuple of Bound
+    """
     return tuple(
         Bound(name=bound.name, upper95_deg=bound.upper95_deg)
         for bound in concluded.beyond_accepted
@@ -164,7 +204,19 @@ def _sufficiency(concluded: Conclusion) -> Sufficiency:
 
 
 def _repair(repaired: RepairedModel, verified: Verification) -> Repair:
-    """Parameters and errors of the repaired model."""
+    """Parameters and errors of the repaired model.
+
+    Parameters
+    ----------
+    repaired : RepairedModel
+        The model before and after the repair.
+    verified : Verification
+        What held-out data and synthetic twins say.
+
+    Returns
+    -------
+    Repair
+    """
     held = verified.held_out
     return Repair(
         parameters=repaired.after.parameters,
@@ -176,12 +228,37 @@ def _repair(repaired: RepairedModel, verified: Verification) -> Repair:
 
 
 def _findings(concluded: Conclusion, verified: Verification) -> tuple[Finding, ...]:
-    """What the measured loops show."""
+    """What the measured loops show.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    verified : Verification
+        What held-out data and synthetic twins say.
+
+    Returns
+    -------
+    tuple of Finding
+    """
     repeats = None if concluded.repetition is None else concluded.repetition.correlation
     return concluded.accepted.fit.findings(repeats, unsteady=verified.drift is not None)
 
 
 def _rated_torque(drive: Drive, recording: Recording) -> float:
-    """Rated torque at the measured shaft [N m]."""
+    """Rated torque at the measured shaft [N m].
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    recording : Recording
+        Says at which shaft was measured.
+
+    Returns
+    -------
+    float
+        In N m.
+    """
     at_input = recording.side == "input"
     return float(drive.nominal_torque_nm if at_input else drive.output_torque_nm)

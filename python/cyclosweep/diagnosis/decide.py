@@ -105,7 +105,19 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
 
 
 def _named_part(search: Search, candidate: Candidate) -> Candidate:
-    """Return the structure without the terms that have no name."""
+    """Return the structure without the terms that have no name.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    candidate : Candidate
+        Structure, perhaps with unnamed shapes.
+
+    Returns
+    -------
+    Candidate
+    """
     if candidate.all_recognised:
         return candidate
     named = [t for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own]

@@ -40,7 +40,23 @@ def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, .
 
 
 def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> FoundEffect:
-    """Describe one term of the accepted structure."""
+    """Describe one term of the accepted structure.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    accepted : Candidate
+        Structure that was accepted.
+    index : int
+        Which of the structure's terms.
+    e_value : float
+        Evidence for the structure on held-out data.
+
+    Returns
+    -------
+    FoundEffect
+    """
     fitted = accepted.fit
     effect = fitted.terms[index].effect
     assert effect is not None
@@ -68,7 +84,19 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
 
 
 def _found_law(fitted: FittedStructure, index: int) -> str:
-    """Which of an effect's laws was found, in a sentence; empty where it has one."""
+    """Which of an effect's laws was found, in a sentence; empty where it has one.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        Structure fitted jointly with the calibration.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    str
+    """
     term = fitted.terms[index]
     if term.effect is None or term.slips:
         return ""
@@ -77,7 +105,21 @@ def _found_law(fitted: FittedStructure, index: int) -> str:
 
 
 def _p_value(search: Search, accepted: Candidate, name: str) -> float:
-    """Probability of as much evidence for an effect by chance, all other accepted ones known."""
+    """Probability of as much evidence for an effect by chance, all other accepted ones known.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    accepted : Candidate
+        Structure that was accepted.
+    name : str
+        Name of the effect.
+
+    Returns
+    -------
+    float
+    """
     without = search.visited.get(accepted.names - {name})
     if without is None and len(accepted.names) == 1:
         without = search.baseline
@@ -87,7 +129,22 @@ def _p_value(search: Search, accepted: Candidate, name: str) -> float:
 
 
 def _strength(search: Search, fitted: FittedStructure, index: int) -> float:
-    """Projected signal-to-noise of a term, the other terms and the calibration taken out."""
+    """Projected signal-to-noise of a term, the other terms and the calibration taken out.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    fitted : FittedStructure
+        Structure fitted jointly with the calibration.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    float
+        In units of the noise.
+    """
     use = search.problem.fitted
     _, weight = search.noise.residual(search.problem.angle_deg[use], fitted.mean_deg[use])
     signal = search.noise.design(fitted.contribution(index)[use], weight)
@@ -104,7 +161,20 @@ def _strength(search: Search, fitted: FittedStructure, index: int) -> float:
 
 
 def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParameter]:
-    """Amplitudes and shape parameters of a term with standard errors."""
+    """Amplitudes and shape parameters of a term with standard errors.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        Structure fitted jointly with the calibration.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    mapping of str to EffectParameter
+        By name, each in its own unit.
+    """
     term = fitted.terms[index]
     assert term.effect is not None
     errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
@@ -142,7 +212,19 @@ def explanations(concluded: Conclusion) -> tuple[Explanation, ...]:
 
 
 def _explanation(candidate: Candidate, probability: float) -> Explanation:
-    """One structure with its probability."""
+    """One structure with its probability.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The structure.
+    probability : float
+        Its probability.
+
+    Returns
+    -------
+    Explanation
+    """
     terms = list(zip(candidate.fit.terms, candidate.recognised, strict=True))
     return Explanation(
         effects=tuple(term.name for term, named in terms if named),
@@ -183,7 +265,19 @@ def tried_effects(
 
 
 def _accepted(effect: FoundEffect, bound: Testability | None) -> Hypothesis:
-    """Row of an accepted effect."""
+    """Row of an accepted effect.
+
+    Parameters
+    ----------
+    effect : FoundEffect
+        The effect as it was found.
+    bound : Testability or None
+        How well the recording shows it, where that is known.
+
+    Returns
+    -------
+    Hypothesis
+    """
     return Hypothesis(
         name=effect.name,
         outcome="accepted",
@@ -197,7 +291,19 @@ def _accepted(effect: FoundEffect, bound: Testability | None) -> Hypothesis:
 
 
 def _bounded(bound: Testability, excluded: bool) -> Hypothesis:
-    """Row of an effect that was not found."""
+    """Row of an effect that was not found.
+
+    Parameters
+    ----------
+    bound : Testability
+        How well the recording shows the effect.
+    excluded : bool
+        Whether it is ruled out at the tolerance.
+
+    Returns
+    -------
+    Hypothesis
+    """
     outcome: Outcome = "ruled out" if excluded else "undecided"
     return Hypothesis(
         name=bound.name,

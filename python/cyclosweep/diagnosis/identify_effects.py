@@ -50,7 +50,19 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
 
 
 def _is_same(first: Noise, second: Noise) -> bool:
-    """Whether two estimates of the noise agree."""
+    """Whether two estimates of the noise agree.
+
+    Parameters
+    ----------
+    first : Noise
+        One estimate.
+    second : Noise
+        The other.
+
+    Returns
+    -------
+    bool
+    """
     correlation = abs(first.correlation - second.correlation)
     size = abs(np.log(first.sigma_deg / second.sigma_deg))
     return bool(correlation < SAME_NOISE and size < SAME_NOISE)

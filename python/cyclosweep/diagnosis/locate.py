@@ -122,7 +122,23 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
 
 
 def _largest_by_chance(gram: Floats, size: Floats, draws: int, rng: np.random.Generator) -> Floats:
-    """Largest standardised cell mean in each of many residuals of noise alone."""
+    """Largest standardised cell mean in each of many residuals of noise alone.
+
+    Parameters
+    ----------
+    gram : ndarray, shape (cells, cells)
+        Covariance of the cells' sums.
+    size : ndarray, shape (cells,)
+        Standard deviation of each.
+    draws : int
+        How many residuals.
+    rng : Generator
+        Source of the draws.
+
+    Returns
+    -------
+    ndarray, shape (draws,)
+    """
     values, vectors = np.linalg.eigh(gram)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     means = np.abs(root @ rng.standard_normal((len(values), draws))) / size[:, None]
@@ -130,7 +146,25 @@ def _largest_by_chance(gram: Floats, size: Floats, draws: int, rng: np.random.Ge
 
 
 def _region(problem: Problem, cell: _Cell, mean: float, share: float, p: float) -> Region:
-    """Region of a cell with its mean residual [deg], share of the misfit and p-value."""
+    """Region of a cell with its mean residual [deg], share of the misfit and p-value.
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording prepared for fitting.
+    cell : _Cell
+        The cell.
+    mean : float
+        Mean residual in it [deg].
+    share : float
+        Its share of the misfit, 0 to 1.
+    p : float
+        Its p-value.
+
+    Returns
+    -------
+    Region
+    """
     history = problem.history
     temperature = None
     if history.temperature_c is not None and (cell.time or cell.run):

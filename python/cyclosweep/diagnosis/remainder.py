@@ -59,7 +59,19 @@ def _unnamed_term(best: Candidate) -> Remainder | None:
 
 
 def _unfitted(concluded: Conclusion, regions: Sequence[Region]) -> Remainder:
-    """Describe the strongest hypothesis in the residual of the best structure."""
+    """Describe the strongest hypothesis in the residual of the best structure.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    regions : sequence of Region
+        Where the calibrated model fails.
+
+    Returns
+    -------
+    Remainder
+    """
     best = concluded.best
     excesses = best.excesses
     name = max(excesses, key=lambda key: excesses[key])
@@ -76,7 +88,19 @@ def _unfitted(concluded: Conclusion, regions: Sequence[Region]) -> Remainder:
 
 
 def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
-    """Describe a residual that repeats from run to run, as steps tied to the mesh do."""
+    """Describe a residual that repeats from run to run, as steps tied to the mesh do.
+
+    Parameters
+    ----------
+    accepted : Candidate
+        Structure that was accepted.
+    repeats : Repetition
+        How well the residual of one run predicts that of another.
+
+    Returns
+    -------
+    Remainder
+    """
     fitted = accepted.fit
     left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
     place = f"repeating from run to run (correlation {repeats.correlation:.2f})"

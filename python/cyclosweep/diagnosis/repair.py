@@ -115,7 +115,22 @@ def calibrated_parameters(
 
 
 def _at_samples(problem: Problem, angle_deg: Floats, fitted: FittedStructure) -> Floats:
-    """Twist given by rows, a value for every sample of the recording [deg]."""
+    """Twist given by rows, a value for every sample of the recording [deg].
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording prepared for fitting.
+    angle_deg : ndarray, shape (n,)
+        Twist of the prepared rows [deg].
+    fitted : FittedStructure
+        Structure fitted jointly with the calibration.
+
+    Returns
+    -------
+    ndarray, shape (samples,)
+        In deg.
+    """
     row = problem.rows
     # Within an averaged row the line's own slope carries the torque's deviation from its mean.
     torque = problem.recording.torque_nm - problem.history.applied_nm[row]

@@ -75,7 +75,20 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
 
 
 def _drift(concluded: Conclusion, held: HeldOutResult) -> RunToRunDrift | None:
-    """Find the pair of runs on which a model of one fails most on the other."""
+    """Find the pair of runs on which a model of one fails most on the other.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    held : HeldOutResult
+        Errors on held-out data.
+
+    Returns
+    -------
+    RunToRunDrift or None
+        None where the runs agree.
+    """
     fitted = concluded.accepted.fit
     span = float(np.ptp(concluded.search.problem.angle_deg))
     pairs = [(fitted.prediction.error_deg, held.after_deg), *fitted.run_to_run_errors()]
@@ -95,7 +108,19 @@ def _self_check(concluded: Conclusion) -> SelfCheck:
 
 
 def _next_experiment(concluded: Conclusion, decision: Decision) -> NextExperiment:
-    """Programme that separates the explanations, or shows the effect that is least bounded."""
+    """Programme that separates the explanations, or shows the effect that is least bounded.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+    decision : Decision
+        Verdict and the explanations it rests on.
+
+    Returns
+    -------
+    NextExperiment
+    """
     rivals = [each for each, _ in decision.explanations]
     if decision.verdict not in ("AMBIGUOUS", "IDENTIFIED"):
         rivals = []

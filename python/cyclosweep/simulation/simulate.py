@@ -72,7 +72,20 @@ def history_of(recording: Recording, model: Model) -> History:
 
 
 def _flanks(elastic: Floats, restart: Flags) -> Floats:
-    """Flank in contact: the sign of the torque, and at zero torque the last one."""
+    """Flank in contact: the sign of the torque, and at zero torque the last one.
+
+    Parameters
+    ----------
+    elastic : ndarray, shape (n,)
+        Torque that twists the drive [N m].
+    restart : ndarray of bool, shape (n,)
+        True where play, slip and creep start afresh.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        +1 or -1.
+    """
     known = (elastic != 0) | restart
     sign = np.where(elastic < 0, -1.0, 1.0)
     last = np.maximum.accumulate(np.where(known, np.arange(len(elastic)), 0))
@@ -229,7 +242,20 @@ def _friction(sliding: Sequence[EffectValue]) -> Friction:
 
 
 def _torque(model: Model, programme: Recording) -> Floats:
-    """Torque that holds the drive at the given angles [N m]."""
+    """Torque that holds the drive at the given angles [N m].
+
+    Parameters
+    ----------
+    model : Model
+        Calibrated model.
+    programme : Recording
+        Load programme with angles.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In N m.
+    """
     if programme.angle_deg is None:
         raise InputError(f"{programme.name}: angle_deg: missing, expected to predict a torque")
     angle = np.ascontiguousarray(programme.angle_deg, dtype=np.float64)
