@@ -92,7 +92,27 @@ class EffectValue:
 def _amplitudes(
     effect: Effect, shape: Mapping[str, float], content: Mapping[str, Any]
 ) -> tuple[float, ...]:
-    """Amplitudes of an entry in the order of the effect."""
+    """Amplitudes of an entry in the order of the effect.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    shape : mapping of str to float
+        Its shape.
+    content : mapping
+        Entry of ``model.json``.
+
+    Returns
+    -------
+    tuple of float
+        Each in its own unit.
+
+    Raises
+    ------
+    InputError
+        An amplitude is unknown, missing or no number.
+    """
     given = object_of(content, "amplitudes")
     names = [parameter.name for parameter in effect.amplitudes(shape)]
     for name in given:

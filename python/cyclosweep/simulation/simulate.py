@@ -142,6 +142,20 @@ def simulate(
 
 
 def _check(model: Model, programme: Recording) -> None:
+    """Refuse a programme of another shaft, or without a column that the model needs.
+
+    Parameters
+    ----------
+    model : Model
+        Calibrated model.
+    programme : Recording
+        Load programme.
+
+    Raises
+    ------
+    InputError
+        What the programme lacks.
+    """
     if programme.side != model.side:
         raise InputError(
             f"{programme.name}: side: found {programme.side!r}, expected {model.side!r} "
@@ -223,6 +237,28 @@ def _slide(
     law: ElasticLaw | None,
     known_side: Floats | None,
 ) -> History:
+    """Solve the path of the shaft under friction.
+
+    Parameters
+    ----------
+    model : Model
+        Calibrated model.
+    history : History
+        Load history.
+    sliding : sequence of EffectValue
+        Friction effects.
+    added : ndarray, shape (n,)
+        Twist that effects other than friction add [deg].
+    law : ElasticLaw or None
+        Elastic law; None for the straight line.
+    known_side : ndarray, shape (n,), or None
+        Flank in contact, +1 or -1, where it is read off the recording.
+
+    Returns
+    -------
+    History
+        The same with torque, angle and flank along the path.
+    """
     flank = 0.0 if known_side is None else known_side * model.free_play_deg
     play = model.free_play_deg if known_side is None else 0.0
     points = None if law is None else (law.torque_nm, law.twist_deg)
