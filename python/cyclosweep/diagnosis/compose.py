@@ -105,6 +105,7 @@ def _answer(
         noise=_noise(concluded.search),
         baseline=replace(repaired.before, holdout_rmse_deg=finite(verified.held_out.before_deg)),
         mismatch=_mismatch(concluded.search, regions),
+        explained=concluded.explained,
         effects=found_effects(concluded, verified.held_out.e_value),
         explanation_set=explanations(concluded),
         ruled_out=_bounds(concluded, excluded=True),

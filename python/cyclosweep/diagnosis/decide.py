@@ -4,11 +4,18 @@ from dataclasses import dataclass
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.explained import explained_share
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, testability
-from cyclosweep.diagnosis.identify.verdict import Decision, decide, decide_whole_loop
-from cyclosweep.diagnosis.refuse import check_compliance
+from cyclosweep.diagnosis.identify.verdict import (
+    Decision,
+    decide,
+    decide_in_stages,
+    decide_whole_loop,
+)
+from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition, repetition
+from cyclosweep.result import Explained
 
 DEFAULT_TOLERANCE = 0.01
 """Size below which an effect does not matter, as a share of the largest elastic twist."""
@@ -35,6 +42,8 @@ class Conclusion:
         Bounds of every effect that is not in the baseline, and not in the accepted structure.
     excluded : frozenset of str
         Effects that are ruled out.
+    explained : Explained
+        Share of the mismatch that the accepted structure explains.
     """
 
     search: Search
@@ -45,6 +54,7 @@ class Conclusion:
     beyond_baseline: list[Testability]
     beyond_accepted: list[Testability]
     excluded: frozenset[str]
+    explained: Explained
 
     @property
     def best(self) -> Candidate:
@@ -71,7 +81,8 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     Raises
     ------
     NoDiagnosisError
-        The calibrated compliance is impossible for this drive.
+        The calibrated compliance is impossible for this drive, or that of the repaired model for
+        any.
     """
     history = search.baseline.fit.history
     check_compliance(search.problem, drive, history.compliance_deg_per_nm)
@@ -84,9 +95,18 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     if search.noise.structured:
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
         decision = decide_whole_loop(search.chosen, repeats=repeats.is_physics)
+    elif search.start is not search.baseline:
+        staged = explained_share(
+            search.baseline.fit, search.start.fit, search.noise.spread_deg, search.seed
+        )
+        decision = decide_in_stages(search, staged.share or 0.0)
     else:
         decision = decide(search, beyond_baseline, tolerance)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
+    if accepted.fit.rmse_deg > search.baseline.fit.rmse_deg:
+        # Without the unnamed part beside them, the named effects make it worse: not earned.
+        accepted = search.baseline
+    check_positive(accepted.fit.history.compliance_deg_per_nm)
     beyond_accepted = beyond_baseline
     if accepted is not search.baseline:
         beyond_accepted = testability(search, accepted, p_values)
@@ -101,6 +121,9 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         beyond_baseline=beyond_baseline,
         beyond_accepted=beyond_accepted,
         excluded=frozenset(below - possible),
+        explained=explained_share(
+            search.baseline.fit, accepted.fit, search.noise.spread_deg, search.seed
+        ),
     )
 
 

@@ -5,7 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from cyclosweep.diagnosis.calibrate import noise_beyond
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.staged_search import search_in_stages
+from cyclosweep.diagnosis.identify.verdict import decide
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
 
@@ -39,13 +42,18 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         search.run(say)
         best = search.best()
         if best is None:
-            return search
+            break
         noise = noise_beyond(search.problem, search.library, best)
         if _is_same(noise, search.noise):
-            return search
+            break
         say("starting over with better-known noise")
         search = Search(search.problem, noise, search.library, search.seed)
-    search.run(say)
+    else:
+        search.run(say)
+    if decide(search, [], 0.0).unexplained:
+        say("starting over with the largest effect")
+        flexible = flexible_basis(search.problem, search.library, None)
+        return search_in_stages(search, flexible, say)
     return search
 
 

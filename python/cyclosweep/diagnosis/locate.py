@@ -61,7 +61,7 @@ def locate(concluded: Conclusion) -> tuple[Region, ...]:
     found: list[Region] = []
     if search.baseline.largest_excess >= search.threshold:
         found = find_regions(search, search.baseline)
-    if concluded.decision.verdict == "UNKNOWN_PHYSICS" and accepted.fit.terms:
+    if concluded.decision.unexplained and accepted.fit.terms:
         found = find_regions(search, accepted) or found
     return tuple(found)
 

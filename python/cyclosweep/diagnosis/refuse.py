@@ -102,6 +102,29 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
     )
 
 
+def check_positive(compliance: float) -> None:
+    """Raise `NoDiagnosisError` where a fitted compliance [deg/(N m)] is not above zero.
+
+    Parameters
+    ----------
+    compliance : float
+        Compliance of the calibrated or repaired model at the measured shaft [deg/(N m)].
+
+    Raises
+    ------
+    NoDiagnosisError
+        A stiffness at or below zero means that the torque does not fix the twist.
+    """
+    if compliance > 0:
+        return
+    raise NoDiagnosisError(
+        "DATA_FAULT",
+        f"the best fit has a compliance of {compliance:.4g} deg/(N m), which no drive has: the "
+        "angle changes where the torque does not, as while parts slide on each other or where the "
+        "motion is driven instead of the torque; no stiffness can be read from it",
+    )
+
+
 def refused(recording: Recording, drive: Drive, refusal: NoDiagnosisError, seed: int) -> Diagnosis:
     """Return the result that says why there is no diagnosis.
 

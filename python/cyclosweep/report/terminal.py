@@ -24,6 +24,7 @@ _STYLES: dict[Verdict, str] = {
     "NOTHING_MISSING": "green",
     "AMBIGUOUS": "yellow",
     "INSUFFICIENT_DATA": "yellow",
+    "MOSTLY_EXPLAINED": "yellow",
     "UNKNOWN_PHYSICS": "magenta",
     "DATA_FAULT": "red",
 }

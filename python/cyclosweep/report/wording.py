@@ -11,6 +11,7 @@ ARCMIN = 60.0
 VERDICTS: dict[Verdict, tuple[str, str]] = {
     "IDENTIFIED": ("Cause identified", "#0b6e4f"),
     "AMBIGUOUS": ("More than one cause fits", "#8a5a00"),
+    "MOSTLY_EXPLAINED": ("Causes found that explain most of it", "#0b6e4f"),
     "UNKNOWN_PHYSICS": ("Cause outside the known effects", "#8a2be2"),
     "NOTHING_MISSING": ("Nothing is missing from the model", "#0b6e4f"),
     "INSUFFICIENT_DATA": ("The recording cannot tell", "#8a5a00"),

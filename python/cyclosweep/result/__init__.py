@@ -13,7 +13,7 @@ from cyclosweep.result.effects import (
     Untestable,
 )
 from cyclosweep.result.json_form import answer_of, content_of, json_text
-from cyclosweep.result.mismatch import Mismatch, Region
+from cyclosweep.result.mismatch import Explained, Mismatch, Region
 from cyclosweep.result.proof import (
     HeldOutBlock,
     NextExperiment,
@@ -30,6 +30,7 @@ __all__ = [
     "Bound",
     "CalibratedParameter",
     "EffectParameter",
+    "Explained",
     "Explanation",
     "Finding",
     "FoundEffect",

@@ -5,7 +5,7 @@ from typing import Literal
 
 from cyclosweep.result.calibration import Baseline, NoiseEstimate
 from cyclosweep.result.effects import Bound, Explanation, FoundEffect, Remainder, Untestable
-from cyclosweep.result.mismatch import Mismatch
+from cyclosweep.result.mismatch import Explained, Mismatch
 from cyclosweep.result.part import EMPTY, LEFT_OUT, Part
 from cyclosweep.result.proof import NextExperiment, Repair, SelfCheck, Sufficiency
 from cyclosweep.result.verdict import Verdict
@@ -53,6 +53,8 @@ class Answer(Part):
     """The calibrated published model."""
     mismatch: Mismatch = field(default_factory=Mismatch)
     """Whether and where the calibrated published model and the recording differ."""
+    explained: Explained = field(default_factory=Explained)
+    """How much of that difference the accepted effects explain."""
     effects: tuple[FoundEffect, ...] = ()
     """Effects that were accepted by name, also where something unknown remains."""
     explanation_set: tuple[Explanation, ...] = ()

@@ -47,3 +47,13 @@ class Mismatch(Part):
     """Evidence from which something is said to be missing."""
     regions: tuple[Region, ...] = ()
     """Regions, the strongest first, each after the ones before are taken out."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Explained(Part):
+    """How much of the mismatch the accepted effects explain."""
+
+    share: float | None = None
+    """Share of the mean square difference beyond the noise; null where there is none."""
+    ci95: tuple[float, float] | None = None
+    """95 % interval of the share."""

@@ -36,6 +36,8 @@ def _verdict_sentences(answer: Answer) -> str:
             return _identified(answer)
         case "AMBIGUOUS":
             return _ambiguous(answer)
+        case "MOSTLY_EXPLAINED":
+            return _mostly_explained(answer)
     return _unknown(answer)
 
 
@@ -77,6 +79,27 @@ def _ambiguous(answer: Answer) -> str:
     return (
         f"Something is missing, and this recording cannot say which: {options}. It shows most "
         f"at {place_of(answer.mismatch.regions)}.{_improvement(answer)} "
+        f"{calibration_words(answer.repaired.parameters)}"
+    )
+
+
+def _mostly_explained(answer: Answer) -> str:
+    names = listed([effect.name for effect in answer.effects])
+    share = "most"
+    if answer.explained.share is not None:
+        share = f"{100 * answer.explained.share:.3g} %"
+        if answer.explained.ci95 is not None:
+            low, high = answer.explained.ci95
+            share += f" (95 %: {100 * low:.3g} to {100 * high:.3g})"
+    remains = "something without a name"
+    if answer.unknown is not None:
+        remains = f"a {answer.unknown.shape} of {degrees(answer.unknown.size_deg)}"
+        remains += f", {answer.unknown.place}"
+    return (
+        f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
+        f"mismatch; what is left is above the noise and has no name of its own: {remains}. Size "
+        f"after re-calibration: {_sizes(answer)}. It shows most at "
+        f"{place_of(answer.mismatch.regions)}.{_improvement(answer)} "
         f"{calibration_words(answer.repaired.parameters)}"
     )
 

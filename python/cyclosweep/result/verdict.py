@@ -5,6 +5,7 @@ from typing import Literal
 Verdict = Literal[
     "IDENTIFIED",
     "AMBIGUOUS",
+    "MOSTLY_EXPLAINED",
     "UNKNOWN_PHYSICS",
     "NOTHING_MISSING",
     "INSUFFICIENT_DATA",

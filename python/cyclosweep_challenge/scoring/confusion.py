@@ -20,6 +20,7 @@ def said_of(outcome: Outcome) -> str:
         return "several"
     return {
         "AMBIGUOUS": "ambiguous",
+        "MOSTLY_EXPLAINED": "unknown",
         "UNKNOWN_PHYSICS": "unknown",
         "NOTHING_MISSING": "nothing",
         "INSUFFICIENT_DATA": "nothing",

@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from cyclosweep_challenge.rig.specimen import VOCABULARY
 
-ALARMS = frozenset({"IDENTIFIED", "AMBIGUOUS", "UNKNOWN_PHYSICS"})
+ALARMS = frozenset({"IDENTIFIED", "AMBIGUOUS", "MOSTLY_EXPLAINED", "UNKNOWN_PHYSICS"})
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.identify.alarm import Alarm
 from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty, shape_penalty
-from cyclosweep.diagnosis.identify.fit import ContactFit, fit
+from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import (
     Scan,
@@ -18,6 +18,7 @@ from cyclosweep.diagnosis.identify.scan import (
     scan,
     vector_penalty,
 )
+from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
@@ -33,8 +34,6 @@ MOST_SHAPE_ERROR = 20.0
 """Evidence up to which a remainder is so taken; a further effect of visibility 7 has more."""
 MOST_ENRICHED = 2
 """Times an effect is given more freedom of shape."""
-MOST_PRUNED = 3
-"""Times parts of an effect are left out because of their sign."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 MOST_FOLLOWED = 7
@@ -54,11 +53,15 @@ class Search:
         All hypotheses, as columns on the fitted rows.
     seed : int
         Seed of every random draw.
+    accepted : tuple of Term
+        Terms that every structure contains.
 
     Attributes
     ----------
     baseline : Candidate
         The calibrated published model without effects.
+    start : Candidate
+        The structure that is searched from: the baseline with the accepted terms.
     alarm : Alarm
         Calibration of the global test.
     threshold : float
@@ -69,9 +72,18 @@ class Search:
         The best fit of each structure, by the names of its terms.
     chosen : Candidate or None
         The structure chosen on whole loops; None where structures are compared by their evidence.
+    rivals_of_start : list of (Candidate, probability)
+        Other explanations than the structure that is searched from, from the stages before.
     """
 
-    def __init__(self, problem: Problem, noise: Noise, library: Library, seed: int) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        noise: Noise,
+        library: Library,
+        seed: int,
+        accepted: tuple[Term, ...] = (),
+    ) -> None:
         self.problem, self.noise, self.library = problem, noise, library
         self.seed = seed
         base = fit(problem, noise, ())
@@ -83,17 +95,25 @@ class Search:
         self.alarm = Alarm.calibrate(self._scan(base), rng)
         self.threshold = self.alarm.threshold
         self.baseline = self._candidate(base, 0.0, 0.0)
+        self.start = self.baseline
         self.visited: dict[frozenset[str], Candidate] = {}
+        if accepted:
+            self.start = self.refit(accepted)
+            self.alarm = Alarm.calibrate(self.start.scan, np.random.default_rng([seed, 1]))
+            self.threshold = self.alarm.threshold
+            self.start = replace(self.start, alarm=self.alarm)
+            self.visited[self.start.names] = self.start
         self.chosen: Candidate | None = None
+        self.rivals_of_start: list[tuple[Candidate, float]] = []
 
     def run(self, progress: Callable[[str], None] = lambda text: None) -> None:
         """Visit structures: in breadth up to three terms, then along the best one.
 
         ``progress`` is called with a few words before each fit.
         """
-        if self.baseline.largest_excess < self.threshold:
+        if self.start.largest_excess < self.threshold:
             return
-        front = [self.baseline]
+        front = [self.start]
         for depth in range(MOST_TERMS):
             found: list[Candidate] = []
             for parent in front:
@@ -176,7 +196,7 @@ class Search:
         best: Candidate | None = None
         for term, rank, penalty in starting_terms(parent, hypothesis):
             terms = (*parent.fit.terms, term)
-            joint = self._with_right_signs(fit(self.problem, self.noise, terms, parent.fit))
+            joint = with_right_signs(fit(self.problem, self.noise, terms, parent.fit))
             if joint is None:
                 continue
             added = self._added(parent, joint, rank, penalty)
@@ -266,7 +286,7 @@ class Search:
                 terms = list(candidate.fit.terms)
                 terms[k] = replace(term, shape=shape)
                 joint = fit(self.problem, self.noise, terms, candidate.fit)
-                signed = self._with_right_signs(joint)
+                signed = with_right_signs(joint)
                 if signed is None:
                     continue
                 rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
@@ -274,23 +294,6 @@ class Search:
                 if added > 1.0:
                     return self._candidate(signed, candidate.gain + added, candidate.prior)
         return None
-
-    def _with_right_signs(self, joint: ContactFit) -> ContactFit | None:
-        """Leave out parts of effects that came out with the wrong sign; None where that fails."""
-        for _ in range(MOST_PRUNED):
-            if joint.valid:
-                return joint
-            terms = []
-            for k, term in enumerate(joint.terms):
-                wrong = joint.wrong_signs(k)
-                if wrong.any():
-                    shape = None if term.effect is None else term.effect.reduced(term.shape, wrong)
-                    if shape is None:
-                        return None
-                    term = replace(term, shape=shape)
-                terms.append(term)
-            joint = fit(self.problem, self.noise, terms, joint)
-        return joint if joint.valid else None
 
     def _added(
         self, parent: Candidate, joint: FittedStructure, rank: float, penalty: float
@@ -352,16 +355,17 @@ class Search:
         """Leave each term out of the best structures: the others may explain it all."""
         for candidate in sorted(self.visited.values(), key=lambda n: -n.score)[:4]:
             terms = candidate.fit.terms
-            if len(terms) < 2:
+            added = [term.name for term in terms if term.name not in self.start.names]
+            if len(added) < 2:
                 continue
-            for k in range(len(terms)):
-                self._visit([term.name for j, term in enumerate(terms) if j != k])
+            for left_out in added:
+                self._visit([name for name in added if name != left_out])
 
     def _visit(self, names: Sequence[str]) -> None:
         """Fit a structure of these terms, one after the other, unless it was visited."""
-        if frozenset(names) in self.visited:
+        if self.start.names | frozenset(names) in self.visited:
             return
-        parent = self.baseline
+        parent = self.start
         for name in names:
             if name not in parent.scan.groups:
                 return

@@ -40,6 +40,11 @@ class Term:
         return self.unnamed.family
 
     @property
+    def family(self) -> str:
+        """Family of effects alike, or of the unnamed shape."""
+        return self.name if self.effect is None else self.effect.family
+
+    @property
     def slips(self) -> bool:
         """Whether it is friction on slip elements."""
         return self.effect is not None and self.effect.slips

@@ -12,6 +12,11 @@ from cyclosweep.result import Verdict
 SURE = 0.5
 """Posterior probability from which the best explanation is named as the one: more probable than
 all others together. What else is possible stands beside it."""
+BEYOND_NOISE = 3.0
+"""Root mean square error over noise and rounding from which something is missing, whatever the
+tests say."""
+MOSTLY = 0.9
+"""Share of the mismatch from which named effects are said to explain most of it."""
 COVERAGE = 0.95
 """Probability that the explanation set holds together."""
 
@@ -54,6 +59,9 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     Decision
     """
     if search.baseline.largest_excess < search.threshold:
+        scatter = np.hypot(search.noise.spread_deg, search.problem.resolution_deg / np.sqrt(12.0))
+        if search.baseline.fit.rmse_deg > BEYOND_NOISE * scatter:
+            return Decision("UNKNOWN_PHYSICS", None, [], True)
         clear = bool(bounds) and all(b.upper95_deg < tolerance_deg for b in bounds)
         return Decision("NOTHING_MISSING" if clear else "INSUFFICIENT_DATA", None, [], False)
     structures = search.explanations()
@@ -96,6 +104,33 @@ def decide_whole_loop(chosen: Candidate | None, *, repeats: bool) -> Decision:
         return Decision("INSUFFICIENT_DATA", None, [], False)
     verdict: Verdict = "UNKNOWN_PHYSICS" if repeats else "IDENTIFIED"
     return Decision(verdict, chosen, [(chosen, 1.0)], repeats)
+
+
+def decide_in_stages(search: Search, explained_share: float) -> Decision:
+    """Verdict where effects were accepted in stages, against the error of their models.
+
+    Parameters
+    ----------
+    search : Search
+        The search of the last stage.
+    explained_share : float
+        Share of the mismatch that the accepted structure explains.
+
+    Returns
+    -------
+    Decision
+        IDENTIFIED, or AMBIGUOUS, where the accepted effects leave nothing but noise,
+        MOSTLY_EXPLAINED where they explain nine tenths or more, else UNKNOWN_PHYSICS.
+    """
+    best = search.start
+    probability = 1.0 - sum(share for _, share in search.rivals_of_start)
+    explanations = [(best, probability), *search.rivals_of_start]
+    explanations.sort(key=lambda each: -each[1])
+    if search.suffices(best) and search.noise.model_error_factor == 1.0:
+        sure = probability >= SURE
+        return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
+    mostly = explained_share >= MOSTLY
+    return Decision("MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS", best, explanations, True)
 
 
 def unit_slip(ratio: float, gear_ratio: float) -> str | None:

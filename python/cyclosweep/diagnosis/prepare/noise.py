@@ -9,6 +9,8 @@ from cyclosweep.simulation.effects.history import Floats
 
 INDEPENDENT_PIECES = 40.0
 """Rough number of independent pieces of a residual that is error of the model."""
+COARSE_STEP = 3.5
+"""Resolution steps above this many standard deviations need the interval likelihood."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,8 @@ class Noise:
     score_moments : tuple of float
         Mean slope and mean square of the score of one white row of unit variance; what they
         are, not what Student's distribution says, for outliers are not drawn from it.
+    model_error_factor : float
+        Size of noise and model error together over that of the noise; one without model error.
     """
 
     sigma_deg: float
@@ -50,6 +54,7 @@ class Noise:
     marginal_deg: float | None = None
     structured: bool = False
     score_moments: tuple[float, float] = (1.0, 1.0)
+    model_error_factor: float = 1.0
 
     @property
     def spread_deg(self) -> float:
@@ -122,6 +127,36 @@ class Noise:
     def with_sigma(self, sigma_deg: float) -> "Noise":
         """Return the same noise with another size."""
         return replace(self, sigma_deg=sigma_deg)
+
+    def with_model_error(self, factor: float) -> "Noise":
+        """Return the noise with model error added to it.
+
+        Parameters
+        ----------
+        factor : float
+            Standard deviation of noise and model error together over that of the noise.
+
+        Returns
+        -------
+        Noise
+            Its ``spread_deg`` is still that of the noise alone.
+        """
+        if factor <= 1.0:
+            return self
+        sigma, step = factor * self.sigma_deg, self.step_deg
+        if step > 0 and sigma > step / COARSE_STEP:
+            # Spread over several steps, a reading is as good as continuous.
+            sigma, step = float(np.hypot(sigma, step / np.sqrt(12.0))), 0.0
+        slope, square = self.score_moments
+        return replace(
+            self,
+            sigma_deg=sigma,
+            step_deg=step,
+            tail=self.tail * factor**2,
+            marginal_deg=self.spread_deg,
+            model_error_factor=factor,
+            score_moments=(1.0 + (slope - 1.0) / factor**2, 1.0 + (square - 1.0) / factor**2),
+        )
 
 
 def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.stats import t as student_t
 
 from cyclosweep.diagnosis.prepare.noise import (
+    COARSE_STEP,
     Noise,
     bin_score,
     interval_score,
@@ -16,8 +17,6 @@ from cyclosweep.simulation.effects.history import Floats
 
 MODEL_ERROR = 0.945
 """An autocorrelation above this is taken for structured error of the model, not for noise."""
-COARSE_STEP = 3.5
-"""Resolution steps above this many standard deviations need the interval likelihood."""
 
 
 def estimate_noise(

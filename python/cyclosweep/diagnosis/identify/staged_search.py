@@ -1,0 +1,177 @@
+"""Search in stages: large effects first, each stage judged against the error of its own models.
+
+No law of an effect is exact. Where effects are far above the noise, evidence that is counted
+against the noise alone prefers any shape with more freedom to the right law that is slightly off,
+and then nothing is named. Here each stage counts it against noise and model error together. The
+model error is a share of what the stage has to explain. It vanishes where that is hardly above the
+noise, so that what is faint is judged against the noise alone.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
+from cyclosweep.simulation.effects.history import Floats
+
+MODEL_ERROR_SHARE = 0.3
+"""Model error over what a stage has to explain, as root mean squares."""
+FAINT = 30.0
+"""Signal-to-noise ratio up to which a mismatch is judged against the noise alone."""
+MOST_STAGES = 4
+"""Stages of a search."""
+CONVERGED = 20
+"""Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
+them."""
+LEAST_OF_MISMATCH = 0.04
+"""Size from which an effect is told from the model error of the others, as a share of the mismatch
+of the calibrated model."""
+LEAST_OF_FAMILY = 0.25
+"""Size from which an effect is told from the model error of an effect of the same family that was
+accepted before, as a share of the other's size."""
+
+
+def visibility(fitted: FittedStructure, flexible: Floats) -> float:
+    """Signal-to-noise ratio of what a structure leaves and a flexible model takes up.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    flexible : ndarray, shape (fitted, k)
+        Columns of the flexible model. What it cannot take up, outliers among it, does not count.
+
+    Returns
+    -------
+    float
+    """
+    noise = replace(fitted.noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
+    use = fitted.problem.fitted
+    left, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
+    basis = orthonormal(noise.design(flexible, weight))
+    taken_up = float(np.sum((basis.T @ left) ** 2)) - basis.shape[1]
+    return float(np.sqrt(max(taken_up, 0.0)))
+
+
+def error_factor(left: float) -> float:
+    """Size of noise and model error together over that of the noise.
+
+    A model error that is wrong in as many places as a residual has independent pieces counts as
+    noise of a variance larger by rows over pieces.
+
+    Parameters
+    ----------
+    left : float
+        Signal-to-noise ratio of what a stage has to explain.
+    """
+    beyond = max(left**2 - FAINT**2, 0.0)
+    return float(np.sqrt(1.0 + MODEL_ERROR_SHARE**2 * beyond / INDEPENDENT_PIECES))
+
+
+def search_in_stages(searched: Search, flexible: Floats, say: Callable[[str], None]) -> Search:
+    """Explain the largest mismatch first, then what is left of it, stage by stage.
+
+    Parameters
+    ----------
+    searched : Search
+        A search against the noise alone.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model, see `visibility`.
+    say : callable
+        Called with a few words before each long step.
+
+    Returns
+    -------
+    Search
+        The search of the last stage, which starts from everything that the stages before it
+        accepted; the one given where they accepted nothing.
+    """
+    accepted: tuple[Term, ...] = ()
+    rivals: list[tuple[Candidate, float]] = []
+    last = searched
+    fitted: FittedStructure = searched.baseline.fit
+    mismatch = fitted.rmse_deg
+    for _ in range(MOST_STAGES):
+        factor = error_factor(visibility(fitted, flexible))
+        if not accepted and factor == 1.0:
+            break
+        search = _stage(searched, factor, accepted)
+        search.run(say)
+        decision = decide(search, [], 0.0)
+        if accepted:
+            last = search
+        if decision.best is None or decision.unexplained:
+            break
+        found = _without_model_error(decision.best.fit, accepted, mismatch)
+        if len(found) == len(accepted):
+            break
+        so_far = 1.0 - sum(share for _, share in rivals)
+        others = [each for each in decision.explanations if each[0] is not decision.best]
+        rivals += [(candidate, so_far * share) for candidate, share in others]
+        fitted = fit(searched.problem, searched.noise, found, search.baseline.fit, rounds=CONVERGED)
+        accepted = fitted.terms
+    if len(last.start.fit.terms) < len(accepted):
+        last = _stage(searched, error_factor(visibility(fitted, flexible)), accepted)
+    last.rivals_of_start = rivals
+    return last
+
+
+def _stage(searched: Search, factor: float, accepted: tuple[Term, ...]) -> Search:
+    """Search of one stage, with nothing visited.
+
+    Parameters
+    ----------
+    searched : Search
+        The search against the noise alone.
+    factor : float
+        Noise and model error together over the noise.
+    accepted : tuple of Term
+        Terms accepted before.
+
+    Returns
+    -------
+    Search
+    """
+    noise = searched.noise.with_model_error(factor)
+    return Search(searched.problem, noise, searched.library, searched.seed, accepted)
+
+
+def _without_model_error(
+    fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float
+) -> tuple[Term, ...]:
+    """Terms of a structure but those that may be model error of a term accepted before.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    accepted : tuple of Term
+        The terms accepted before.
+    mismatch_deg : float
+        Root mean square error of the calibrated model without effects [deg].
+
+    Returns
+    -------
+    tuple of Term
+    """
+    before = {term.name for term in accepted}
+    size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
+    kept = []
+    for k, term in enumerate(fitted.terms):
+        alike = [
+            size[j]
+            for j, other in enumerate(fitted.terms)
+            if other.name in before and other.family == term.family
+        ]
+        least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * max(alike, default=0.0))
+        if term.name in before or size[k] >= least:
+            kept.append(term)
+    return tuple(kept)
