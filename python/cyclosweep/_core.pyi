@@ -15,11 +15,9 @@ __all__ = [
     "active_pins",
     "creep_state",
     "dragged",
-    "frustum_compliance",
     "hole_locus",
     "input_table",
     "kernel_evaluations",
-    "keyway_compliance",
     "output_table",
     "play",
     "remembered_datum",
@@ -27,7 +25,6 @@ __all__ = [
     "slip_state",
     "solve_slip",
     "status_labels",
-    "step_compliance",
 ]
 
 DEBUG_BUILD: Final[bool]
@@ -69,19 +66,6 @@ def kernel_evaluations() -> tuple[int, int]: ...
 def input_table() -> list[tuple[str, bool, bool]]: ...
 def output_table(loads: Sequence[float]) -> list[tuple[str, str]]: ...
 def status_labels() -> list[str]: ...
-def keyway_compliance(
-    length: float, diameter: float, depth: float, coefficient: float, shear_modulus: float
-) -> float: ...
-def step_compliance(
-    length: float,
-    diameter: float,
-    larger_length: float,
-    larger_diameter: float,
-    shear_modulus: float,
-) -> float: ...
-def frustum_compliance(
-    length: float, diameter: float, end_diameter: float, shear_modulus: float
-) -> float: ...
 def active_pins(
     criterion: int, ratio: float, discs: int, pins: int, delta: float, clocking: float
 ) -> tuple[tuple[float, int, int], tuple[float, float, float], tuple[float, float]]: ...

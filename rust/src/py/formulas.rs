@@ -1,6 +1,4 @@
-//! Single formulas for validation and for looking at one drive. SI, but turns for map angles.
-
-use std::f64::consts::PI;
+//! Active pins and hole paths for looking at one drive. SI, but turns for map angles.
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -8,43 +6,6 @@ use pyo3::prelude::*;
 use crate::model::active_pins::{Criterion, PinMap};
 use crate::model::error::DesignError;
 use crate::model::hypotrochoid::hole_centre;
-use crate::model::shaft::{frustum_factor, keyway_factor, step_factor};
-
-/// Eq. (5) (rad/(N m)).
-#[pyfunction]
-pub fn keyway_compliance(
-    length: f64,
-    diameter: f64,
-    depth: f64,
-    coefficient: f64,
-    shear_modulus: f64,
-) -> f64 {
-    32.0 / (PI * shear_modulus) * keyway_factor(length, diameter, depth, coefficient)
-}
-
-/// Eq. (6) (rad/(N m)).
-#[pyfunction]
-pub fn step_compliance(
-    length: f64,
-    diameter: f64,
-    larger_length: f64,
-    larger_diameter: f64,
-    shear_modulus: f64,
-) -> PyResult<f64> {
-    let factor = step_factor(length, diameter, larger_length, larger_diameter)?;
-    Ok(32.0 / (PI * shear_modulus) * factor)
-}
-
-/// Eq. (7) (rad/(N m)).
-#[pyfunction]
-pub fn frustum_compliance(
-    length: f64,
-    diameter: f64,
-    end_diameter: f64,
-    shear_modulus: f64,
-) -> f64 {
-    32.0 / (PI * shear_modulus) * frustum_factor(length, diameter, end_diameter)
-}
 
 fn criterion_of(code: u8) -> Result<Criterion, DesignError> {
     let found = Criterion::ALL.get(usize::from(code)).copied();

@@ -70,9 +70,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(input_table, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;
     module.add_function(wrap_pyfunction!(status_labels, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::keyway_compliance, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::step_compliance, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::frustum_compliance, module)?)?;
     module.add_function(wrap_pyfunction!(formulas::active_pins, module)?)?;
     module.add_function(wrap_pyfunction!(formulas::sectors, module)?)?;
     module.add_function(wrap_pyfunction!(formulas::hole_locus, module)?)?;
