@@ -4,9 +4,11 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from cyclosweep.errors import InputError
+
+T = TypeVar("T")
 
 
 def read_object(path: Path) -> dict[str, Any]:
@@ -135,12 +137,7 @@ def text_of(content: Mapping[str, Any], key: str, default: str | None = None) ->
     InputError
         The key is missing, or its value is no text.
     """
-    if key not in content and default is None:
-        raise InputError(f"{key}: missing, expected a text")
-    value = content.get(key, default)
-    if not isinstance(value, str):
-        raise InputError(f"{key}: found {_short(value)}, expected a text")
-    return value
+    return _of_type(content, key, default, str, "a text")
 
 
 def object_of(
@@ -166,12 +163,7 @@ def object_of(
     InputError
         The key is missing, or its value is no object.
     """
-    if key not in content and default is None:
-        raise InputError(f"{key}: missing, expected an object")
-    value = content.get(key, default)
-    if not isinstance(value, dict):
-        raise InputError(f"{key}: found {_short(value)}, expected an object")
-    return value
+    return _of_type(content, key, default, dict, "an object")
 
 
 def list_of(content: Mapping[str, Any], key: str) -> list[Any]:
@@ -193,9 +185,41 @@ def list_of(content: Mapping[str, Any], key: str) -> list[Any]:
     InputError
         The value is no list.
     """
-    value = content.get(key, [])
-    if not isinstance(value, list):
-        raise InputError(f"{key}: found {_short(value)}, expected a list")
+    return _of_type(content, key, [], list, "a list")
+
+
+def _of_type(
+    content: Mapping[str, Any], key: str, default: object, kind: type[T], expected: str
+) -> T:
+    """Value of one type under a key.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the value.
+    default : object
+        What is taken where the key is missing; None makes a missing key an error.
+    kind : type
+        What the value has to be.
+    expected : str
+        The same in words.
+
+    Returns
+    -------
+    object of that type
+
+    Raises
+    ------
+    InputError
+        The key is missing, or its value is of another type.
+    """
+    if key not in content and default is None:
+        raise InputError(f"{key}: missing, expected {expected}")
+    value = content.get(key, default)
+    if not isinstance(value, kind):
+        raise InputError(f"{key}: found {_short(value)}, expected {expected}")
     return value
 
 
