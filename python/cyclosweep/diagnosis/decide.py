@@ -96,16 +96,11 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
         decision = decide_whole_loop(search.chosen, repeats=repeats.is_physics)
     elif search.start is not search.baseline:
-        staged = explained_share(
-            search.baseline.fit, search.start.fit, search.noise.spread_deg, search.seed
-        )
+        staged = explained_share(search.baseline.fit, search.start.fit, search.seed)
         decision = decide_in_stages(search, staged.share or 0.0)
     else:
         decision = decide(search, beyond_baseline, tolerance)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
-    if accepted.fit.rmse_deg > search.baseline.fit.rmse_deg:
-        # Without the unnamed part beside them, the named effects make it worse: not earned.
-        accepted = search.baseline
     check_positive(accepted.fit.history.compliance_deg_per_nm)
     beyond_accepted = beyond_baseline
     if accepted is not search.baseline:
@@ -121,14 +116,15 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         beyond_baseline=beyond_baseline,
         beyond_accepted=beyond_accepted,
         excluded=frozenset(below - possible),
-        explained=explained_share(
-            search.baseline.fit, accepted.fit, search.noise.spread_deg, search.seed
-        ),
+        explained=explained_share(search.baseline.fit, accepted.fit, search.seed),
     )
 
 
 def _named_part(search: Search, candidate: Candidate) -> Candidate:
     """Return the structure without the terms that have no name.
+
+    Where these carry the fit, the others alone may err more than no effect at all, and are then
+    left out too.
 
     Parameters
     ----------
@@ -146,5 +142,6 @@ def _named_part(search: Search, candidate: Candidate) -> Candidate:
     named = [t for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own]
     if not named:
         return search.baseline
-    known = search.visited.get(frozenset(t.name for t in named))
-    return known if known is not None else search.refit(tuple(named))
+    found = search.visited.get(frozenset(t.name for t in named)) or search.refit(tuple(named))
+    better = found.fit.rmse_deg <= search.baseline.fit.rmse_deg
+    return found if better else search.baseline

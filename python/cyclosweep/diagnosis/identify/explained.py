@@ -11,17 +11,13 @@ DRAWS = 500
 """Bootstrap draws of the interval."""
 
 
-def explained_share(
-    before: FittedStructure, after: FittedStructure, sigma_deg: float, seed: int
-) -> Explained:
+def explained_share(before: FittedStructure, after: FittedStructure, seed: int) -> Explained:
     """Share of the mean square beyond the noise that a structure takes away.
 
     Parameters
     ----------
     before, after : FittedStructure
         The calibrated published model, and the structure.
-    sigma_deg : float
-        Standard deviation of the noise [deg].
     seed : int
         Seed of the bootstrap over stretches of the recording.
 
@@ -37,7 +33,7 @@ def explained_share(
     count = min(int(INDEPENDENT_PIECES), max(int(np.count_nonzero(use)) // 3, 1))
     stretch = np.arange(len(weight)) * count // max(len(weight), 1)
     totals = [np.bincount(stretch, error, count) for error in errors]
-    noise = np.bincount(stretch, weight, count) * sigma_deg**2
+    noise = np.bincount(stretch, weight, count) * before.noise.spread_deg**2
     rng = np.random.default_rng([seed, 5])
     drawn = rng.integers(0, count, (DRAWS, count))
 
