@@ -17,6 +17,7 @@ import argparse
 import json
 import math
 import multiprocessing
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -24,6 +25,8 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
+SINGLE_THREADED = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Set to one thread a process unless they are set already: more are many times slower here."""
 TOLERANCE = 1e-9
 """Largest difference that counts as the same, relative to the larger number or to one [-]."""
 IGNORED = ("provenance",)
@@ -93,6 +96,8 @@ def run(folder: Path, target: Path, without: Sequence[str], workers: int, most: 
     tasks = [
         (p, tuple(without)) for p in sorted(folder.iterdir()) if (p / "recording.csv").exists()
     ]
+    for name in SINGLE_THREADED:
+        os.environ.setdefault(name, "1")
     begun = time.perf_counter()
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
