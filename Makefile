@@ -17,13 +17,15 @@ CONTEST_POOR_SEED ?= 900000
 SAME_OUT ?= build/same-diagnosis
 SAME_CASES ?= 300
 SAME_FLAGS ?=
+SCOREBOARD_OUT ?= build/scoreboard
+SCOREBOARD_FLAGS ?=
 RECORD := $(BIN)/python -m cyclosweep_challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench docs golden coverage proof \
-	proof-record proof-contest proof-contest-poor same-diagnosis clean
+	proof-record proof-contest proof-contest-poor same-diagnosis scoreboard clean
 .DEFAULT_GOAL := help
 
 help:
@@ -38,6 +40,7 @@ help:
 	@echo "make proof-contest  the contest with the opponents once more and proof/contest.md; about two hours"
 	@echo "make proof-contest-poor  the same on poor programmes alone and proof/contest-poor.md; about two hours"
 	@echo "make same-diagnosis OTHER=DIR  whether this code and another checkout (set up) diagnose the same"
+	@echo "make scoreboard  recordings of real devices and made ones, and which answers are right; about half an hour"
 	@echo "make docs    regenerate what in docs and proof comes from code or from the figures of record"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
@@ -105,6 +108,10 @@ same-diagnosis: env
 	$(OTHER)/$(BIN)/python proof/same_diagnosis.py run $(SAME_OUT)/recordings $(SAME_OUT)/other.json $(SAME_FLAGS)
 	$(BIN)/python proof/same_diagnosis.py run $(SAME_OUT)/recordings $(SAME_OUT)/here.json $(SAME_FLAGS)
 	$(BIN)/python proof/same_diagnosis.py compare $(SAME_OUT)/other.json $(SAME_OUT)/here.json
+
+# Measured recordings are read from the folder that CYCLOSWEEP_SHARED names (default ../shared).
+scoreboard: env
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m cyclosweep_challenge.scoreboard --out $(SCOREBOARD_OUT) $(SCOREBOARD_FLAGS)
 
 docs: env
 	$(BIN)/python docs/generate.py

@@ -148,7 +148,7 @@ def doubts(diagnosis: dict[str, Any]) -> bool:
     return diagnosis.get("verdict") in {"AMBIGUOUS", "UNKNOWN_PHYSICS"} and not named & UNSHOWN
 
 
-def _rms(error: Array, loops: Loops, ramp: int, *, free_datum: bool) -> float:
+def loaded_rms(error: Array, loops: Loops, ramp: int, *, free_datum: bool) -> float:
     """Error on the loaded readings of a ramp, with the datum free or not [deg]."""
     here = (loops.run == ramp) & loops.counts & np.isfinite(error)
     here &= np.abs(loops.torque_nm) >= LOADED_NM
@@ -178,7 +178,7 @@ def _predicted(bench: Bench, plain: dict[Path, Variant]) -> list[Row]:
         floor[loops.run == SECOND] = as_template(variant.loops.only(FIRST), loops.only(SECOND))
 
         def error(angle: Array, loops: Loops = loops, same: bool = same) -> float:
-            return _rms(angle - loops.angle_deg, loops, SECOND, free_datum=not same)
+            return loaded_rms(angle - loops.angle_deg, loops, SECOND, free_datum=not same)
 
         numbers = {
             "before_deg": error(angles[2 * k]),
@@ -248,7 +248,7 @@ def _removed(bench: Bench, plain: dict[Path, Variant]) -> list[Row]:
     held = bench.predict([(f"{v.key}-held", bench.model(v), known[v.file]) for v in barred])
     for variant, angle in zip(barred, held, strict=True):
         loops = variant.loops
-        error = _rms(angle - loops.angle_deg, loops, SECOND, free_datum=False)
+        error = loaded_rms(angle - loops.angle_deg, loops, SECOND, free_datum=False)
         full = bench.row(known[variant.file], None).rmse_deg
         rows.append(bench.row(variant, None, held_out_deg=error, rmse_with_it_deg=full))
     return rows

@@ -80,7 +80,22 @@ def rig_hash(python: Path = PYTHON) -> str:
     python : pathlib.Path
         Folder that holds the package ``cyclosweep_challenge``.
     """
-    modules = imported_modules(python, MAKES_RECORDINGS)
+    return source_hash(python, MAKES_RECORDINGS)
+
+
+def source_hash(python: Path, start: Sequence[str], left_out: Sequence[str] = ()) -> str:
+    """SHA-256 over some modules and all that they import; see the head of this file.
+
+    Parameters
+    ----------
+    python : pathlib.Path
+        Folder that holds the outermost packages.
+    start : sequence of str
+        Modules to begin with.
+    left_out : sequence of str
+        Packages that are not followed.
+    """
+    modules = imported_modules(python, start, left_out)
     return _hash({name: syntax(file.read_text("utf-8")) for name, file in modules.items()})
 
 

@@ -1,0 +1,268 @@
+"""Lines of the measured torque ramps of a 3D-printed 13:1 cycloidal drive."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.recording import Recording
+from cyclosweep_challenge.measured.loops import FIRST, SECOND, Loops, as_template
+from cyclosweep_challenge.measured.run import LOADED_NM, loaded_rms
+from cyclosweep_challenge.scoreboard.checks import (
+    CONSISTENT,
+    FRICTION,
+    POSITION,
+    figure_at_most,
+    names_one_of,
+    no_stiffness_to_three_digits,
+    says_the_drive_changed,
+    verdict_not,
+)
+from cyclosweep_challenge.scoreboard.line import Check, Line, Summary
+from cyclosweep_challenge.scoreboard.outcome import Outcome
+
+GROUP = "Printed 13:1 drive"
+FOLDER = "cycloidal-13-to-1"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "measured-13-to-1"
+"""Where the metadata and the drive of these files stand."""
+RAMPS = (
+    "2024-07-11__15-47-12__torqueramp__base_runin1",
+    "2024-07-11__15-51-51__torqueramp__base_runin5",
+    "2024-07-12__13-05-47__torqueramp__conic_runin1",
+    "2024-07-16__14-12-42__torqueramp__base910_unr_cold5",
+)
+"""Files of a drive that repeats from ramp to ramp."""
+WARM = "2024-07-16__11-55-30__torqueramp__base910_unr_runin1"
+"""File of a drive that is warm from running in and changes from ramp to ramp."""
+PRELOADS = {
+    1: ("14-07-48", "14-26-23", "14-31-48"),
+    2: ("14-52-50", "14-57-29", "15-12-22"),
+    3: ("16-23-23", "16-34-37", "16-28-44"),
+    4: ("16-46-43", "16-57-04", "16-51-38"),
+}
+"""Clock in the names of the preload series, by step; positions 1, 5 and 6 in this order."""
+POSITIONS = (1, 5, 6)
+LARGEST_RATIO = 1.6
+"""Largest error of a forecast over that of the other ramp as template [-]."""
+MEDIAN_RATIO = 1.1
+"""The same for the median of all files [-]."""
+REPEATS = 0.6
+"""Correlation of the remainders of two ramps from which a staircase repeats [-]."""
+CELL_DEG = 0.1
+"""Width of the cells of angle in which the remainders of two ramps are compared [deg]."""
+FEWEST_CELLS = 12
+"""Cells that both ramps pass below which no correlation is stated."""
+REFERENCE_NM = 10.0
+"""Load at which constant and load-dependent friction are added up [N m]."""
+SOURCE = "Volbeda, MSc thesis 2024 (measured); the other ramp of the same file"
+
+
+def loops_of(recording: Recording) -> Loops:
+    """Return the ramps of a recording as the challenge's measured loops."""
+    assert recording.time_s is not None
+    assert recording.angle_deg is not None
+    return Loops(
+        recording.time_s,
+        recording.torque_nm,
+        recording.angle_deg,
+        np.asarray(recording.run, dtype=np.int64),
+        recording.unscored,
+    )
+
+
+def forecast(found: Diagnosis) -> Mapping[str, float]:
+    """Forecast ramp 102 by the model of ramp 101 and compare with ramp 101 itself.
+
+    Parameters
+    ----------
+    found : Diagnosis
+        Diagnosis of the three ramps, of which 102 was kept back.
+
+    Returns
+    -------
+    mapping
+        ``forecast_deg``, ``floor_deg`` and their ratio ``over_floor``, on loaded readings;
+        ``repeats``, the correlation of what the model leaves on the two ramps, and
+        ``repeating_deg``, how large what repeats is.
+    """
+    loops = loops_of(found.recording)
+    template = np.full(loops.angle_deg.size, np.nan)
+    template[loops.run == SECOND] = as_template(loops.only(FIRST), loops.only(SECOND))
+    floor = loaded_rms(template - loops.angle_deg, loops, SECOND, free_datum=False)
+    if found.model is None:
+        return {"floor_deg": floor}
+    predicted = cs.simulate(found.model, found.recording).angle_deg
+    assert predicted is not None
+    error = predicted - loops.angle_deg
+    ahead = loaded_rms(error, loops, SECOND, free_datum=False)
+    correlation, size = _repeating(loops, error)
+    return {
+        "forecast_deg": ahead,
+        "floor_deg": floor,
+        "over_floor": ahead / floor if floor > 0.0 else math.nan,
+        "repeats": correlation,
+        "repeating_deg": size,
+    }
+
+
+def _repeating(loops: Loops, error: NDArray[np.float64]) -> tuple[float, float]:
+    """Correlation of the errors of both ramps at equal angle and direction, and their common rms.
+
+    The mean of each direction and side is no staircase and is taken out.
+    """
+    rising = np.gradient(loops.torque_nm) >= 0.0
+    cell = np.floor(loops.angle_deg / CELL_DEG).astype(np.int64)
+    kind = 2 * rising.astype(np.int64) + (loops.torque_nm > 0.0).astype(np.int64)
+    loaded = loops.counts & (np.abs(loops.torque_nm) >= LOADED_NM) & np.isfinite(error)
+    means: list[dict[tuple[int, int], float]] = []
+    for ramp in (FIRST, SECOND):
+        here = loaded & (loops.run == ramp)
+        sums: dict[tuple[int, int], list[float]] = {}
+        for key, value in zip(
+            zip(kind[here].tolist(), cell[here].tolist(), strict=True),
+            error[here].tolist(),
+            strict=True,
+        ):
+            sums.setdefault(key, []).append(value)
+        means.append({key: float(np.mean(values)) for key, values in sums.items()})
+    common = sorted(set(means[0]) & set(means[1]))
+    if len(common) < FEWEST_CELLS:
+        return math.nan, math.nan
+    both = np.array([[part[key] for key in common] for part in means])
+    kinds = np.array([key[0] for key in common])
+    for each in np.unique(kinds):
+        both[:, kinds == each] -= both[:, kinds == each].mean(axis=1, keepdims=True)
+    product = float(np.mean(both[0] * both[1]))
+    spread = float(np.sqrt(np.mean(both[0] ** 2) * np.mean(both[1] ** 2)))
+    return product / spread if spread > 0.0 else math.nan, math.sqrt(max(product, 0.0))
+
+
+def _staircase_named(outcome: Outcome) -> bool:
+    """Whether what repeats from ramp to ramp is named as tied to the position."""
+    return outcome.figures.get("repeats", 0.0) < REPEATS or bool(set(POSITION) & set(outcome.named))
+
+
+def _line(name: str, file: str, asks: str, answer: str, checks: tuple[Check, ...]) -> Line:
+    """Line of one file."""
+
+    def read(recordings: Path) -> Recording:
+        return Recording.read(recordings / file, EXAMPLE / "recording.toml")
+
+    return Line(name, GROUP, asks, answer, SOURCE, read, checks, forecast, file)
+
+
+STEADY = (
+    *CONSISTENT,
+    verdict_not("NOTHING_MISSING", "DATA_FAULT"),
+    names_one_of(*FRICTION),
+    figure_at_most("over_floor", LARGEST_RATIO, "forecast of the other ramp over the floor"),
+    Check("a staircase that repeats is named by its position", _staircase_named),
+)
+STEADY_ANSWER = (
+    "Friction is named; the other ramp is forecast about as well as by this ramp itself; a "
+    "staircase that repeats is named by the position of mesh and motor."
+)
+
+
+def printed_drive_lines() -> list[Line]:
+    """Lines of all files of the printed drive."""
+    lines = [
+        _line(
+            file.rpartition("__")[2],
+            f"{FOLDER}/{file}.csv.gz",
+            "Ramp 101 is fitted, ramp 102 forecast; torque from motor current.",
+            STEADY_ANSWER,
+            STEADY,
+        )
+        for file in RAMPS
+    ]
+    lines.append(
+        _line(
+            WARM.rpartition("__")[2],
+            f"{FOLDER}/{WARM}.csv.gz",
+            "The same of a drive warm from running in, which changes from ramp to ramp.",
+            "The drive changed from ramp to ramp; no stiffness to three digits.",
+            (
+                *CONSISTENT,
+                verdict_not("NOTHING_MISSING", "IDENTIFIED"),
+                says_the_drive_changed(),
+                no_stiffness_to_three_digits(),
+                figure_at_most(
+                    "over_floor", LARGEST_RATIO, "forecast of the other ramp over the floor"
+                ),
+            ),
+        )
+    )
+    for step, clocks in PRELOADS.items():
+        for position, clock in zip(POSITIONS, clocks, strict=True):
+            stem = f"conic_{step}pre{position}"
+            lines.append(
+                _line(
+                    stem,
+                    f"{FOLDER}/preload-series/2024-07-12__{clock}__torqueramp__{stem}.csv.gz",
+                    f"The conical drive at preload step {step}, position {position}.",
+                    STEADY_ANSWER,
+                    STEADY,
+                )
+            )
+    return lines
+
+
+def _forecasts(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
+    """Judge the forecasts of all files together."""
+    ratios = [o.figures.get("over_floor", math.inf) for o in outcomes.values()]
+    median, worst = float(np.median(ratios)), max(ratios)
+    return (
+        median <= MEDIAN_RATIO and worst <= LARGEST_RATIO,
+        f"median {median:.2f}, worst {worst:.2f}",
+    )
+
+
+def _dose(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
+    """Judge whether friction rises and play falls with the preload, means of the positions."""
+    friction, play = [], []
+    for step in PRELOADS:
+        of_step = [outcomes[f"conic_{step}pre{position}"] for position in POSITIONS]
+        friction.append(float(np.mean([friction_nm(o) for o in of_step])))
+        play.append(float(np.mean([2.0 * (o.play_deg or 0.0) for o in of_step])))
+    right = sorted(friction) == friction and sorted(play, reverse=True) == play
+    words = ", ".join(f"{f:.2f}" for f in friction), ", ".join(f"{p:.2f}" for p in play)
+    return right, f"friction at {REFERENCE_NM:g} N m: {words[0]} N m; play {words[1]} deg"
+
+
+def friction_nm(outcome: Outcome) -> float:
+    """Friction torque that a diagnosis found, at the reference load [N m]."""
+    constant = outcome.parameters.get("friction_hysteresis.friction_torque_nm", 0.0)
+    share = outcome.parameters.get("load_dependent_friction.friction_share", 0.0)
+    return constant + share * REFERENCE_NM
+
+
+def printed_drive_summaries() -> list[Summary]:
+    """Checks over several files of the printed drive."""
+    every = tuple(line.name for line in printed_drive_lines())
+    series = tuple(f"conic_{s}pre{p}" for s in PRELOADS for p in POSITIONS)
+    return [
+        Summary(
+            "all-forecasts",
+            GROUP,
+            f"Forecast over the floor, all {len(every)} files: median at most {MEDIAN_RATIO:g}, "
+            f"none above {LARGEST_RATIO:g}.",
+            SOURCE,
+            every,
+            _forecasts,
+        ),
+        Summary(
+            "preload-order",
+            GROUP,
+            "With the preload, step 1 to 4, friction rises and play falls in order.",
+            "Volbeda, MSc thesis 2024 (makers' reading by straight lines)",
+            series,
+            _dose,
+        ),
+    ]

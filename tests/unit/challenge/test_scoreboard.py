@@ -1,0 +1,157 @@
+"""The scoreboard: checks that can fail, recordings as stated, lines that are not done twice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cyclosweep_challenge.scoreboard import run as running
+from cyclosweep_challenge.scoreboard.checks import (
+    CONSISTENT,
+    names_only,
+    no_stiffness_to_three_digits,
+    removes,
+    says_the_drive_changed,
+)
+from cyclosweep_challenge.scoreboard.command import main
+from cyclosweep_challenge.scoreboard.line import Line
+from cyclosweep_challenge.scoreboard.lines import all_lines, all_summaries
+from cyclosweep_challenge.scoreboard.made import Recipe, left_over, long_recording, make
+from cyclosweep_challenge.scoreboard.made_effects import SHAPES
+from cyclosweep_challenge.scoreboard.made_rig import Course, Friction, balance
+from cyclosweep_challenge.scoreboard.outcome import FAILURE, Outcome
+
+GOOD = Outcome(
+    "IDENTIFIED",
+    "Missing physics: creep.",
+    ("creep",),
+    noise_deg=0.1,
+    scale_calibrated=1.0,
+    scale_repaired=1.1,
+    scale_error=0.05,
+    rms_calibrated_deg=1.0,
+    rms_repaired_deg=0.11,
+    held_calibrated_deg=1.0,
+    held_repaired_deg=0.12,
+    stationary=True,
+)
+
+
+def broken(outcome: Outcome) -> list[str]:
+    """Words of the checks against itself that an answer breaks."""
+    return [check.words for check in CONSISTENT if not check.holds(outcome)]
+
+
+def test_an_answer_is_checked_against_itself() -> None:
+    assert broken(GOOD) == []
+    assert len(broken(replace(GOOD, scale_calibrated=-0.2))) == 1
+    assert len(broken(replace(GOOD, rms_repaired_deg=0.4))) == 1
+    assert broken(replace(GOOD, rms_repaired_deg=0.4, verdict="MOSTLY_EXPLAINED")) == []
+    assert len(broken(replace(GOOD, verdict="NOTHING_MISSING"))) == 1
+    assert len(broken(replace(GOOD, held_repaired_deg=1.1))) == 1
+    assert len(broken(Outcome(FAILURE))) == 1
+
+
+def test_checks_can_fail() -> None:
+    assert names_only("creep").holds(GOOD)
+    assert not names_only("creep").holds(replace(GOOD, named=("creep", "viscous_drag")))
+    assert removes(0.9).holds(GOOD)
+    assert not removes(0.9).holds(replace(GOOD, rms_repaired_deg=0.5))
+    assert not says_the_drive_changed().holds(GOOD)
+    assert says_the_drive_changed().holds(replace(GOOD, stationary=False))
+    vague = no_stiffness_to_three_digits()
+    assert vague.holds(GOOD)
+    assert not vague.holds(replace(GOOD, scale_error=0.001))
+    assert not vague.holds(replace(GOOD, statement="Calibration: compliance +12.3 % against"))
+
+
+def test_lines_and_the_checks_over_them_fit_together(tmp_path: Path) -> None:
+    names = [line.name for line in all_lines(tmp_path)]
+    assert len(names) == len(set(names))
+    for summary in all_summaries():
+        assert set(summary.of) <= set(names)
+
+
+def test_what_is_kept_is_read_back_and_not_done_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = list[str]()
+
+    def diagnosed(line: Line, recordings: Path, *, full: bool = True) -> Outcome:
+        made.append(line.name)
+        return GOOD
+
+    monkeypatch.setattr(running, "diagnosed", diagnosed)
+    lines = [line for line in all_lines(tmp_path) if line.name in ("coulomb-dahl", "wall-no-clock")]
+    file = tmp_path / "scoreboard.json"
+    for _ in range(2):
+        board = running.Board.open(file, "one")
+        running.run(board, lines, tmp_path, lambda text: None)
+        assert board.outcomes == {"coulomb-dahl": GOOD}  # the wall's file is absent
+    assert made == ["coulomb-dahl"]
+    assert running.Board.open(file, "another").outcomes == {}
+
+
+def test_an_error_is_an_answer_that_is_wrong(tmp_path: Path) -> None:
+    line = next(each for each in all_lines(tmp_path) if each.name == "foot-dual-x33")
+    outcome = running.diagnosed(line, tmp_path)
+    assert outcome.verdict == FAILURE
+    assert "there is an answer" in line.failed(outcome)
+
+
+def test_made_recordings_have_the_size_that_is_stated() -> None:
+    for recipe, size in (
+        (Recipe(1, 1e-6, "friction_hysteresis", "bouc-wen", friction_rms_deg=0.7), 0.7),
+        (Recipe(2, 1e-6, added={"clearance_takeup": 0.3}), 0.3),
+    ):
+        recording = make(recipe)
+        assert recording.angle_deg is not None
+        course = Course(
+            recording.torque_nm,
+            recording.torque_nm,
+            recording.torque_nm,
+            recording.torque_nm,
+            np.asarray(recording.run),
+        )
+        rms = np.sqrt(np.mean(left_over(course, recording.angle_deg) ** 2))
+        assert rms == pytest.approx(size, rel=0.02)
+
+
+@pytest.mark.parametrize("effect", SHAPES)
+def test_every_shape_adds_something(effect: str) -> None:
+    recording = make(Recipe(3, 1e-6, added={effect: 0.5}))
+    plain = make(Recipe(3, 1e-6))
+    assert recording.angle_deg is not None
+    assert plain.angle_deg is not None
+    assert np.std(recording.angle_deg - plain.angle_deg) > 0.3
+
+
+@pytest.mark.parametrize("law", ["jenkins", "dahl", "bouc-wen"])
+def test_friction_balances_and_reaches_its_limit(law: str) -> None:
+    torque = np.r_[np.linspace(0.0, 20.0, 60), np.linspace(20.0, -20.0, 120)]
+    same = np.zeros(torque.size)
+    course = Course(torque, np.arange(torque.size) * 1.0, same, same, np.ones(180, dtype=np.int64))
+    friction = Friction(law, 2.0, constant_nm=1.5)  # type: ignore[arg-type]
+    at = balance(course, friction)
+    force = torque - at.elastic_nm
+    assert np.all(np.abs(force) <= 1.5 + 1e-6)
+    assert force[59] == pytest.approx(1.5, rel=0.01)
+    assert force[-1] == pytest.approx(-1.5, rel=0.01)
+
+
+def test_every_tenth_row_of_the_long_recording_is_its_every_tenth_row() -> None:
+    whole, some = long_recording(20_000), long_recording(20_000, 10)
+    assert len(some.torque_nm) < len(whole.torque_nm) / 9
+    assert set(some.torque_nm.tolist()) <= set(whole.torque_nm.tolist())
+
+
+def test_a_pattern_that_fits_no_line_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--only", "nonesuch", "--list"])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "nonesuch" in said
