@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 
 from rich.table import Table
 
-from cyclosweep_challenge.record.machine import machine
 from cyclosweep_challenge.record.markdown import table
 from cyclosweep_challenge.scoreboard.line import Line, Summary
 from cyclosweep_challenge.scoreboard.run import Board
@@ -26,7 +25,9 @@ HEADS = (
 HOW = """\
 One command diagnoses every recording of this page and says which answers are right:
 
-    make scoreboard
+```make
+make scoreboard
+```
 
 or, in parts and with files of one's own choice,
 
@@ -123,11 +124,11 @@ def terminal(lines: Sequence[Line], summaries: Sequence[Summary], board: Board) 
 
 def markdown(lines: Sequence[Line], summaries: Sequence[Summary], board: Board) -> str:
     """Result tables with date and class of machine."""
-    here = machine()
     right, judged = marks(lines, board)
     parts = [
         f"{right} of {judged} lines right; diagnosed on {board.date or '–'}, one process, "
-        f"{here['cores']} cores of {here['processor']}, {here['memory_gb']} GB; code "
+        f"{board.machine['cores']} cores of {board.machine['processor']}, "
+        f"{board.machine['memory_gb']} GB; code "
         f"`{board.code[:12]}`."
     ]
     for group, members in itertools.groupby(lines, key=lambda line: line.group):

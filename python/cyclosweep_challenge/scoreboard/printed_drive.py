@@ -144,8 +144,10 @@ def _repeating(loops: Loops, error: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _staircase_named(outcome: Outcome) -> bool:
-    """Whether what repeats from ramp to ramp is named as tied to the position."""
-    return outcome.figures.get("repeats", 0.0) < REPEATS or bool(set(POSITION) & set(outcome.named))
+    """Whether what repeats from ramp to ramp, here or by the diagnosis, is named by position."""
+    left = outcome.words.partition("|")[0]
+    repeats = outcome.figures.get("repeats", 0.0) >= REPEATS or "staircase" in left
+    return not repeats or bool(set(POSITION) & set(outcome.named))
 
 
 def _line(name: str, file: str, asks: str, answer: str, checks: tuple[Check, ...]) -> Line:

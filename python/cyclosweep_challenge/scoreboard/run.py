@@ -43,12 +43,15 @@ class Board:
         Outcome of every line that was diagnosed with this code, by name.
     date : str
         Day of the last diagnosis.
+    machine : dict
+        Kind of machine of the last diagnosis.
     """
 
     file: Path
     code: str
     outcomes: dict[str, Outcome] = field(default_factory=dict)
     date: str = ""
+    machine: dict[str, Any] = field(default_factory=machine)
 
     @classmethod
     def open(cls, file: Path, code: str | None = None) -> Board:
@@ -65,6 +68,7 @@ class Board:
         content = json.loads(file.read_text()) if file.is_file() else {}
         if content.get("code") == board.code:
             board.date = str(content.get("date", ""))
+            board.machine = content.get("machine", board.machine)
             for name, outcome in content.get("lines", {}).items():
                 board.outcomes[name] = Outcome.from_dict(outcome)
         return board
@@ -75,7 +79,7 @@ class Board:
             "schema": SCHEMA,
             "code": self.code,
             "date": self.date,
-            "machine": machine(),
+            "machine": self.machine,
             "lines": {name: outcome.as_dict() for name, outcome in self.outcomes.items()},
         }
         self.file.parent.mkdir(parents=True, exist_ok=True)
@@ -117,6 +121,7 @@ def run(
             say(f"{line.name}: {recordings / line.file} is absent")
             continue
         board.outcomes[line.name] = outcome = diagnosed(line, recordings, full=full)
+        board.machine = machine()
         board.date = datetime.now(UTC).date().isoformat()
         board.write()
         wrong = line.failed(outcome)
