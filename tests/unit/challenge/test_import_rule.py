@@ -76,6 +76,7 @@ def test_nothing_that_predicts_or_diagnoses_knows_of_the_challenge() -> None:
 
 
 ORDER = (
+    "second_generator",
     "rig",
     "trial",
     "opponents",
@@ -109,7 +110,7 @@ def test_no_folder_imports_one_after_it() -> None:
         for path in FILES
         if path.parent != ROOT
         for name in own_imports(path)
-        if name.count(".") and places[name.split(".")[1]] > places[path.parent.name]
+        if name.count(".") and places[name.split(".")[1]] > places[path.relative_to(ROOT).parts[0]]
     ]
     assert upward == []
 
@@ -120,6 +121,17 @@ def test_no_files_import_each_other_in_a_circle() -> None:
     while leaves := {name for name, needed in imports.items() if not needed & set(imports)}:
         imports = {name: needed for name, needed in imports.items() if name not in leaves}
     assert imports == {}
+
+
+def test_second_generator_stands_alone() -> None:
+    files = [path for path in FILES if "second_generator" in path.parts]
+    assert len(files) > 10
+    for path in files:
+        for name in imported(path):
+            if name.startswith("cyclosweep"):
+                assert name.startswith("cyclosweep_challenge.second_generator"), (
+                    f"{path.name} imports {name}"
+                )
 
 
 def test_rule_sees_the_rig() -> None:
