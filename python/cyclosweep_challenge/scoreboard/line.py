@@ -54,6 +54,8 @@ class Line:
         What is measured on the recording and the repaired model.
     file : str
         File below the shared folder, where the recording is read; empty where it is made.
+    verdict_only : bool
+        Diagnose without held-out proof and self-check, which take about half of the time.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Line:
     checks: Sequence[Check] = ()
     figures: Callable[[Diagnosis], Mapping[str, float]] = _no_figures
     file: str = ""
+    verdict_only: bool = False
 
     def failed(self, outcome: Outcome) -> list[str]:
         """What a right answer would hold and this one does not."""

@@ -83,12 +83,19 @@ def _answer(effects: Sequence[str]) -> str:
     return f"{words[0].upper()}{words[1:]}, nothing else; the repair removes the mismatch."
 
 
-def _line(name: str, asks: str, recipe: Recipe) -> Line:
+def _line(name: str, asks: str, recipe: Recipe, *, verdict_only: bool = False) -> Line:
     """Line of a recording of the scoreboard's rig."""
     effects = [recipe.friction] if recipe.friction else []
     effects += [*recipe.added, *recipe.added_d]
     return Line(
-        name, GROUP, asks, _answer(effects), SOURCE, partial(_made, recipe), _right(effects)
+        name,
+        GROUP,
+        asks,
+        _answer(effects),
+        SOURCE,
+        partial(_made, recipe),
+        _right(effects),
+        verdict_only=verdict_only,
     )
 
 
@@ -186,6 +193,7 @@ def _single_lines() -> list[Line]:
                     f"{effect.replace('_', '-')}-d{d}",
                     f"One effect of another law at d = {d}, noise 0.05 deg.",
                     Recipe(18150 + number, added_d={effect: float(d)}),
+                    verdict_only=True,
                 )
             )
     return lines
@@ -211,6 +219,7 @@ def _correlated_lines() -> list[Line]:
                 verdict_not("NOTHING_MISSING", "INSUFFICIENT_DATA", "DATA_FAULT"),
                 names_only(effect),
             ),
+            verdict_only=True,
         )
         for number, effect in enumerate(CORRELATED_EFFECTS)
     ]
@@ -223,6 +232,7 @@ def _correlated_lines() -> list[Line]:
             SOURCE,
             partial(read, seed=18250 + number, effect=""),
             (*CONSISTENT, verdict_in("NOTHING_MISSING", "INSUFFICIENT_DATA"), names_nothing()),
+            verdict_only=True,
         )
         for number in range(QUIET)
     ]
@@ -274,6 +284,7 @@ def _other_lines() -> list[Line]:
                 SOURCE,
                 partial(long, every=every),
                 (*_right((effect,)), within_seconds(max(rows / ROWS_PER_SECOND, 30.0))),
+                verdict_only=True,
             )
         )
     return lines

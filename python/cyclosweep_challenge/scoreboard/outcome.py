@@ -26,7 +26,7 @@ class Outcome:
     rows : int
         Readings of the recording.
     seconds : float
-        Time of the whole diagnosis [s].
+        Processor time of the diagnosis, one thread [s].
     share, share_low, share_high : float or None
         Share of the mismatch that the named effects explain, and its 95 % interval [-].
     noise_deg : float or None
@@ -82,7 +82,7 @@ class Outcome:
         found : Diagnosis
             The diagnosis.
         seconds : float
-            How long it took [s].
+            Its processor time [s].
         figures : mapping
             Further figures of the line; those that are not finite are left out.
         """

@@ -19,7 +19,7 @@ HEADS = (
     "explained",
     "compliance",
     "rms before / after [deg]",
-    "time [s]",
+    "processor [s]",
     "what is wrong",
 )
 HOW = """\

@@ -46,6 +46,7 @@ def practice_lines(recordings: Path) -> list[Line]:
                 "its truth.json",
                 read,
                 file=file,
+                verdict_only=True,
             )
         )
     return lines
