@@ -16,6 +16,7 @@ from cyclosweep.result import (
     Repair,
     RunToRunDrift,
     Size,
+    Thinning,
 )
 from cyclosweep.result.statement import statement_of
 
@@ -117,3 +118,14 @@ def test_forecasts_have_a_sentence_of_their_own() -> None:
 
 def with_block(block: HeldOutBlock) -> Repair:
     return replace(IDENTIFIED.repaired, blocks=(block,))
+
+
+def test_thinning_of_a_long_recording_is_said_with_every_verdict() -> None:
+    assert "thinned" not in statement_of(IDENTIFIED)
+    thinning = Thinning(samples=600_000, rows=6_012, averaged=50, every=2)
+    for verdict in ("IDENTIFIED", "NOTHING_MISSING", "UNKNOWN_PHYSICS"):
+        text = statement_of(replace(IDENTIFIED, verdict=verdict, thinning=thinning))
+        assert "600,000 samples were thinned to 6,012 rows" in text
+        assert "about 50 neighbours averaged in each, one in 2 taken" in text
+    unmixed = replace(thinning, averaged=1)
+    assert "averaged" not in statement_of(replace(IDENTIFIED, thinning=unmixed))

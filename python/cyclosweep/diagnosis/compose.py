@@ -9,6 +9,7 @@ from cyclosweep.diagnosis.identify.alarm import probability
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import hidden_effects
 from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
@@ -24,6 +25,7 @@ from cyclosweep.result import (
     Region,
     Repair,
     Sufficiency,
+    Thinning,
     Untestable,
 )
 from cyclosweep.result.part import finite
@@ -103,6 +105,7 @@ def _answer(
         tolerance_deg=concluded.tolerance_deg,
         verdict=verified.decision.verdict,
         noise=_noise(concluded.search),
+        thinning=_thinning(concluded.search.problem, repaired),
         baseline=replace(repaired.before, holdout_rmse_deg=finite(verified.held_out.before_deg)),
         mismatch=_mismatch(concluded.search, regions),
         explained=concluded.explained,
@@ -138,6 +141,34 @@ def _noise(search: Search) -> NoiseEstimate:
         autocorrelation_upper=noise.correlation,
         tail_degrees_of_freedom=finite(noise.tail),
         resolution_deg=search.problem.resolution_deg,
+    )
+
+
+def _thinning(problem: Problem, repaired: RepairedModel) -> Thinning | None:
+    """How the recording was thinned; None where it was not.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    repaired : RepairedModel
+        The model whose error at the samples shows their noise.
+
+    Returns
+    -------
+    Thinning or None
+    """
+    rows, angle = problem.rows, problem.recording.angle_deg
+    if not rows.thinned or angle is None:
+        return None
+    sigma, correlation = rows.scatter(angle - repaired.after_deg, problem.fitted)
+    return Thinning(
+        samples=len(rows.row),
+        rows=len(rows),
+        averaged=rows.averaged,
+        every=rows.every,
+        sample_sigma_deg=finite(sigma),
+        sample_autocorrelation=finite(correlation),
     )
 
 

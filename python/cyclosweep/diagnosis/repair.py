@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -131,7 +129,9 @@ def _at_samples(problem: Problem, angle_deg: Floats, fitted: FittedStructure) ->
     ndarray, shape (samples,)
         In deg.
     """
-    row = problem.rows
-    # Within an averaged row the line's own slope carries the torque's deviation from its mean.
-    torque = problem.recording.torque_nm - problem.history.applied_nm[row]
-    return np.asarray(angle_deg[row] + fitted.history.compliance_deg_per_nm * torque)
+    rows, history = problem.rows, fitted.history
+    if not rows.thinned:
+        return angle_deg
+    # Between rows the line's own slope carries the torque, and what is left is interpolated.
+    beside = rows.at_samples(angle_deg - history.compliance_deg_per_nm * history.applied_nm)
+    return beside + history.compliance_deg_per_nm * problem.recording.torque_nm

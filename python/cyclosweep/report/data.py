@@ -137,12 +137,16 @@ class ReportData:
 
     @property
     def noise(self) -> tuple[float, float]:
-        """Standard deviation [deg] and lag-one autocorrelation of the noise."""
-        sigma = self.result.noise.sigma_deg
+        """Standard deviation [deg] and lag-one autocorrelation of the noise of the samples."""
+        sigma, rho = self.result.noise.sigma_deg, self.result.noise.autocorrelation
+        thinning = self.result.thinning
+        if thinning is not None and thinning.sample_sigma_deg is not None:
+            sigma = thinning.sample_sigma_deg
+            if thinning.sample_autocorrelation is not None:
+                rho = max(thinning.sample_autocorrelation, 0.0)
         if sigma is None or not np.isfinite(sigma) or sigma <= 0:
             residual = self.residual_after_deg
             sigma = 0.0 if residual is None else 1.4826 * float(np.median(np.abs(residual)))
-        rho = self.result.noise.autocorrelation
         return sigma, 0.0 if rho is None or not np.isfinite(rho) else rho
 
     def _residual(self, predicted: Floats | None) -> Floats | None:

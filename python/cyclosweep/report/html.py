@@ -12,6 +12,7 @@ from cyclosweep.report.figures import all_figures
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.tables import Table
 from cyclosweep.report.wording import number, probability, verdict_words
+from cyclosweep.result import Thinning
 
 
 def write_html(data: ReportData, path: str | Path) -> Path:
@@ -136,6 +137,16 @@ def _effects(data: ReportData) -> str:
     )
 
 
+def _thinning(thinning: Thinning | None) -> str:
+    """How many rows were fitted, and how they were made of the samples."""
+    if thinning is None:
+        return "every sample"
+    said = f"{thinning.rows}, about {thinning.averaged} samples averaged in each"
+    if thinning.averaged == 1:
+        said = f"{thinning.rows}, none averaged"
+    return said + (f", one in {thinning.every} taken" if thinning.every > 1 else "")
+
+
 def _recording(data: ReportData) -> str:
     """Forensics: what was read, recognised, changed and found wrong."""
     recording = data.recording
@@ -143,6 +154,7 @@ def _recording(data: ReportData) -> str:
     structure = recording.structure
     rows = [
         ("samples", f"{len(recording)} in {len(recording.runs)} runs"),
+        ("rows of the diagnosis", _thinning(data.result.thinning)),
         ("branches, reversals, holds",
          f"{len(structure.branches)}, {len(structure.reversals)}, {len(structure.holds)}"),
         ("torque", _extent(recording.torque_nm, "N m")),

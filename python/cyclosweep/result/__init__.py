@@ -1,7 +1,7 @@
 """The result of a diagnosis: its types, its JSON form and schema, and its statement in words."""
 
 from cyclosweep.result.answer import SCHEMA, Answer, Finding, RunToRunDrift
-from cyclosweep.result.calibration import Baseline, CalibratedParameter, NoiseEstimate
+from cyclosweep.result.calibration import Baseline, CalibratedParameter, NoiseEstimate, Thinning
 from cyclosweep.result.effects import (
     Bound,
     EffectParameter,
@@ -46,6 +46,7 @@ __all__ = [
     "SelfCheck",
     "Size",
     "Sufficiency",
+    "Thinning",
     "Untestable",
     "Verdict",
     "answer_of",

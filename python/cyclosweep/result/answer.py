@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-from cyclosweep.result.calibration import Baseline, NoiseEstimate
+from cyclosweep.result.calibration import Baseline, NoiseEstimate, Thinning
 from cyclosweep.result.effects import Bound, Explanation, FoundEffect, Remainder, Untestable
 from cyclosweep.result.mismatch import Explained, Mismatch
 from cyclosweep.result.part import EMPTY, LEFT_OUT, Part
@@ -49,6 +49,8 @@ class Answer(Part):
     """One paragraph that an engineer can act on."""
     noise: NoiseEstimate = field(default_factory=NoiseEstimate)
     """How far the measured angle scatters."""
+    thinning: Thinning | None = field(default=None, metadata=LEFT_OUT)
+    """How a long recording was thinned; left out where every sample was used as it is."""
     baseline: Baseline = field(default_factory=Baseline)
     """The calibrated published model."""
     mismatch: Mismatch = field(default_factory=Mismatch)

@@ -8,7 +8,7 @@ from cyclosweep.result.part import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class NoiseEstimate(Part):
-    """Noise of the measured angle."""
+    """Noise of the measured angle, row by row where a recording was thinned."""
 
     sigma_deg: float | None = None
     """Standard deviation [deg]."""
@@ -20,6 +20,24 @@ class NoiseEstimate(Part):
     """Degrees of freedom of Student's t where the noise has heavy tails; null where Gaussian."""
     resolution_deg: float | None = None
     """Step of the angle reading [deg]; 0 for a continuous one."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Thinning(Part):
+    """How a long recording was thinned to the rows that were fitted."""
+
+    samples: int
+    """Number of samples in the recording."""
+    rows: int
+    """Number of rows that they became."""
+    averaged: int
+    """Usual number of neighbouring samples averaged in a row; 1: none were averaged."""
+    every: int
+    """Every how manieth of these rows was taken; 1: all of them."""
+    sample_sigma_deg: float | None = None
+    """Standard deviation of the noise of one sample [deg]; that of a row is under ``noise``."""
+    sample_autocorrelation: float | None = None
+    """Correlation of the noise of neighbouring samples."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from cyclosweep.result.answer import Answer
-from cyclosweep.result.calibration import CalibratedParameter
+from cyclosweep.result.calibration import CalibratedParameter, Thinning
 from cyclosweep.result.effects import Explanation
 from cyclosweep.result.mismatch import Region
 from cyclosweep.result.proof import HeldOutBlock
@@ -22,7 +22,8 @@ def statement_of(answer: Answer) -> str:
     str
         One paragraph.
     """
-    return _verdict_sentences(answer) + _forecast_sentences(answer.repaired.blocks)
+    said = _verdict_sentences(answer) + _forecast_sentences(answer.repaired.blocks)
+    return said if answer.thinning is None else f"{said} {thinning_words(answer.thinning)}"
 
 
 def _verdict_sentences(answer: Answer) -> str:
@@ -197,6 +198,20 @@ def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
     if play.std_error is not None:
         words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
     return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
+
+
+def thinning_words(thinning: Thinning) -> str:
+    """Say how a long recording was thinned."""
+    done = []
+    if thinning.averaged > 1:
+        done.append(f"about {thinning.averaged} neighbours averaged in each")
+    if thinning.every > 1:
+        done.append(f"one in {thinning.every} taken")
+    words = f" ({', '.join(done)})" if done else ""
+    return (
+        f"For the diagnosis the {thinning.samples:,} samples were thinned to "
+        f"{thinning.rows:,} rows{words}; reversals, dwells and runs were kept apart."
+    )
 
 
 def place_of(regions: Sequence[Region]) -> str:

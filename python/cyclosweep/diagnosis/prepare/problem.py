@@ -1,15 +1,14 @@
-"""A recording prepared for fitting: averaged rows, flank in contact, rows to fit and to keep."""
+"""A recording prepared for fitting: its rows, flank in contact, rows to fit and to keep."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from cyclosweep.diagnosis.prepare.flanks import NominalLine, find_flanks
+from cyclosweep.diagnosis.prepare.rows import Rows
+from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-
-MOST_ROWS = 6000
-"""Longer recordings are averaged over neighbours of one branch down to about this many rows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +29,8 @@ class Problem:
         The same with the crossings of the dead zone, for models that predict them.
     gap : ndarray, shape (n,)
         Steps since the fitted row before; zero where there is none nearby.
-    rows : ndarray of int
-        Row to which each sample of the recording went.
+    rows : Rows
+        The rows as groups of samples of the recording.
     one_sided : bool
         Only one flank was loaded: free play and datum cannot be told apart.
     loop_width_deg : float
@@ -49,7 +48,7 @@ class Problem:
     whole_fitted: Flags
     whole_held_out: Flags
     gap: Floats
-    rows: np.ndarray
+    rows: Rows
     one_sided: bool
     loop_width_deg: float
     resolution_deg: float
@@ -111,7 +110,7 @@ def line_design(history: History, torque_nm: Floats, *, one_sided: bool) -> Floa
 def prepare(
     recording: Recording, line: NominalLine, output_pin_count: int, most_rows: int = MOST_ROWS
 ) -> Problem:
-    """Average a long recording, find the flank in contact of every row, and what to fit.
+    """Thin a long recording, find the flank in contact of every row, and what to fit.
 
     Parameters
     ----------
@@ -129,30 +128,27 @@ def prepare(
     Problem
     """
     assert recording.angle_deg is not None
-    rows = _rows(recording, most_rows)
-    count = int(rows[-1]) + 1
-    weight = np.bincount(rows, minlength=count).astype(np.float64)
-
-    def mean(values: Floats | None) -> Floats | None:
-        return None if values is None else np.bincount(rows, values, count) / weight
-
-    first = np.flatnonzero(np.r_[True, np.diff(rows) != 0])
+    rows = thin(recording, line, most_rows)
+    first = rows.first
+    torque, angle = rows.mean(recording.torque_nm), rows.mean(recording.angle_deg)
+    time = None if recording.time_s is None else rows.mean(recording.time_s)
+    warm = None if recording.temperature_c is None else rows.mean(recording.temperature_c)
     run_label = recording.run[first]
-    torque, angle = mean(recording.torque_nm), mean(recording.angle_deg)
-    assert torque is not None
-    assert angle is not None
-    crank = None if recording.crank_deg is None else recording.crank_deg[first]
     run = np.cumsum(np.r_[False, np.diff(run_label) != 0]).astype(np.int64)
     restart = np.r_[True, np.diff(run) != 0]
     if recording.history == "continuous":
-        restart = np.arange(count) == 0
-    counts = recording.counts[first]
+        restart = np.arange(len(rows)) == 0
+    counts = recording.counts[first] & rows.full
     scored = None if recording.unscored is None else ~recording.unscored[first]
-    side, contact, datum, compliance, play, width = find_flanks(torque, angle, line, scored)
+    flanks = find_flanks(torque, angle, line, scored)
+    side, contact = flanks.at(torque, angle, scored)
+    datum, compliance = flanks.datum_deg, flanks.compliance_deg_per_nm
+    play = flanks.free_play_deg
+    if rows.on_one_flank is not None:
+        contact &= rows.on_one_flank
     kept = np.isin(run_label, list(recording.holdout_runs))
     held = kept & contact & counts
     fitted = contact & counts & ~kept
-    time = mean(recording.time_s)
     history = History(
         applied_nm=torque,
         elastic_nm=torque,
@@ -164,8 +160,8 @@ def prepare(
         free_play_deg=play,
         datum_deg=datum,
         time_s=time,
-        crank_deg=crank,
-        temperature_c=mean(recording.temperature_c),
+        crank_deg=None if recording.crank_deg is None else rows.mean_angle(recording.crank_deg),
+        temperature_c=warm,
         output_pin_count=output_pin_count,
         resets_datum=recording.reset_between_runs,
     )
@@ -174,7 +170,7 @@ def prepare(
         recording=recording,
         history=history,
         angle_deg=angle,
-        weight=weight,
+        weight=rows.samples,
         fitted=fitted,
         held_out=held,
         whole_fitted=counts & ~kept,
@@ -182,43 +178,11 @@ def prepare(
         gap=gaps(fitted, run, time),
         rows=rows,
         one_sided=one_sided,
-        loop_width_deg=width,
+        loop_width_deg=flanks.loop_width_deg,
         resolution_deg=recording.angle_resolution_deg,
         nominal_compliance=line.compliance_deg_per_nm,
         nominal_free_play=line.free_play_deg,
     )
-
-
-def _rows(recording: Recording, most_rows: int) -> np.ndarray:
-    """Row to which each sample goes; a row never holds samples of two runs, branches or holds.
-
-    Parameters
-    ----------
-    recording : Recording
-    most_rows : int
-        About the largest number of rows.
-
-    Returns
-    -------
-    ndarray of int, shape (samples,)
-    """
-    n = len(recording)
-    size = int(np.ceil(n / most_rows))
-    if size <= 1:
-        return np.arange(n)
-    torque = recording.torque_nm
-    cut = np.zeros(n, dtype=bool)
-    cut[0] = True
-    cut[[branch.start for branch in recording.structure.branches]] = True
-    for hold in recording.structure.holds:
-        cut[hold.start] = True
-        if hold.stop < n:
-            cut[hold.stop] = True
-    cut[1:] |= np.diff(np.sign(torque)) != 0
-    if recording.unscored is not None:
-        cut[1:] |= np.diff(recording.unscored)
-    start = np.maximum.accumulate(np.where(cut, np.arange(n), 0))
-    return np.cumsum(cut | ((np.arange(n) - start) % size == 0)) - 1
 
 
 def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:
