@@ -180,7 +180,8 @@ def correlated(seed: int, effect: str, d: float, autocorrelation: float) -> Reco
     law = Noise("ar", 0.2, autocorrelation)
     lost = np.zeros(len(programme), dtype=bool)
     effects = [effect] if effect else []
-    found = conceal(specimen, programme, law, effects, [d] * len(effects), [1.0], lost, {})
+    count = len(effects)
+    found = conceal(specimen, programme, law, effects, [d] * count, [1.0] * count, lost, {})
     seen = programme.take(found.seen)
     clean = found.response.angle_deg[found.seen]
     read = clean + law.errors(seen, specimen.compliance_deg_per_nm, streams[2])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -58,8 +59,8 @@ CELL_DEG = 0.1
 """Width of the cells of angle in which the remainders of two ramps are compared [deg]."""
 FEWEST_CELLS = 12
 """Cells that both ramps pass below which no correlation is stated."""
-REFERENCE_NM = 10.0
-"""Load at which constant and load-dependent friction are added up [N m]."""
+SAME_PLAY_DEG = 0.02
+"""Play by which a step may exceed the one before; the makers' last two are equal [deg]."""
 SOURCE = "Volbeda, MSc thesis 2024 (measured); the other ramp of the same file"
 
 
@@ -233,16 +234,15 @@ def _dose(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
         of_step = [outcomes[f"conic_{step}pre{position}"] for position in POSITIONS]
         friction.append(float(np.mean([friction_nm(o) for o in of_step])))
         play.append(float(np.mean([2.0 * (o.play_deg or 0.0) for o in of_step])))
-    right = sorted(friction) == friction and sorted(play, reverse=True) == play
+    rises = sorted(friction) == friction and friction[0] > 0.0
+    falls = all(after <= before + SAME_PLAY_DEG for before, after in itertools.pairwise(play))
     words = ", ".join(f"{f:.2f}" for f in friction), ", ".join(f"{p:.2f}" for p in play)
-    return right, f"friction at {REFERENCE_NM:g} N m: {words[0]} N m; play {words[1]} deg"
+    return rises and falls, f"friction without load {words[0]} N m; play {words[1]} deg"
 
 
 def friction_nm(outcome: Outcome) -> float:
-    """Friction torque that a diagnosis found, at the reference load [N m]."""
-    constant = outcome.parameters.get("friction_hysteresis.friction_torque_nm", 0.0)
-    share = outcome.parameters.get("load_dependent_friction.friction_share", 0.0)
-    return constant + share * REFERENCE_NM
+    """Friction torque without load that a diagnosis found, as the makers state it [N m]."""
+    return outcome.parameters.get("friction_hysteresis.friction_torque_nm", 0.0)
 
 
 def printed_drive_summaries() -> list[Summary]:

@@ -19,7 +19,7 @@ from cyclosweep_challenge.scoreboard.checks import (
 from cyclosweep_challenge.scoreboard.command import main
 from cyclosweep_challenge.scoreboard.line import Line
 from cyclosweep_challenge.scoreboard.lines import all_lines, all_summaries
-from cyclosweep_challenge.scoreboard.made import Recipe, left_over, long_recording, make
+from cyclosweep_challenge.scoreboard.made import Recipe, correlated, left_over, long_recording, make
 from cyclosweep_challenge.scoreboard.made_effects import SHAPES
 from cyclosweep_challenge.scoreboard.made_rig import Course, Friction, balance
 from cyclosweep_challenge.scoreboard.outcome import FAILURE, Outcome
@@ -118,6 +118,18 @@ def test_made_recordings_have_the_size_that_is_stated() -> None:
         )
         rms = np.sqrt(np.mean(left_over(course, recording.angle_deg) ** 2))
         assert rms == pytest.approx(size, rel=0.02)
+
+
+def test_noise_of_high_autocorrelation_has_it() -> None:
+    recording = correlated(1, "", 20.0, 0.97)
+    assert recording.angle_deg is not None
+    torque, run = recording.torque_nm, np.asarray(recording.run)
+    course = Course(torque, torque, torque, torque, run)
+    error = left_over(course, recording.angle_deg)
+    follows = np.diff(run) == 0
+    assert np.corrcoef(error[1:][follows], error[:-1][follows])[0, 1] == pytest.approx(
+        0.96, abs=0.02
+    )
 
 
 @pytest.mark.parametrize("effect", SHAPES)
