@@ -1,0 +1,54 @@
+"""Recordings of real devices and made ones with large effects get the right answer.
+
+The scoreboard (docs/scoreboard.md) says for each line what the right answer is, and who says so.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from cyclosweep_challenge.scoreboard.line import Line
+from cyclosweep_challenge.scoreboard.lines import all_lines
+from cyclosweep_challenge.scoreboard.run import diagnosed
+
+MADE = (
+    "coulomb-dahl",
+    "load-friction-creep",
+    "load-friction-thermal-drift",
+    "loud-load-asymmetry",
+    "loud-datum-drift",
+    "overload-softening-d400",
+    "thermal-drift-d400",
+    "creep-d400",
+    "ar97-nothing-1",
+    "ar97-nothing-2",
+    "long-2000",
+)
+"""Made recordings that take seconds."""
+MEASURED = (
+    "conic_runin1",
+    "conic_1pre5",
+    "conic_2pre1",
+)
+"""Recordings of the shared folder."""
+
+
+def line_of(name: str, recordings: Path) -> Line:
+    """Line of the scoreboard."""
+    (line,) = (line for line in all_lines(recordings) if line.name == name)
+    return line
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_made_recording(name: str, tmp_path: Path) -> None:
+    line = line_of(name, tmp_path)
+    outcome = diagnosed(line, tmp_path, full=False)
+    assert line.failed(outcome) == [], outcome.statement
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("name", MEASURED)
+def test_measured_recording(name: str, shared_recordings: Path) -> None:
+    line = line_of(name, shared_recordings)
+    outcome = diagnosed(line, shared_recordings, full=False)
+    assert line.failed(outcome) == [], outcome.statement
