@@ -57,6 +57,8 @@ STEPS = (12, 40, 400)
 LONG_ROWS = 200_000
 EVERY = (1, 10, 100)
 """Rows of the long recording, and every so many-th of which it is diagnosed."""
+SECONDS = 10.0
+"""Time for about 3,000 rows with two effects [s]."""
 ROWS_PER_SECOND = 100_000 / 90
 """Readings that a diagnosis gets through in a second, at least."""
 
@@ -323,10 +325,27 @@ def _no_worse(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
     return right, ", ".join(words)
 
 
+def _fast(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
+    """Judge how long the slowest diagnosis took."""
+    slowest = max(outcomes, key=lambda name: outcomes[name].seconds)
+    seconds = outcomes[slowest].seconds
+    return seconds <= SECONDS, f"slowest {seconds:.1f} s ({slowest})"
+
+
 def made_summaries() -> list[Summary]:
     """Checks over several made recordings."""
     steps = ", ".join(map(str, STEPS))
+    two = [line.name for line in _friction_lines() if not line.name.startswith("coulomb")]
     return [
+        Summary(
+            "two-effects-seconds",
+            GROUP,
+            f"3,000 rows with two effects, whole report: at most {SECONDS:g} s (processor time of "
+            "one thread).",
+            "the targets of the diagnosis",
+            two,
+            _fast,
+        ),
         Summary(
             "ar97-power",
             GROUP,

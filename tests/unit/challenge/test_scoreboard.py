@@ -23,6 +23,7 @@ from cyclosweep_challenge.scoreboard.made import Recipe, correlated, left_over, 
 from cyclosweep_challenge.scoreboard.made_effects import SHAPES
 from cyclosweep_challenge.scoreboard.made_rig import Course, Friction, balance
 from cyclosweep_challenge.scoreboard.outcome import FAILURE, Outcome
+from cyclosweep_challenge.scoreboard.page import page
 
 GOOD = Outcome(
     "IDENTIFIED",
@@ -158,6 +159,54 @@ def test_every_tenth_row_of_the_long_recording_is_its_every_tenth_row() -> None:
     whole, some = long_recording(20_000), long_recording(20_000, 10)
     assert len(some.torque_nm) < len(whole.torque_nm) / 9
     assert set(some.torque_nm.tolist()) <= set(whole.torque_nm.tolist())
+
+
+def test_the_page_has_every_line_and_every_check(tmp_path: Path) -> None:
+    lines, summaries = all_lines(tmp_path), all_summaries()
+    board = running.Board(tmp_path / "scoreboard.json", "code")
+    board.outcomes = {line.name: GOOD for line in lines[:-1]}
+    text = page(lines, summaries, board)
+    for line in lines:
+        assert f"| {line.name} | {line.asks} | {line.answer} |" in text
+    for summary in summaries:
+        assert f"| {summary.name} |" in text
+    assert f"| {lines[-1].name} | – |" in text
+    assert "| creep-d12 | yes | IDENTIFIED | creep |" in text
+    assert "| thermal-drift-d12 | no | IDENTIFIED | creep |" in text
+
+
+def test_checks_over_several_lines_can_fail() -> None:
+    known = {summary.name: summary for summary in all_summaries()}
+    for name, good, bad in (
+        ("ar97-power", GOOD, replace(GOOD, verdict="INSUFFICIENT_DATA")),
+        ("two-effects-seconds", GOOD, replace(GOOD, seconds=11.0)),
+        ("all-forecasts", replace(GOOD, figures={"over_floor": 1.05}), GOOD),
+    ):
+        summary = known[name]
+        assert summary.judged(dict.fromkeys(summary.of, good))[0]
+        assert not summary.judged(dict.fromkeys(summary.of, bad))[0]
+    same = known["long-same-answer"]
+    answers = dict.fromkeys(same.of, GOOD)
+    assert same.judged(answers)[0]
+    assert not same.judged({**answers, same.of[0]: replace(GOOD, named=())})[0]
+
+
+def test_the_preload_series_is_judged_by_its_order() -> None:
+    (summary,) = (each for each in all_summaries() if each.name == "preload-order")
+
+    def outcomes(friction: list[float], play: list[float]) -> dict[str, Outcome]:
+        return {
+            name: replace(
+                GOOD,
+                play_deg=play[int(name[6]) - 1],
+                parameters={"friction_hysteresis.friction_torque_nm": friction[int(name[6]) - 1]},
+            )
+            for name in summary.of
+        }
+
+    assert summary.judged(outcomes([1, 2, 3, 4], [0.4, 0.3, 0.1, 0.105]))[0]
+    assert not summary.judged(outcomes([1, 3, 2, 4], [0.4, 0.3, 0.1, 0.1]))[0]
+    assert not summary.judged(outcomes([1, 2, 3, 4], [0.3, 0.4, 0.1, 0.1]))[0]
 
 
 def test_a_pattern_that_fits_no_line_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
