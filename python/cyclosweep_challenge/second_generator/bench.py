@@ -12,7 +12,7 @@ from cyclosweep_challenge.second_generator.drive import Specimen
 from cyclosweep_challenge.second_generator.laws.balance import solve
 from cyclosweep_challenge.second_generator.laws.catalogue import MAKERS, reach, resistance
 from cyclosweep_challenge.second_generator.laws.law import Cause, State
-from cyclosweep_challenge.second_generator.path import Path
+from cyclosweep_challenge.second_generator.path import SMALLEST, Path
 
 Array = NDArray[np.float64]
 
@@ -92,6 +92,10 @@ class Bench:
         for cause in causes:
             if cause.law.adds is not None and cause.law.effect == DIAL:
                 total = total + cause.size * cause.law.adds(seen, cause.shape)
+        if side is own_side:
+            # Within the play the shaft hangs where the small torque and its bearings leave it.
+            part = np.clip(self.path.load / SMALLEST, -1.0, 1.0)
+            total = np.where(side == 0.0, drive.datum_deg + drive.play_deg * part, total)
         return Answer(total, twist, side)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import polars as pl
 
 from cyclosweep_challenge.second_generator.case import Case, make_numbered
+from cyclosweep_challenge.second_generator.laws.table import law_table, stranger_table
 from cyclosweep_challenge.second_generator.recipes import TIERS
 
 
@@ -52,10 +53,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         prog="python -m cyclosweep_challenge.second_generator", description=__doc__
     )
-    parser.add_argument("--tier", choices=list(TIERS), required=True)
+    parser.add_argument("--laws", action="store_true", help="print the table of laws and stop")
+    parser.add_argument("--tier", choices=list(TIERS), default="C8")
     parser.add_argument("--cases", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rows", type=int, default=3000)
-    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--out", type=Path, default=Path("second-generator"))
     given = parser.parse_args()
+    if given.laws:
+        print(law_table(), stranger_table(), sep="\n\n")
+        return
     write_set(given.tier, given.cases, given.seed, given.out, given.rows)

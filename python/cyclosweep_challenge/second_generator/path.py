@@ -83,6 +83,7 @@ def make_path(
     positions_deg: Array,
     *,
     again: bool = False,
+    smallest: float = SMALLEST,
 ) -> Path:
     """Lay out a load programme.
 
@@ -101,6 +102,8 @@ def make_path(
         Mesh positions to visit, in turn [deg].
     again : bool
         The unseen second programme: other loops, nine tenths of the torque.
+    smallest : float
+        Torque below which nothing is read [rated torques].
 
     Raises
     ------
@@ -147,7 +150,7 @@ def make_path(
         begin += corners[-1] + (float(rng.uniform(30.0, 300.0)) if kind == "rich" else 20.0)
     load, time, run, crank = (np.concatenate(part) for part in zip(*columns, strict=True))
     path = Path(load, time, run, crank, _temperature(kind, rng, time))
-    keep = np.abs(path.load) >= SMALLEST
+    keep = np.abs(path.load) >= smallest
     return Path(*(getattr(path, name)[keep] for name in path.__dataclass_fields__))
 
 
@@ -165,7 +168,7 @@ def _temperature(kind: str, rng: np.random.Generator, time_s: Array) -> Array:
 def _weights(rng: np.random.Generator, rows: int, top: float, position_deg: float) -> Path:
     """Weights hung on a lever by hand and taken off, one direction and then the other."""
     runs = 2 if rows >= 40 else 1
-    quarter = max(rows // (4 * runs), 2)
+    quarter = max((rows // runs + 2) // 4, 4)
     up = np.linspace(top / quarter, top, quarter)
     loop = np.concatenate([up, up[-2::-1], -up, -up[-2::-1]])
     load = np.concatenate([loop] * runs)

@@ -35,6 +35,13 @@ AUTOCORRELATIONS = (0.0, 0.5, 0.9, 0.95, 0.97, 0.99)
 OTHER_DRIVE = 0.15
 """Part of the cases on the drive that has a drive file and is measured at its output."""
 
+LOUD = (100.0, 3000.0)
+"""Visibility of the dominant cause of a loud case [-]."""
+LOUD_PER_SHARE = 6000.0
+"""Least visibility over the share of friction: below, noise beyond half a degree."""
+PLAY_READINGS = 0.15
+"""Part of the cases whose bench records readings within the play too."""
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -61,6 +68,8 @@ class Recipe:
         Noise; its standard deviation is changed where a ``share`` is given.
     other_drive : bool
         Whether the drive is the one with a drive file.
+    play_readings : bool
+        Whether the bench also records readings within the play.
     removed : str
         Effect to be taken out of the library before the diagnosis; empty for none.
     """
@@ -74,6 +83,7 @@ class Recipe:
     columns: frozenset[str]
     sensor: Sensor
     other_drive: bool
+    play_readings: bool = False
     removed: str = ""
 
     @property
@@ -86,6 +96,7 @@ class Recipe:
             return f"C8/{family}/effects={len(self.laws)}"
         loud = "loud" if self.d[0] >= 100.0 else "faint"
         label = f"d={self.d[0]:g}" if self.tier == "single" else loud
+        label += "+friction" if len(self.laws) > 1 else ""
         return f"{self.tier}/{self.programme}/{label}"
 
     @property
@@ -118,9 +129,16 @@ def _columns(rng: np.random.Generator, programme: str, laws: tuple[Law, ...]) ->
 
 
 def _sensor(rng: np.random.Generator, scale: float, correlation: float = 0.0) -> Sensor:
-    """A bench's sensor: noise in parts of the twist at the rated torque."""
+    """A bench's sensor: noise in parts of the twist at the rated torque.
+
+    A quarter have heavy tails, a fifth a dial whose division is half to three times the noise,
+    and a fifth drift by a twentieth of the noise, which nobody can see.
+    """
     tails = float(rng.choice([0.0, 0.0, 0.0, 4.0]))
-    return Sensor(scale * _log_uniform(rng, 0.002, 0.015), correlation, tails)
+    sigma = scale * _log_uniform(rng, 0.002, 0.015)
+    division = float(f"{sigma * rng.uniform(0.5, 3.0):.1g}") if rng.uniform() < 0.2 else 0.0
+    drift = 0.05 * sigma * float(rng.choice([-1.0, 1.0])) if rng.uniform() < 0.2 else 0.0
+    return Sensor(sigma, correlation, tails, division, drift)
 
 
 def _loud(
@@ -132,7 +150,7 @@ def _loud(
     if turn % 10 < 7:
         effect = FRICTIONS[0] if turn % 10 < 5 else FRICTIONS[1]
         first = _law(rng, effect, has)
-        if effect == FRICTIONS[0] and turn % 10 < 3:
+        if turn % 10 in (0, 1, 2, 5):
             first = next(law for law in laws_of(effect) if law.name in LIBRARY_LIKE)
         share = _log_uniform(rng, 0.005, 0.25)
     else:
@@ -188,7 +206,7 @@ def draw_recipe(
     elif tier == "C8":
         programme, has = "rich", HAS["rich"] - ({"input"} if other else set())
         laws, share = _loud(rng, turn, has)
-        top = _log_uniform(rng, 100.0, 3000.0)
+        top = _log_uniform(rng, max(LOUD[0], LOUD_PER_SHARE * share), LOUD[1])
         d = (top, *(max(top * _log_uniform(rng, 0.02, 0.5), 15.0) for _ in laws[1:]))
         correlation = float(rng.choice([0.0, 0.0, 0.5, 0.9]))
     elif tier == "C9":
@@ -209,6 +227,9 @@ def draw_recipe(
         menu_s = [law for law in strangers.LAWS if law.needs <= has]
         laws = (menu_s[turn % len(menu_s)],)
         d = (_log_uniform(rng, 150.0, 1000.0) if turn % 2 else _log_uniform(rng, 12.0, 30.0),)
+        friction = _law(rng, FRICTIONS[0], has)
+        if turn % 3 == 2 and friction is not None:
+            laws, d = (*laws, friction), (*d, _log_uniform(rng, 30.0, 300.0))
     else:
         effect = VOCABULARY[turn % len(VOCABULARY)]
         law = _law(rng, effect, has, turn // len(VOCABULARY))
@@ -227,4 +248,5 @@ def draw_recipe(
         sensor = Sensor(float(rng.uniform(0.1, 0.3)), resolution_deg=0.5)
         other = False
     columns = _columns(rng, programme, laws)
-    return Recipe(tier, laws, d, share, programme, rows, columns, sensor, other, removed)
+    in_play = programme != "weights" and bool(rng.uniform() < PLAY_READINGS)
+    return Recipe(tier, laws, d, share, programme, rows, columns, sensor, other, in_play, removed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,15 @@ class Sensor:
     def spread_deg(self) -> float:
         """Standard deviation of noise and rounding together [deg]."""
         return float(np.hypot(self.sigma_deg, self.resolution_deg / np.sqrt(12.0)))
+
+    def scaled(self, factor: float) -> Sensor:
+        """The same sensor with all its angles scaled."""
+        return replace(
+            self,
+            sigma_deg=self.sigma_deg * factor,
+            resolution_deg=self.resolution_deg * factor,
+            drift_deg=self.drift_deg * factor,
+        )
 
     def errors(self, starts: NDArray[np.bool_], rng: np.random.Generator) -> Array:
         """Draw noise and drift for rows of which some begin a run, shape (N,) [deg]."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cyclosweep_challenge.second_generator.laws.friction import Resistance
-from cyclosweep_challenge.second_generator.path import Path
+from cyclosweep_challenge.second_generator.path import SMALLEST, Path
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ def solve(path: Path, resistances: Sequence[Resistance], reach: float) -> tuple[
         Side on which the flanks touch, zero within the play.
     """
     if not resistances:
-        return path.load.copy(), np.sign(path.load)
+        return path.load.copy(), np.where(np.abs(path.load) < SMALLEST, 0.0, np.sign(path.load))
     increment = min(max(0.25 * reach, FINEST), COARSEST)
     loads, times, starts = path.load.tolist(), path.time_s.tolist(), path.starts.tolist()
     elastic, side = [0.0] * len(loads), [0.0] * len(loads)

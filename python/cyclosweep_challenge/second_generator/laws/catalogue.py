@@ -114,6 +114,15 @@ _BALANCE: tuple[tuple[Law, Maker], ...] = (
     (
         Law(
             "load_dependent_friction",
+            "coulomb-slider",
+            (Wedge.__doc__ or ""),
+            _drawn(REACH, lowering=(1.0, 1.0)),
+        ),
+        Wedge,
+    ),
+    (
+        Law(
+            "load_dependent_friction",
             "bouc-wen",
             (LoadedBoucWen.__doc__ or ""),
             _drawn(REACH, power=(1.0, 2.0), beta=(0.3, 0.9), load_power=(0.8, 1.2)),
@@ -156,8 +165,8 @@ LAWS: tuple[Law, ...] = (
 MAKERS = {(law.effect, law.name): maker for law, maker in _BALANCE}
 VOCABULARY = tuple(dict.fromkeys(law.effect for law in LAWS))
 """Effects, in the order of the table of laws."""
-LIBRARY_LIKE = ("jenkins",)
-"""Friction laws that are parallel sliders behind springs, the library's family by its contract."""
+LIBRARY_LIKE = ("jenkins", "coulomb-slider")
+"""Friction laws of sliders behind springs, which is the library's family."""
 EITHER_SIGN = frozenset(
     {
         "datum_drift",

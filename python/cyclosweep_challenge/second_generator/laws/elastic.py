@@ -24,24 +24,27 @@ def _odd(state: State, shape: Parameters) -> tuple[Array, Array]:
     return np.sign(state.twist), np.abs(state.twist) / shape["top"]
 
 
-def line_contact(state: State, shape: Parameters) -> Array:
-    """Line contact by Palmgren: approach with the power 0.9 of the load."""
+def power_contact(state: State, shape: Parameters) -> Array:
+    """Contact whose approach is a power of the load below one, less its chord."""
     sign, part = _odd(state, shape)
-    return sign * part ** shape["power"]
+    return np.asarray(sign * (part ** shape["power"] - part), dtype=float)
 
 
 def line_contact_log(state: State, shape: Parameters) -> Array:
-    """Line contact by Johnson: approach is load times the logarithm of a length over its width."""
+    """Line contact by Johnson: approach is load times the logarithm of a length over its width.
+
+    The part in proportion to the load, which holds that length, is compliance and left out.
+    """
     sign, part = _odd(state, shape)
     part = np.maximum(part, 1e-12)
-    return np.asarray(sign * part * (shape["length"] + 0.5 * np.log(1.0 / part)), dtype=float)
+    return np.asarray(sign * part * 0.5 * np.log(1.0 / part), dtype=float)
 
 
 def exponential_approach(state: State, shape: Parameters) -> Array:
     """Joint that stiffens exponentially with closure, so that approach is a logarithm of load."""
     sign, part = _odd(state, shape)
     course = np.log1p(part / shape["knee"]) / np.log1p(1.0 / shape["knee"])
-    return np.asarray(sign * course, dtype=float)
+    return np.asarray(sign * (course - part), dtype=float)
 
 
 def cubic_stiffness(state: State, shape: Parameters) -> Array:
@@ -102,19 +105,17 @@ def bilinear_softening(state: State, shape: Parameters) -> Array:
     return sign * np.maximum(part - shape["knee"], 0.0) / (1.0 - shape["knee"])
 
 
-def jenkins_yield(state: State, shape: Parameters) -> Array:
-    """Slider in series that slips beyond a yield load and hardens by a spring beside it.
-
-    Slip recovers only when the load has turned by twice the yield (kinematic hardening).
-    """
-    load, edge = (state.twist / shape["top"]).tolist(), shape["knee"]
-    starts = state.path.starts.tolist()
-    slip, course = 0.0, []
-    for value, start in zip(load, starts, strict=True):
-        if start:
-            slip = 0.0
-        slip = min(max(slip, value - edge), value + edge)
-        course.append(slip)
+def flag_shaped(state: State, shape: Parameters) -> Array:
+    """Preloaded joint that opens beyond a load and closes at a lower one: a flag-shaped loop."""
+    parts, edge, lag = (state.twist / shape["top"]).tolist(), shape["knee"], shape["lag"]
+    opened, before, course = 0.0, 0.0, []
+    for part, start in zip(parts, state.path.starts.tolist(), strict=True):
+        beyond = abs(part) - edge
+        if start or part * before < 0.0:
+            opened = 0.0
+        opened = min(max(opened, beyond, 0.0), max(beyond + lag, 0.0))
+        course.append(opened if part > 0.0 else -opened)
+        before = part
     return np.array(course) / (1.0 - edge)
 
 
@@ -165,13 +166,13 @@ LAWS = (
         "palmgren",
         "A. Palmgren, Ball and Roller Bearing Engineering, 1959: approach of a roller, Q^0.9",
         _scaled(power=(0.88, 0.92)),
-        line_contact,
+        power_contact,
     ),
     Law(
         "contact_stiffening",
         "johnson-log",
         "K. L. Johnson, Contact Mechanics, Cambridge, 1985, sec. 4.2: line contact",
-        _scaled(length=(1.0, 4.0)),
+        _plain,
         line_contact_log,
     ),
     Law(
@@ -179,7 +180,7 @@ LAWS = (
         "hertz-point",
         "H. Hertz, J. reine angew. Math., vol. 92, pp. 156-171, 1882: approach, Q^(2/3)",
         _scaled(power=(0.6666, 0.6667)),
-        line_contact,
+        power_contact,
     ),
     Law(
         "contact_stiffening",
@@ -236,16 +237,17 @@ LAWS = (
     ),
     Law(
         "overload_softening",
-        "jenkins-yield",
-        "G. M. Jenkins, Br. J. Appl. Phys., vol. 13, pp. 30-32, 1962; W. Prager, Proc. Inst. Mech. "
-        "Eng., vol. 169, pp. 41-57, 1955: kinematic hardening",
-        _scaled(knee=(0.6, 0.85)),
-        jenkins_yield,
+        "flag-shaped",
+        "C. Christopoulos, A. Filiatrault, B. Folz, Earthq. Eng. Struct. Dyn., vol. 31, "
+        "pp. 1131-1150, 2002: joints held by preload and friction",
+        _scaled(knee=(0.5, 0.75), lag=(0.02, 0.08)),
+        flag_shaped,
     ),
     Law(
         "load_asymmetry",
         "magnitude",
-        "W. C. Young, Roark's Formulas for Stress and Strain: bending by a side load, |T|",
+        "W. C. Young, R. G. Budynas, Roark's Formulas for Stress and Strain, 7th ed., 2002: "
+        "bending by a side load, |T|",
         _plain,
         even_magnitude,
     ),

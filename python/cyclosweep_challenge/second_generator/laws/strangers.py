@@ -75,9 +75,9 @@ def ring_down(state: State, shape: Parameters) -> Array:
         if turned[k]:
             last, way = time[k], float(np.sign(state.path.load[k] - state.path.load[k - 1]))
         since[k], signs[k] = time[k] - last, way
-    wave = np.cos(2.0 * np.pi * since / shape["ring"], where=np.isfinite(since), out=since * 0.0)
-    fade = np.exp(-since / (2.0 * shape["ring"]))
-    return np.where(np.isfinite(since), signs * wave * fade, 0.0)
+    since = np.minimum(since, 1e3 * shape["ring"])
+    wave = np.cos(2.0 * np.pi * since / shape["ring"])
+    return np.asarray(signs * wave * np.exp(-since / (2.0 * shape["ring"])), dtype=float)
 
 
 def play_wear(state: State, shape: Parameters) -> Array:
