@@ -51,6 +51,7 @@ STAGES = {
     "outcome": set[str](),
     "provenance": set[str](),
     "refuse": FITTING | {"outcome", "provenance"},
+    "sliding": {"outcome", "provenance"},
     "calibrate": FITTING,
     "identify_effects": FITTING | {"calibrate"},
     "decide": FITTING | {"outcome", "provenance", "refuse"},

@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.refuse import (
     refused,
 )
 from cyclosweep.diagnosis.repair import repair
+from cyclosweep.diagnosis.sliding import find_sliding, sliding_diagnosis
 from cyclosweep.diagnosis.verification import verify
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
@@ -90,6 +91,9 @@ def _run_stages(
     """
     say("preparing")
     check_recording(recording)
+    sliding = find_sliding(recording)
+    if sliding is not None:
+        return sliding_diagnosis(recording, drive, sliding, effects, seed)
     problem = prepare(recording, drive.nominal_line(recording.side), int(drive.output_pin_count))
     check_prepared(problem, drive)
     library = build_library(problem.history, problem.fitted, effects)

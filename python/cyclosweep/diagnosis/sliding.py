@@ -1,0 +1,374 @@
+"""Recordings in which friction slides all the way, so that the torque does not fix the twist."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.provenance import provenance_of
+from cyclosweep.recording import Recording
+from cyclosweep.recording.structure import turning_points
+from cyclosweep.result import (
+    Answer,
+    EffectParameter,
+    FoundEffect,
+    NextExperiment,
+    NoiseEstimate,
+    Remainder,
+    Repair,
+    SelfCheck,
+    Size,
+    Untestable,
+)
+from cyclosweep.result.statement import degrees
+from cyclosweep.simulation.effects import Effect
+from cyclosweep.simulation.effects.history import Flags, Floats
+
+STROKE_SHARE = 0.05
+"""A change of direction of the motion counts once the angle has gone back by this share of its
+range: far above reading noise, far below a stroke that slides."""
+BANDS = 40
+"""Bands of the angle in which the torques of both directions are compared."""
+FEWEST_IN_BAND = 2
+"""Readings of a direction from which the band's torque is taken."""
+LOOP_SHARE = 0.4
+"""Area of the loop over that of the rectangle around it from which friction carries as much as the
+spring: a spring with friction of a quarter of its torque has 0.25, an ideal brake 1. Measured: 0.52
+and 0.57 for two band brakes with backlash, at most 0.10 for 410 drives with friction."""
+PLATEAU_WIDTH = 0.25
+"""Half width of the torque that counts as the limit, as a share of the limit: a brake's own
+fluctuation, and far less than a spring takes over the same angle."""
+PLATEAU_SHARE = 0.5
+"""Share of the motion of each direction at the limit from which friction slides fully."""
+WHOLE_RANGE = 0.02
+"""Share of the readings cut from either end of the torque before its range is taken, against
+single peaks at break-away."""
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval in standard errors."""
+FRICTION = "friction_hysteresis"
+"""Effect that is named."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Torque at which one direction of motion slides.
+
+    Attributes
+    ----------
+    torque_nm, std_error_nm : float
+        Median over the strokes, and its standard error [N m].
+    share : float
+        Share of the motion in this direction that goes on at this torque.
+    range_deg : float
+        Angle over which it does [deg].
+    """
+
+    torque_nm: float
+    std_error_nm: float
+    share: float
+    range_deg: float
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Friction that slides fully in both directions.
+
+    Attributes
+    ----------
+    rising, falling : Limit
+        Limits while the angle rises and while it falls.
+    loop_share : float
+        Area of the loop over that of the rectangle around it.
+    span_deg : float
+        Range of the recorded angle [deg].
+    """
+
+    rising: Limit
+    falling: Limit
+    loop_share: float
+    span_deg: float
+
+    @property
+    def friction_nm(self) -> float:
+        """Friction limit, the mean of both directions [N m]."""
+        return (self.rising.torque_nm - self.falling.torque_nm) / 2.0
+
+    @property
+    def std_error_nm(self) -> float:
+        """Standard error of the friction limit [N m]."""
+        return float(np.hypot(self.rising.std_error_nm, self.falling.std_error_nm)) / 2.0
+
+
+def find_sliding(recording: Recording) -> Sliding | None:
+    """Find out whether the angle takes any value at the same torque, in both directions.
+
+    The torques of both directions are compared at equal angles. A spring, however soft or played
+    out, has the same torque there; a spring with friction differs by twice the friction; only a
+    friction that slides fully has one torque per direction whatever the angle.
+
+    Parameters
+    ----------
+    recording : Recording
+        With an angle.
+
+    Returns
+    -------
+    Sliding or None
+        None where the torque fixes the twist, up to a loop.
+    """
+    angle, torque = recording.angle_deg, recording.torque_nm
+    if angle is None or len(angle) < BANDS:
+        return None
+    span = float(np.ptp(angle))
+    low, high = np.quantile(torque, (WHOLE_RANGE, 1.0 - WHOLE_RANGE))
+    if span <= 0 or high <= low:
+        return None
+    strokes = _strokes(angle, recording.run, STROKE_SHARE * span)
+    rising, falling = strokes > 0, strokes < 0
+    band = np.minimum((angle - angle.min()) / span * BANDS, BANDS - 1).astype(np.int64)
+    width = _height(torque, band, rising, falling) / BANDS / (high - low)
+    if width < LOOP_SHARE:
+        return None
+    up = _limit(torque, angle, strokes, rising)
+    down = _limit(torque, angle, strokes, falling)
+    if up is None or down is None or not up.torque_nm > 0 > down.torque_nm:
+        return None
+    if min(up.share, down.share) < PLATEAU_SHARE:
+        return None
+    return Sliding(rising=up, falling=down, loop_share=width, span_deg=span)
+
+
+def _strokes(angle: Floats, run: np.ndarray, threshold: float) -> np.ndarray:
+    """Number of the stroke of every reading, negative where the angle falls; never zero.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Twist [deg].
+    run : ndarray of int, shape (n,)
+        Run of each reading.
+    threshold : float
+        Least way back that counts as a change of direction [deg].
+
+    Returns
+    -------
+    ndarray of int, shape (n,)
+    """
+    stroke = np.zeros(len(angle), dtype=np.int64)
+    number = 0
+    for start in np.flatnonzero(np.diff(run, prepend=run[:1] - 1)):
+        stop = start + int(np.argmax(np.r_[np.diff(run[start:]) != 0, True])) + 1
+        part = angle[start:stop]
+        edges = [0, *(turning_points(part, threshold) + 1).tolist(), len(part)]
+        for first, last in pairwise(edges):
+            number += 1
+            rises = part[last - 1] >= part[max(first - 1, 0)]
+            stroke[start + first : start + last] = number if rises else -number
+    return stroke
+
+
+def _height(torque: Floats, band: np.ndarray, rising: Flags, falling: Flags) -> float:
+    """Sum over the bands of angle of the torque while rising less that while falling [N m].
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        Torque [N m].
+    band : ndarray of int, shape (n,)
+        Band of angle of each reading.
+    rising, falling : ndarray of bool, shape (n,)
+        Direction of the motion.
+
+    Returns
+    -------
+    float
+    """
+    total = 0.0
+    for number in np.unique(band):
+        here = band == number
+        up, down = torque[here & rising], torque[here & falling]
+        if min(len(up), len(down)) >= FEWEST_IN_BAND:
+            total += float(np.median(up) - np.median(down))
+    return total
+
+
+def _limit(torque: Floats, angle: Floats, strokes: np.ndarray, rows: Flags) -> Limit | None:
+    """Torque at which one direction slides; None where no stroke does.
+
+    Parameters
+    ----------
+    torque, angle : ndarray, shape (n,)
+        Torque [N m] and twist [deg].
+    strokes : ndarray of int, shape (n,)
+        Stroke of each reading.
+    rows : ndarray of bool, shape (n,)
+        Readings of this direction.
+
+    Returns
+    -------
+    Limit or None
+    """
+    motion = np.abs(np.diff(angle, prepend=angle[:1]))
+    motion[np.diff(strokes, prepend=strokes[:1]) != 0] = 0.0
+    if not np.any(motion[rows] > 0):
+        return None
+    order = np.argsort(torque[rows])
+    passed = np.cumsum(motion[rows][order])
+    level = float(torque[rows][order][int(np.searchsorted(passed, 0.5 * passed[-1]))])
+    sliding = rows & (np.abs(torque - level) <= PLATEAU_WIDTH * abs(level))
+    medians, ranges = [], []
+    for number in np.unique(strokes[sliding]):
+        here = sliding & (strokes == number)
+        ranges.append(float(np.ptp(angle[here])))
+        medians.append(float(np.median(torque[here])))
+    if not medians:
+        return None
+    weight = np.array(ranges) / max(sum(ranges), 1e-12)
+    spread = float(np.std(torque[sliding]))
+    if len(medians) > 1:
+        spread = float(np.sqrt(weight @ (np.array(medians) - level) ** 2))
+    return Limit(
+        torque_nm=level,
+        std_error_nm=spread * float(np.sqrt(weight @ weight)),
+        share=float(motion[sliding].sum() / motion[rows].sum()),
+        range_deg=max(ranges),
+    )
+
+
+def sliding_diagnosis(
+    recording: Recording,
+    drive: Drive,
+    found: Sliding,
+    effects: tuple[Effect, ...],
+    seed: int,
+) -> Diagnosis:
+    """Return the result for a recording in which friction slides fully: no stiffness, no model.
+
+    Parameters
+    ----------
+    recording : Recording
+        What was diagnosed.
+    drive : Drive
+        The drive it was taken on.
+    found : Sliding
+        Friction limits and the share of the loop.
+    effects : tuple of Effect
+        Effects that may be named.
+    seed : int
+        Seed of the diagnosis, for the record.
+
+    Returns
+    -------
+    Diagnosis
+    """
+    friction = next((effect for effect in effects if effect.name == FRICTION), None)
+    named = () if friction is None else (_named(found, friction),)
+    answer = Answer(
+        verdict="UNKNOWN_PHYSICS",
+        statement=_statement(found, named=bool(named)),
+        noise=NoiseEstimate(resolution_deg=recording.angle_resolution_deg),
+        effects=named,
+        not_testable=(
+            Untestable(
+                name="compliance",
+                reason="while friction slides, the angle changes at one and the same torque",
+                needs="small loops about one torque, below the friction limit, torque controlled",
+            ),
+        ),
+        repaired=Repair(holdout="nothing"),
+        self_check=SelfCheck(),
+        next_experiment=NextExperiment(
+            program="torque controlled loops below the friction limit of "
+            f"{found.friction_nm:.3g} N m, where the parts stick and the torque fixes the twist"
+        ),
+        notes=(*recording.notes, *(fault.reason for fault in recording.faults)),
+        unknown=Remainder(
+            shape="twist that the torque does not determine",
+            place=f"at {found.rising.torque_nm:.3g} and {found.falling.torque_nm:.3g} N m",
+            size_deg=max(found.rising.range_deg, found.falling.range_deg),
+        ),
+    )
+    return Diagnosis(
+        recording=recording,
+        answer=answer,
+        ratio=float(drive.ratio),
+        provenance=provenance_of(recording, drive, seed),
+    )
+
+
+def _named(found: Sliding, effect: Effect) -> FoundEffect:
+    """Friction with its limit in N m and the angle over which it slides.
+
+    Parameters
+    ----------
+    found : Sliding
+        Friction limits.
+    effect : Effect
+        The effect that is named.
+
+    Returns
+    -------
+    FoundEffect
+    """
+    ranges = sorted((found.rising.range_deg, found.falling.range_deg))
+    return FoundEffect(
+        name=effect.name,
+        physics=effect.physics,
+        source=effect.source,
+        parameters={
+            "friction_torque_nm": EffectParameter(
+                estimate=found.friction_nm,
+                std_error=found.std_error_nm,
+                unit="N m",
+                meaning="Coulomb friction torque, mean of both directions of motion",
+            ),
+            "rising_limit_nm": EffectParameter(
+                estimate=found.rising.torque_nm,
+                std_error=found.rising.std_error_nm,
+                unit="N m",
+                meaning="torque at which it slides while the angle rises",
+            ),
+            "falling_limit_nm": EffectParameter(
+                estimate=found.falling.torque_nm,
+                std_error=found.falling.std_error_nm,
+                unit="N m",
+                meaning="torque at which it slides while the angle falls",
+            ),
+        },
+        size_deg=Size(estimate=sum(ranges) / 2.0, ci95=(ranges[0], ranges[1])),
+        size_arcmin=30.0 * sum(ranges),
+        size_nm=found.friction_nm,
+    )
+
+
+def _statement(found: Sliding, *, named: bool) -> str:
+    """Say what was found, in a paragraph.
+
+    Parameters
+    ----------
+    found : Sliding
+        Friction limits and the share of the loop.
+    named : bool
+        Whether friction may be named.
+
+    Returns
+    -------
+    str
+    """
+    half = NORMAL_95 * found.std_error_nm
+    first = "Missing physics: friction that slides fully (friction hysteresis)."
+    if not named:
+        first = "Unknown physics: a loop that takes the whole torque."
+    return (
+        f"{first} Twist is not determined by torque: the angle takes any value over "
+        f"{degrees(found.rising.range_deg)} at {found.rising.torque_nm:.3g} N m while it rises "
+        f"and over {degrees(found.falling.range_deg)} at {found.falling.torque_nm:.3g} N m while "
+        f"it falls, {100 * found.rising.share:.0f} % and {100 * found.falling.share:.0f} % of all "
+        f"motion in these directions. The friction limit is {found.friction_nm:.3g} N m (95 %: "
+        f"{found.friction_nm - half:.3g} to {found.friction_nm + half:.3g}); the loop fills "
+        f"{100 * found.loop_share:.0f} % of the rectangle around it. No stiffness can be read "
+        "from this recording, and no model is given that would compute a twist from a torque; "
+        "loops below the friction limit would show the stiffness."
+    )

@@ -1,0 +1,65 @@
+"""A friction that slides fully is named, and no stiffness is read where the torque fixes none."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.sliding import find_sliding
+
+LIMIT_NM = 300.0
+"""Friction of the made brake [N m]."""
+
+
+def driven(stiffness_nm_per_deg: float, hardening_nm_per_deg: float = 0.0) -> cs.Recording:
+    """Recording of a brake behind a spring, whose motion is driven to and fro [deg]."""
+    rng = np.random.default_rng(5)
+    angle = np.concatenate([np.linspace(a, b, 200)[1:] for a, b in ((0, 8), (8, -8), (-8, 8)) * 2])
+    torque, slip = np.zeros(len(angle)), 0.0
+    for k, at in enumerate(angle):
+        reach = LIMIT_NM / stiffness_nm_per_deg
+        slip = min(max(slip, at - reach), at + reach)
+        torque[k] = stiffness_nm_per_deg * (at - slip) + hardening_nm_per_deg * at
+    torque += rng.normal(0.0, 0.02 * LIMIT_NM, len(torque))
+    return cs.Recording.from_arrays(torque, angle, side="output", drive="reference-87")
+
+
+def test_a_brake_is_named_without_a_stiffness() -> None:
+    found = cs.diagnose(driven(300.0), cs.Drive.reference_87())
+    assert [each["name"] for each in found.effects] == ["friction_hysteresis"]
+    limit = found.effects[0]["parameters"]["friction_torque_nm"]
+    assert limit["estimate"] == pytest.approx(LIMIT_NM, rel=0.02)
+    assert found.effects[0]["size_nm"] == pytest.approx(LIMIT_NM, rel=0.02)
+    assert "not determined by torque" in found.statement
+    assert found.verdict == "UNKNOWN_PHYSICS"
+    assert found.model is None
+    assert found.content["repaired"]["parameters"] == {}
+    assert found.content["unknown"]["size_deg"] == pytest.approx(14.0, abs=2.5)
+
+
+def test_a_brake_that_may_not_be_named_still_gives_no_stiffness() -> None:
+    drive = cs.Drive.reference_87()
+    found = cs.diagnose(driven(300.0), drive, without=("friction_hysteresis",))
+    assert found.effects == []
+    assert "not determined by torque" in found.statement
+
+
+def test_its_report_is_written(tmp_path: Path) -> None:
+    cs.diagnose(driven(300.0), cs.Drive.reference_87()).write(tmp_path)
+    assert "not determined by torque" in (tmp_path / "report.html").read_text()
+
+
+def test_a_spring_with_a_large_friction_keeps_its_stiffness() -> None:
+    # Spring torque 960 N m at the ends, friction 300 N m: the torque still fixes the twist.
+    assert find_sliding(driven(300.0, hardening_nm_per_deg=120.0)) is None
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("name", ["damper-30lb-1in-0.5Hz", "damper-36lb-1in-0.25Hz"])
+def test_measured_brakes(shared_recordings: Path, name: str) -> None:
+    recording = cs.Recording.read(shared_recordings / "other-rigs" / f"{name}.csv")
+    found = cs.diagnose(recording, full=False)
+    assert [each["name"] for each in found.effects] == ["friction_hysteresis"]
+    assert "not determined by torque" in found.statement
+    assert found.content["baseline"]["parameters"] == {}
