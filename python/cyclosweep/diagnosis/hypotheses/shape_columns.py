@@ -26,7 +26,19 @@ def hats(values: Floats, knots: Floats) -> Floats:
     -------
     ndarray, shape (n, k)
     """
-    return np.column_stack([np.interp(values, knots, row) for row in np.eye(len(knots))])
+    count, width = len(knots), np.diff(knots)
+    if count < 2 or not np.all(width > 0):
+        return np.column_stack([np.interp(values, knots, row) for row in np.eye(count)])
+    left = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, count - 2)
+    along = np.clip(values, knots[0], knots[-1]) - knots[left]
+    slope = 1.0 / width[left]
+    out = np.zeros((len(values), count))
+    rows = np.arange(len(values))
+    out[rows, left] = 1.0 - slope * along
+    out[rows, left + 1] = slope * along
+    last = values >= knots[-1]
+    out[last, count - 2], out[last, count - 1] = 0.0, 1.0
+    return out
 
 
 def after(place: int, run: int | None, history: History) -> Floats:

@@ -95,12 +95,14 @@ class JointFit:
         self.history = history
         self.mean = mean_deg
         self.beta = np.zeros(0)
-        self.target, self.weight = self._working(self.mean)
+        self._work_at(self.mean)
 
-    def _working(self, mean: Floats) -> tuple[Floats, Floats]:
-        """Working residual of the likelihood at a mean, and its row weights."""
-        residual, weight = self.noise.residual(self.angle, mean[self.use])
-        return residual, weight
+    def _work_at(self, mean: Floats) -> None:
+        """Take the working data of the likelihood at a mean [deg]; they hold for one refinement."""
+        self.target, self.weight = self.noise.residual(self.angle, mean[self.use])
+        self._shifted = self.target + self.noise.design(mean[self.use], self.weight)
+        self._known_path: tuple[History, Floats, tuple[object, ...], History] | None = None
+        self._known_columns: dict[int, tuple[History, tuple[object, ...], Floats, Floats]] = {}
 
     def _terms_at(self, values: Floats) -> tuple[Term, ...]:
         """Terms with their nonlinear parameters at these values, in the fit's own scale."""
@@ -117,7 +119,7 @@ class JointFit:
             for term, shape, amplitude in zip(self.terms, shapes, amplitudes, strict=True)
         )
 
-    def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats]:
+    def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats, Floats]:
         """Columns of the linear parameters, and the precision with which each is known before.
 
         Parameters
@@ -128,20 +130,96 @@ class JointFit:
         Returns
         -------
         columns : ndarray, shape (n, k)
+        white : ndarray, shape (fitted, k)
+            The same on the fitted rows, whitened.
         hold : ndarray, shape (k,)
         """
-        parts = [line_design(history, history.elastic_nm, one_sided=self.problem.one_sided)]
+        line = line_design(history, history.elastic_nm, one_sided=self.problem.one_sided)
+        parts = [line]
+        white = [self.noise.design(line[self.use], self.weight)]
         hold = [np.zeros(self.problem.line_columns)]
-        for term in terms:
+        for index, term in enumerate(terms):
             if term.slips:
                 continue
-            columns = term.columns(history)
+            columns, whitened = self._columns(index, term, history)
             parts.append(columns)
+            white.append(whitened)
             size = None if term.effect is None else term.effect.expected(history, term.shape)
             hold.append(np.zeros(columns.shape[1]) if size is None else 1.0 / size**2)
-        return np.column_stack(parts), np.concatenate(hold)
+        return np.column_stack(parts), np.column_stack(white), np.concatenate(hold)
 
-    def _evaluate(self, values: Floats, inner: int) -> tuple[Floats, History, Floats, Floats]:
+    def _columns(self, index: int, term: Term, history: History) -> tuple[Floats, Floats]:
+        """Columns of a term and their whitened fitted rows, computed once a shape and path.
+
+        Parameters
+        ----------
+        index : int
+            Its place among the terms.
+        term : Term
+        history : History
+
+        Returns
+        -------
+        columns : ndarray, shape (n, k)
+        white : ndarray, shape (fitted, k)
+        """
+        shape = tuple(term.shape.items())
+        known = self._known_columns.get(index)
+        if known is not None and known[0] is history and known[1] == shape:
+            return known[2], known[3]
+        columns = term.columns(history)
+        white = self.noise.design(columns[self.use], self.weight)
+        self._known_columns[index] = (history, shape, columns, white)
+        return columns, white
+
+    def _path(self, terms: tuple[Term, ...], history: History, mean: Floats) -> History:
+        """Path of the shaft, computed once for the same friction from the same state.
+
+        Parameters
+        ----------
+        terms : tuple of Term
+        history : History
+            All rows in the state from which the path is solved.
+        mean : ndarray, shape (n,)
+            Modelled twist of all rows there [deg].
+
+        Returns
+        -------
+        History
+        """
+        friction = tuple((t.amplitude, *t.shape.items()) for t in terms if t.slips)
+        known = self._known_path
+        if known is not None and known[0] is history and known[1] is mean and known[2] == friction:
+            return known[3]
+        path = friction_path(terms, history, mean)
+        self._known_path = (history, mean, friction, path)
+        return path
+
+    def _solve_at(
+        self, terms: tuple[Term, ...], history: History, mean: Floats
+    ) -> tuple[History, Floats, Floats, Floats]:
+        """Solve path and linear parameters once, from a path and a mean.
+
+        Parameters
+        ----------
+        terms : tuple of Term
+        history : History
+            All rows in the state from which the path is solved.
+        mean : ndarray, shape (n,)
+            Modelled twist of all rows there [deg].
+
+        Returns
+        -------
+        history, design, white, beta
+            Path, columns of the linear parameters, their whitened fitted rows, and the linear
+            parameters.
+        """
+        if self.slides:
+            history = self._path(terms, history, mean)
+        design, white, hold = self._design(terms, history)
+        return history, design, white, _solve(white, self._shifted, hold)
+
+    def _evaluate(self, values: Floats, inner: int) -> tuple[History, Floats, Floats]:
         """Solve path and linear parameters at these values of the nonlinear ones.
 
         Parameters
@@ -153,25 +231,16 @@ class JointFit:
 
         Returns
         -------
-        residual, history, mean, beta
-            Working residual, path of the shaft, modelled twist [deg], linear parameters.
+        history, mean, beta
+            Path of the shaft, modelled twist [deg], linear parameters.
         """
         terms = self._terms_at(values)
         history, mean = self.history, self.mean
-        here = mean[self.use]
         for _ in range(inner if self.slides else 1):
-            if self.slides:
-                history = friction_path(terms, history, mean)
-            design, hold = self._design(terms, history)
-            inside = design[self.use]
-            # The working data are fixed during one refinement: target = residual at self.mean.
-            white = self.noise.design(inside, self.weight)
-            shifted = self.target + self.noise.design(here, self.weight)
-            beta = _solve(white, shifted, hold)
+            history, design, _, beta = self._solve_at(terms, history, mean)
             mean = design @ beta
             history = self._calibrated(history, beta, mean)
-        self._last = (terms, white, beta)
-        return shifted - white @ beta, history, mean, beta
+        return history, mean, beta
 
     def _calibrated(self, history: History, beta: Floats, mean: Floats) -> History:
         """Path of the shaft with the fitted line, and with the fitted twist where nothing slips.
@@ -206,20 +275,23 @@ class JointFit:
 
     def residual(self, values: Floats) -> Floats:
         """Working residual, path and linear parameters solved for these nonlinear ones."""
-        return self._evaluate(values, 1)[0]
+        terms = self._terms_at(values)
+        _, _, white, beta = self._solve_at(terms, self.history, self.mean)
+        self._last = (terms, white, beta)
+        return self._shifted - white @ beta
 
     def expand_at(self, values: Floats) -> None:
         """Move the point about which the likelihood is expanded to these nonlinear parameters."""
         exact = self.noise
         for level in _levels(exact):
             self.noise = exact.with_sigma(level)
-            self.target, self.weight = self._working(self.mean)
+            self._work_at(self.mean)
             for _ in range(6):
-                _, history, mean, beta = self._evaluate(values, INNER)
+                history, mean, beta = self._evaluate(values, INNER)
                 moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
                 self.history, self.mean, self.beta = history, mean, beta
                 self._follow_amplitudes(history, beta)
-                self.target, self.weight = self._working(mean)
+                self._work_at(mean)
                 if moved < 1e-3 * self.noise.sigma_deg:
                     break
 

@@ -1,6 +1,7 @@
 """The noise of a recording: size, autocorrelation, tails, coarse steps; and whitening by it."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.special import ndtr
@@ -61,20 +62,24 @@ class Noise:
         """Standard deviation of one row about the mean [deg]."""
         return self.sigma_deg if self.marginal_deg is None else self.marginal_deg
 
-    @property
+    @cached_property
     def _pair(self) -> Floats:
-        """Correlation of each row with the one before."""
-        return np.where(self.gap > 0, self.correlation**self.gap, 0.0)
+        """Correlation of each row after the first with the one before."""
+        return np.where(self.gap > 0, self.correlation**self.gap, 0.0)[1:]
+
+    @cached_property
+    def _new(self) -> Floats:
+        """Share of each row after the first, as a standard deviation, that is not in the others."""
+        return np.asarray(np.sqrt(1.0 - self._pair**2))
 
     def whiten(self, rows: Floats) -> Floats:
         """Decorrelate rows (n,) or (n, k) whose neighbours correlate; variance is kept."""
         if self.correlation == 0.0:
             return rows
-        pair = self._pair
         shape = (-1,) + (1,) * (rows.ndim - 1)
         out = rows.copy()
-        out[1:] -= pair[1:].reshape(shape) * rows[:-1]
-        out[1:] /= np.sqrt(1.0 - pair[1:] ** 2).reshape(shape)
+        out[1:] -= self._pair.reshape(shape) * rows[:-1]
+        out[1:] /= self._new.reshape(shape)
         return out
 
     def residual(self, angle: Floats, mean: Floats) -> tuple[Floats, Floats]:

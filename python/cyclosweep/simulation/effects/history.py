@@ -13,6 +13,14 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
+_OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s"))
+"""What the values that are computed once for a load history follow from."""
+_BY_THE_LOAD = frozenset(
+    ("largest_torque_nm", "run_starts", "run_count", "sense", "usual_step_s", "lapse_s")
+)
+"""Those values; another state of the model on the same load leaves them as they are."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class History:
     """Load history with the state of the model along it.
@@ -63,7 +71,11 @@ class History:
 
     def with_state(self, **state: object) -> Self:
         """Return the same load history with another state of the model."""
-        return replace(self, **state)  # type: ignore[arg-type]
+        other = replace(self, **state)  # type: ignore[arg-type]
+        if state.keys().isdisjoint(_OF_THE_LOAD):
+            for name in _BY_THE_LOAD & self.__dict__.keys():
+                other.__dict__[name] = self.__dict__[name]
+        return other
 
     @cached_property
     def largest_torque_nm(self) -> float:
