@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
 from cyclosweep.diagnosis.identify.friction_path import friction_path
@@ -119,7 +119,9 @@ class JointFit:
             for term, shape, amplitude in zip(self.terms, shapes, amplitudes, strict=True)
         )
 
-    def _design(self, terms: tuple[Term, ...], history: History) -> tuple[Floats, Floats, Floats]:
+    def _design(
+        self, terms: tuple[Term, ...], history: History
+    ) -> tuple[list[Floats], Floats, Floats]:
         """Columns of the linear parameters, and the precision with which each is known before.
 
         Parameters
@@ -129,7 +131,8 @@ class JointFit:
 
         Returns
         -------
-        columns : ndarray, shape (n, k)
+        columns : list of ndarray, shape (n, m)
+            Side by side they are the k columns.
         white : ndarray, shape (fitted, k)
             The same on the fitted rows, whitened.
         hold : ndarray, shape (k,)
@@ -146,7 +149,7 @@ class JointFit:
             white.append(whitened)
             size = None if term.effect is None else term.effect.expected(history, term.shape)
             hold.append(np.zeros(columns.shape[1]) if size is None else 1.0 / size**2)
-        return np.column_stack(parts), np.column_stack(white), np.concatenate(hold)
+        return parts, np.concatenate(white, axis=1), np.concatenate(hold)
 
     def _columns(self, index: int, term: Term, history: History) -> tuple[Floats, Floats]:
         """Columns of a term and their whitened fitted rows, computed once a shape and path.
@@ -197,7 +200,7 @@ class JointFit:
 
     def _solve_at(
         self, terms: tuple[Term, ...], history: History, mean: Floats
-    ) -> tuple[History, Floats, Floats, Floats]:
+    ) -> tuple[History, list[Floats], Floats, Floats]:
         """Solve path and linear parameters once, from a path and a mean.
 
         Parameters
@@ -238,7 +241,7 @@ class JointFit:
         history, mean = self.history, self.mean
         for _ in range(inner if self.slides else 1):
             history, design, _, beta = self._solve_at(terms, history, mean)
-            mean = design @ beta
+            mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
         return history, mean, beta
 
@@ -358,10 +361,8 @@ def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
     gram = scaled.T @ scaled + np.diag(hold / norm**2)
     right = scaled.T @ target
     for ridge in (0.0, 1e-9, 1e-6):
-        try:
-            factor = cho_factor(gram + ridge * np.eye(len(gram)), check_finite=False)
-        except np.linalg.LinAlgError:
-            continue
-        if ridge > 0 or np.min(np.abs(np.diag(factor[0]))) > 1e-5:
-            return np.asarray(cho_solve(factor, right, check_finite=False) / norm)
+        # LAPACK itself: the checks around it take longer than so small a matrix.
+        factor, failed = dpotrf(gram + ridge * np.eye(len(gram)), clean=False)
+        if not failed and (ridge > 0 or np.min(np.abs(np.diag(factor))) > 1e-5):
+            return np.asarray(dpotrs(factor, right)[0] / norm)
     return np.asarray(np.linalg.lstsq(scaled, target, rcond=1e-10)[0] / norm)

@@ -76,11 +76,16 @@ class Noise:
         """Decorrelate rows (n,) or (n, k) whose neighbours correlate; variance is kept."""
         if self.correlation == 0.0:
             return rows
+        return self._whitened(rows.copy())
+
+    def _whitened(self, rows: Floats) -> Floats:
+        """Decorrelate rows in place."""
+        if self.correlation == 0.0:
+            return rows
         shape = (-1,) + (1,) * (rows.ndim - 1)
-        out = rows.copy()
-        out[1:] -= self._pair.reshape(shape) * rows[:-1]
-        out[1:] /= self._new.reshape(shape)
-        return out
+        rows[1:] -= self._pair.reshape(shape) * rows[:-1]
+        rows[1:] /= self._new.reshape(shape)
+        return rows
 
     def residual(self, angle: Floats, mean: Floats) -> tuple[Floats, Floats]:
         """Unit-variance white residual, and the weight by which rows of a design enter.
@@ -127,7 +132,7 @@ class Noise:
         ndarray, shape (n,) or (n, k)
             Of unit variance where the noise alone is.
         """
-        return self.whiten(columns * (weight if columns.ndim == 1 else weight[:, None]))
+        return self._whitened(columns * (weight if columns.ndim == 1 else weight[:, None]))
 
     def with_sigma(self, sigma_deg: float) -> "Noise":
         """Return the same noise with another size."""
