@@ -185,20 +185,49 @@ pub fn solve_slip(
     spring.check()?;
     elements.check()?;
     let mut anchor = vec![0.0; elements.slip_angle.len()];
-    let mut guess = 0.0;
+    let mut last = Balance::default();
+    let mut way = 0.0;
     for i in 0..torque.len() {
+        let mut guess = last.angle;
         if i == 0 || restart[i] {
             anchor.fill(start_angle[i]);
             guess = start_angle[i];
+            way = 0.0;
+        } else {
+            // Along a branch hardly any element changes between sticking and sliding, so that the
+            // slope at the last sample leads to the next one; behind a reversal it does not.
+            let step = torque[i] - torque[i - 1];
+            let shift = offset[i] - offset[i - 1];
+            if step * way > 0.0 {
+                guess += (step + last.stiffness * shift) / last.slope;
+            }
+            if step != 0.0 {
+                way = step;
+            }
         }
-        let (solved, force, stretch) =
-            balance(torque[i], offset[i], spring, elements, &anchor, guess);
-        elements.drag_anchors(solved, &mut anchor, stretch);
-        angle[i] = solved;
-        friction[i] = force;
-        guess = solved;
+        last = balance(torque[i], offset[i], spring, elements, &anchor, guess);
+        elements.drag_anchors(last.angle, &mut anchor, last.stretch);
+        angle[i] = last.angle;
+        friction[i] = last.friction;
     }
     Ok(())
+}
+
+/// State of a sample at which all torques balance.
+#[derive(Debug, Clone, Copy, Default)]
+struct Balance {
+    /// Angle of the shaft.
+    angle: f64,
+    /// Friction torque.
+    friction: f64,
+    /// How much longer than given the slip distances are.
+    stretch: f64,
+    /// What balances the applied torque, less that torque.
+    excess: f64,
+    /// Slope of the balancing torque in the angle.
+    slope: f64,
+    /// Part of that slope that moves with the datum.
+    stiffness: f64,
 }
 
 /// The one angle at which elastic torque and friction add up to the applied torque.
@@ -209,7 +238,7 @@ fn balance(
     elements: &SlipElements<'_>,
     anchor: &[f64],
     guess: f64,
-) -> (f64, f64, f64) {
+) -> Balance {
     let evaluate = |angle: f64| {
         let (elastic, stiffness) = spring.torque(angle - offset);
         let limit = elements.load_limit(elastic);
@@ -219,38 +248,38 @@ fn balance(
         let growth =
             elements.load_factor * stiffness * elastic.signum() * (state - elements.growth * held);
         let force = limit * state;
-        (
-            elastic + force - torque,
-            stiffness + growth + limit * slope,
-            force,
+        Balance {
+            angle,
+            friction: force,
             stretch,
-        )
+            excess: elastic + force - torque,
+            slope: stiffness + growth + limit * slope,
+            stiffness: stiffness + growth,
+        }
     };
     // The friction can never exceed its limit, which brackets the elastic torque.
     let bound = (torque.abs() + elements.limit) / (1.0 - elements.load_factor).max(0.05);
     let reach = spring.free_play + spring.reach(bound) * (1.0 + 1e-9) + 1e-9;
     let (mut low, mut high) = (offset - reach, offset + reach);
-    let mut angle = within(guess, low, high);
-    let tolerance = 1e-9 * (1e-3 + torque.abs());
-    let mut best = evaluate(angle);
+    let tolerance = 1e-12 * (1e-3 + torque.abs());
+    let mut best = evaluate(within(guess, low, high));
     for _ in 0..100 {
-        if best.0.abs() <= tolerance || high - low <= 1e-13 * (1.0 + high.abs()) {
+        if best.excess.abs() <= tolerance || high - low <= 1e-13 * (1.0 + high.abs()) {
             break;
         }
-        if best.0 > 0.0 {
-            high = angle;
+        if best.excess > 0.0 {
+            high = best.angle;
         } else {
-            low = angle;
+            low = best.angle;
         }
-        let newton = angle - best.0 / best.1;
-        angle = if newton.is_finite() && newton > low && newton < high {
+        let newton = best.angle - best.excess / best.slope;
+        best = evaluate(if newton.is_finite() && newton > low && newton < high {
             newton
         } else {
             0.5 * (low + high)
-        };
-        best = evaluate(angle);
+        });
     }
-    (angle, best.2, best.3)
+    best
 }
 
 /// State of slip elements along a given angle history: sum of the shares, each between -1 and 1.
