@@ -26,7 +26,7 @@ from cyclosweep_challenge.second_generator.reach import (
 )
 from cyclosweep_challenge.second_generator.recipes import Recipe, draw_recipe
 from cyclosweep_challenge.second_generator.sensor import Sensor
-from cyclosweep_challenge.second_generator.truth import forecast, truth_of
+from cyclosweep_challenge.second_generator.truth import add_oracle, forecast, truth_of
 
 Array = NDArray[np.float64]
 
@@ -154,6 +154,7 @@ def make_case(recipe: Recipe, seed: tuple[int, ...]) -> Case:
     later_clean = unseen.answer.angle_deg[unseen.seen]
     later_read = sensor.read(later_clean + sensor.errors(unseen.starts(), streams[5]))
     truth = truth_of(recipe, specimen, causes, sensor, made, sizes)
+    add_oracle(truth["causes"], made, sensor, read[made.seen[kept]])
     truth |= forecast(causes, sensor, made, unseen, read[made.seen[kept]])
     truth["seed"] = list(seed)
     truth["noise_rms_deg"] = float(np.sqrt(np.mean((read - clean) ** 2)))

@@ -74,6 +74,34 @@ def truth_of(
     } | ({"removed": recipe.removed} if recipe.removed else {})
 
 
+def add_oracle(entries: list[dict[str, Any]], made: Made, sensor: Sensor, read_deg: Array) -> None:
+    """Add to every cause the statistic of a test that knows its signature.
+
+    It is standard normal without the cause and has the mean ``d`` with it, calibration and the
+    other causes' sizes being free.
+
+    Parameters
+    ----------
+    entries : list of dict
+        Causes of the answer, in the order of the signatures.
+    made : Made
+        Causes on the recording's programme.
+    sensor : Sensor
+        True noise.
+    read_deg : array, shape (N,)
+        Readings with the flanks in contact [deg].
+    """
+    starts = made.starts()
+    clean = made.answer.angle_deg[made.seen]
+    for k, entry in enumerate(entries):
+        signature = made.signatures[:, [k]]
+        error = (read_deg - clean)[:, None] + signature
+        others = np.delete(made.signatures, k, axis=1)
+        white = sensor.whitened(np.hstack([signature, error, made.free[k], others]), starts)
+        way = without(white[:, :1], white[:, 2:])[:, 0]
+        entry["oracle_z"] = float(way @ white[:, 1] / np.linalg.norm(way))
+
+
 def forecast(
     causes: list[Cause], sensor: Sensor, made: Made, unseen: Made, read: Array
 ) -> dict[str, Any]:

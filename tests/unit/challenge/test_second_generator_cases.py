@@ -8,6 +8,7 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep_challenge.scoring.outcome import HeldOut, make_outcome
 from cyclosweep_challenge.second_generator.case import Case, make_numbered, show_one
 from cyclosweep_challenge.second_generator.command import write_set
 from cyclosweep_challenge.second_generator.drive import (
@@ -87,6 +88,21 @@ def test_noise_is_as_correlated_as_stated() -> None:
         if noise["resolution_deg"] == 0.0:
             found = np.corrcoef(error[1:], error[:-1])[0, 1]
             assert found == pytest.approx(noise["autocorrelation"], abs=0.06)
+
+
+def test_a_test_that_knows_the_signature_sees_it_as_visible_as_stated() -> None:
+    for number in range(6):
+        for cause in make_numbered("single", number, 9, ROWS).truth["causes"]:
+            assert abs(cause["oracle_z"] - cause["d"]) < 4.0
+
+
+def test_answers_can_be_scored_as_those_of_the_first_generator() -> None:
+    diagnosis = {"verdict": "IDENTIFIED", "effects": [{"name": "creep", "size_deg": {}}]}
+    for tier in TIERS:
+        truth = {"key": "case-000", **make_numbered(tier, 1, 1, ROWS).truth}
+        outcome = make_outcome(truth, diagnosis, HeldOut())
+        assert outcome.tier == tier
+        assert outcome.effects == tuple(truth["effects"])
 
 
 def test_few_readings_by_hand() -> None:
