@@ -10,6 +10,10 @@ PROOF_FLAGS ?=
 RECORD_OUT ?= build/record
 RECORD_SEED ?= 600000
 RECORD_FLAGS ?=
+CAMPAIGN_OUT ?= build/campaign
+CAMPAIGN_SEED ?= 1100000
+CAMPAIGN_SCALE ?= 1
+CAMPAIGN_FLAGS ?=
 CONTEST_OUT ?= build/contest
 CONTEST_SEED ?= 800000
 CONTEST_POOR_OUT ?= build/contest-poor
@@ -25,7 +29,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench docs golden coverage proof \
-	proof-record proof-contest proof-contest-poor same-diagnosis scoreboard clean
+	proof-record proof-faint proof-contest proof-contest-poor same-diagnosis scoreboard clean
 .DEFAULT_GOAL := help
 
 help:
@@ -36,7 +40,8 @@ help:
 	@echo "make coverage  the Python tests once more, with the share of lines and branches they run"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
-	@echo "make proof-record  the run of record and proof/proof.md; hours, goes on where it stopped"
+	@echo "make proof-record  the record across both generators and proof/rigs.md; one to three hours, goes on where it stopped"
+	@echo "make proof-faint  the record of faint effects and proof/proof.md; hours, goes on where it stopped"
 	@echo "make proof-contest  the contest with the opponents once more and proof/contest.md; about two hours"
 	@echo "make proof-contest-poor  the same on poor programmes alone and proof/contest-poor.md; about two hours"
 	@echo "make same-diagnosis OTHER=DIR  whether this code and another checkout (set up) diagnose the same"
@@ -92,7 +97,13 @@ bench: env
 proof: env
 	$(RECORD) --subset --fresh --out $(PROOF_OUT) --seed $(PROOF_SEED) --verify 20 --against proof/proof.json $(PROOF_FLAGS)
 
+# The scoreboard of real recordings stands beside it where it was made: make scoreboard.
 proof-record: env
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m cyclosweep_challenge.campaign \
+		--out $(CAMPAIGN_OUT) --seed $(CAMPAIGN_SEED) --scale $(CAMPAIGN_SCALE) --docs proof --verify 50 \
+		--before proof/proof.json --scoreboard $(SCOREBOARD_OUT)/scoreboard.json $(CAMPAIGN_FLAGS)
+
+proof-faint: env
 	$(RECORD) --out $(RECORD_OUT) --seed $(RECORD_SEED) --docs proof --verify 50 $(RECORD_FLAGS)
 
 proof-contest: env

@@ -20,10 +20,23 @@ CHEAP = ("runs_test", "ljung_box", "aic_subset", "bic_subset", "stlsq", "error_l
 CHEAPEST = ("runs_test", "ljung_box", "aic_subset", "bic_subset", "error_ladder")
 """These see recordings with nothing missing under every family of noise, not white alone."""
 COSTLY = ("lasso_cv", "bagged_stlsq", "gaussian_process")
+OTHER_LIBRARY = tuple(
+    f"{name}_{kind}"
+    for name in ("bic_subset", "lasso_cv", "stlsq")
+    for kind in ("project", "whitened")
+)
+"""The same regressions with the project's library, and with its whitening as well."""
+LIBRARIES_APART = ("bic_subset", "lasso_cv", "stlsq", *OTHER_LIBRARY, "kennedy_ohagan")
+"""Opponents of a campaign, which tell what the library adds and what the search adds."""
 NEEDS = {
     "ljung_box": "statsmodels",
     "lasso_cv": "sklearn",
     "gaussian_process": "sklearn",
+    "kennedy_ohagan": "sklearn",
+    "lasso_cv_project": "sklearn",
+    "lasso_cv_whitened": "sklearn",
+    "stlsq_project": "pysindy",
+    "stlsq_whitened": "pysindy",
     "stlsq": "pysindy",
     "bagged_stlsq": "pysindy",
 }
@@ -33,6 +46,12 @@ NEEDS = {
 def absent() -> list[str]:
     """Return the opponents whose library is not installed."""
     return [name for name, library in NEEDS.items() if find_spec(library) is None]
+
+
+def libraries_apart(who: str) -> tuple[str, ...]:
+    """Opponents of a campaign whose libraries are installed; none where ``who`` is ``none``."""
+    left_out = absent()
+    return tuple(n for n in LIBRARIES_APART if n not in left_out) if who != "none" else ()
 
 
 def _entrants(names: Sequence[str]) -> dict[str, Callable[..., Any]]:
@@ -55,6 +74,10 @@ def _entrants(names: Sequence[str]) -> dict[str, Callable[..., Any]]:
         from cyclosweep_challenge.opponents.gaussian_process import gaussian_process
 
         every["gaussian_process"] = gaussian_process
+    if "kennedy_ohagan" in names:
+        from cyclosweep_challenge.opponents.kennedy_ohagan import kennedy_ohagan
+
+        every["kennedy_ohagan"] = kennedy_ohagan
     if "stlsq" in names or "bagged_stlsq" in names:
         from cyclosweep_challenge.opponents.stlsq import bagged_stlsq, stlsq
 
@@ -70,8 +93,14 @@ def meet(recording: Path, results: Path, key: str, names: tuple[str, ...]) -> No
     if not missing:
         return
     view = RecordingView.read(recording)
-    for name, opponent in _entrants(missing).items():
+    others = [name for name in missing if name in OTHER_LIBRARY]
+    for name, opponent in _entrants([n for n in missing if n not in OTHER_LIBRARY]).items():
         replies[name] = asdict(opponent(view))
+    if others:
+        from cyclosweep_challenge.opponents.project_library import replies as with_project_library
+
+        for name, reply in with_project_library(recording, tuple(others)).items():
+            replies[name] = asdict(reply)
     partial = file.with_suffix(".tmp")
     partial.write_text(json.dumps(replies))
     partial.replace(file)

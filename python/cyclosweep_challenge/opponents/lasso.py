@@ -7,10 +7,10 @@ import warnings
 import numpy as np
 from sklearn.linear_model import LassoCV
 
-from cyclosweep_challenge.opponents.view import RecordingView, Reply, effects_of
+from cyclosweep_challenge.opponents.view import Regressed, Reply, effects_of
 
 
-def lasso_cv(view: RecordingView) -> Reply:
+def lasso_cv(view: Regressed) -> Reply:
     """Five-fold LassoCV on the library; its statistic is the fit's share of the variance."""
     table, names = view.library
     scale = float(np.std(view.residual))

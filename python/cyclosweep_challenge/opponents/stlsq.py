@@ -7,18 +7,18 @@ import warnings
 import numpy as np
 from pysindy import STLSQ, EnsembleOptimizer
 
-from cyclosweep_challenge.opponents.view import RecordingView, Reply, effects_of
+from cyclosweep_challenge.opponents.view import Regressed, Reply, effects_of
 
 THRESHOLDS = np.geomspace(0.005, 2.0, 40)
 
 
-def _prepared(view: RecordingView) -> tuple[np.ndarray, np.ndarray, list[str]]:
+def _prepared(view: Regressed) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Library and residual, both of unit spread."""
     table, names = view.library
     return table, (view.residual / np.std(view.residual))[:, None], names
 
 
-def stlsq(view: RecordingView) -> Reply:
+def stlsq(view: Regressed) -> Reply:
     """STLSQ at its default threshold; its statistic is the largest threshold that keeps a term."""
     table, target, names = _prepared(view)
     largest = 0.0
@@ -37,7 +37,7 @@ def stlsq(view: RecordingView) -> Reply:
     )
 
 
-def bagged_stlsq(view: RecordingView) -> Reply:
+def bagged_stlsq(view: Regressed) -> Reply:
     """Twenty bagged fits; its statistic is the largest median coefficient."""
     table, target, names = _prepared(view)
     np.random.seed(0)  # noqa: NPY002 - PySINDy draws its bags from the global state

@@ -6,17 +6,17 @@ from itertools import combinations
 
 import numpy as np
 
-from cyclosweep_challenge.opponents.view import RecordingView, Reply, effects_of
+from cyclosweep_challenge.opponents.view import Regressed, Reply, effects_of
 
 LARGEST = 3
 
 
-def best_subset(view: RecordingView, cost: float) -> Reply:
+def best_subset(view: Regressed, cost: float) -> Reply:
     """Gain of the best subset in an information criterion.
 
     Parameters
     ----------
-    view : RecordingView
+    view : Regressed
         The recording.
     cost : float
         Cost of a column in deviance: 2 for Akaike's criterion, log N for Schwarz's.
@@ -41,11 +41,11 @@ def best_subset(view: RecordingView, cost: float) -> Reply:
     return Reply(best, best > 0.0, effects_of(names, chosen))
 
 
-def aic_subset(view: RecordingView) -> Reply:
+def aic_subset(view: Regressed) -> Reply:
     """Best subset by Akaike's criterion."""
     return best_subset(view, 2.0)
 
 
-def bic_subset(view: RecordingView) -> Reply:
+def bic_subset(view: Regressed) -> Reply:
     """Best subset by Schwarz's criterion."""
     return best_subset(view, float(np.log(view.residual.size)))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import polars as pl
@@ -36,6 +38,20 @@ class Reply:
     named: tuple[str, ...] | None
 
 
+class Regressed(Protocol):
+    """A residual and a library of columns: what a regression needs."""
+
+    @property
+    def residual(self) -> Array:
+        """Angle left over by the calibrated baseline [deg], shape (n,)."""
+        ...
+
+    @property
+    def library(self) -> tuple[Array, list[str]]:
+        """Columns of unit rms without the baseline, and the effect that each stands for."""
+        ...
+
+
 @dataclass(frozen=True)
 class RecordingView:
     """A recording as every opponent sees it, read from its files.
@@ -60,18 +76,19 @@ class RecordingView:
 
     @classmethod
     def read(cls, folder: Path) -> RecordingView:
-        """Read a recording from its folder."""
+        """Read a recording from its folder; rows count as seconds where it has no clock."""
         table = pl.read_csv(folder / "recording.csv")
         about = tomllib.loads((folder / "recording.toml").read_text())
+        nothing = np.zeros(len(table))
 
-        def column(name: str) -> Array:
-            return table[name].cast(pl.Float64).to_numpy()
+        def column(name: str, absent: Array = nothing) -> Array:
+            return table[name].cast(pl.Float64).to_numpy() if name in table.columns else absent
 
         return cls(
-            column("time_s"),
+            column("time_s", np.arange(len(table), dtype=float)),
             column("torque_nm"),
             column("angle_deg"),
-            table["run"].to_numpy().astype(np.int64),
+            column("run").astype(np.int64),
             column("crank_deg"),
             column("temperature_c"),
             float(about.get("angle_resolution_deg", 0.0)),
@@ -102,6 +119,11 @@ class RecordingView:
         return np.asarray(step)
 
     @cached_property
+    def last_extreme(self) -> Array:
+        """Last turning point of the run before, zero in the first [N m]."""
+        return _extreme_before(self)
+
+    @cached_property
     def library(self) -> tuple[Array, list[str]]:
         """Textbook columns, baseline taken out, of unit rms; and the effect each stands for.
 
@@ -111,18 +133,40 @@ class RecordingView:
         """
         raw = _textbook(self)
         table = np.column_stack([column for _, column in raw])
-        free = table - self.baseline @ (self.baseline.T @ table)
-        size = np.sqrt(np.mean(free**2, axis=0))
-        before = np.sqrt(np.mean(table**2, axis=0))
-        chosen: list[int] = []
-        for k in range(len(raw)):
-            if size[k] <= 1e-3 * max(float(before[k]), 1e-12):
-                continue
-            unit = free[:, k] / size[k]
-            overlaps = [abs(float(np.mean(unit * free[:, j] / size[j]))) for j in chosen]
-            if max(overlaps, default=0.0) < DUPLICATE:
-                chosen.append(k)
-        return free[:, chosen] / size[chosen], [raw[k][0] for k in chosen]
+        return without_duplicates(table, self.baseline, [name for name, _ in raw])
+
+
+def without_duplicates(
+    table: Array, baseline: Array, names: Sequence[str]
+) -> tuple[Array, list[str]]:
+    """Columns without the baseline, of unit rms, those left out that hardly differ from others.
+
+    Parameters
+    ----------
+    table : ndarray, shape (n, k)
+        Columns.
+    baseline : ndarray, shape (n, q)
+        Orthonormal columns of the baseline.
+    names : sequence of str
+        Effect that each column stands for.
+
+    Returns
+    -------
+    table : ndarray, shape (n, m)
+    names : list of str
+    """
+    free = table - baseline @ (baseline.T @ table)
+    size = np.sqrt(np.mean(free**2, axis=0))
+    before = np.sqrt(np.mean(table**2, axis=0))
+    chosen: list[int] = []
+    for k in range(len(names)):
+        if size[k] <= 1e-3 * max(float(before[k]), 1e-12):
+            continue
+        unit = free[:, k] / size[k]
+        overlaps = [abs(float(np.mean(unit * free[:, j] / size[j]))) for j in chosen]
+        if max(overlaps, default=0.0) < DUPLICATE:
+            chosen.append(k)
+    return free[:, chosen] / size[chosen], [names[k] for k in chosen]
 
 
 def _relaxing(view: RecordingView, time_constant_s: float) -> Array:
@@ -139,7 +183,7 @@ def _relaxing(view: RecordingView, time_constant_s: float) -> Array:
     return out
 
 
-def _last_extreme(view: RecordingView) -> Array:
+def _extreme_before(view: RecordingView) -> Array:
     """Last turning point of the run before, zero in the first [N m]."""
     out = np.zeros_like(view.torque_nm)
     extreme = 0.0
@@ -163,7 +207,7 @@ def _textbook(view: RecordingView) -> list[tuple[str, Array]]:
         ("friction_hysteresis", view.direction),
         ("load_dependent_friction", view.direction * size),
         ("contact_stiffening", side * size ** (2.0 / 3.0)),
-        ("datum_drift", _last_extreme(view)),
+        ("datum_drift", view.last_extreme),
         ("creep", _relaxing(view, 30.0) - torque),
         ("creep", _relaxing(view, 300.0) - torque),
         ("thermal_drift", view.temperature_c),

@@ -51,7 +51,7 @@ def _head(content: Plain, log: Sequence[Plain]) -> str:
     """Title and origin."""
     return (
         "# The proof: concealed physics, committed answers, opponents, and a real drive\n\n"
-        "Written by `make proof-record` from the run of record; not edited by hand. What is "
+        "Written by `make proof-faint` from the run of record; not edited by hand. What is "
         "concealed and how, and what the tiers mean: [challenge.md](../docs/challenge.md). "
         "Every figure stands with its 95 % interval in brackets: exact (Clopper and Pearson) for "
         "shares, by bootstrap for the rest.\n\n"
@@ -59,7 +59,7 @@ def _head(content: Plain, log: Sequence[Plain]) -> str:
             content,
             log,
             "proof",
-            f"`make proof-record RECORD_SEED={content['record']['seed']}`, with "
+            f"`make proof-faint RECORD_SEED={content['record']['seed']}`, with "
             "`CYCLOSWEEP_MEASURED` naming the folder of the real drive's loops",
         )
     )
@@ -240,7 +240,7 @@ For someone who distrusts all of it:
 
 1. **Another seed gives the same picture.** `make proof` makes a smaller run of another seed in
    about ten minutes and lays every figure beside the record's; `PROOF_SEED=...` picks the
-   seed, a multiple of ten. The whole record again: `make proof-record RECORD_SEED=...
+   seed, a multiple of ten. The whole record again: `make proof-faint RECORD_SEED=...
    RECORD_OUT=...`; the contests with the opponents: `make proof-contest CONTEST_SEED=...
    CONTEST_OUT=...` and `make proof-contest-poor CONTEST_POOR_SEED=... CONTEST_POOR_OUT=...`. Each
    may be stopped and called again, or run in pieces with `RECORD_FLAGS="--minutes M"`: all parts

@@ -9,7 +9,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from rich.console import Console
 
@@ -42,6 +42,15 @@ TIMED = 2
 """Recordings of each slice of the open part that are diagnosed once more with everything."""
 FLAGS = ("--quick",)
 """The verdict needs no report, self-check or held-out proof; those are timed apart."""
+
+
+class Keyed(Protocol):
+    """A case of any plan."""
+
+    @property
+    def key(self) -> str:
+        """Name of the case's folder."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -95,14 +104,14 @@ class Record:
         if seed % 10:
             raise ValueError(f"seed: found {seed}, expected a multiple of ten: parts use seed + k")
         if fresh:
-            _discard(out)
+            discard(out)
         self.out, self.seed, self.size = out, seed, size
         self.options = options or RecordOptions()
         out.mkdir(parents=True, exist_ok=True)
         own = {"schema": "cyclosweep.record/1", "seed": seed, "size": asdict(size)} | dict(code())
         file = out / "record.json"
         if not file.exists():
-            _write(file, own | {"commit": commit(), "machine": machine()})
+            write_json(file, own | {"commit": commit(), "machine": machine()})
         self.about: dict[str, Any] = json.loads(file.read_text())
         self.ledger = Ledger(out / "PUBLISHED.jsonl")
         # A part that this record was begun without is one without a case, until it is added;
@@ -123,7 +132,7 @@ class Record:
         if added:
             self.ledger.append("part added", **added)
             self.about["size"] = asdict(size)
-            _write(file, self.about)
+            write_json(file, self.about)
 
     def folders(self, part: Part) -> Folders:
         """Folders of a part."""
@@ -274,7 +283,7 @@ class Record:
         return timing([o.elapsed_s for o in outcomes], elapsed, agree)
 
 
-def diagnoses_hash(plan: Sequence[Entry], folders: Folders) -> str:
+def diagnoses_hash(plan: Sequence[Keyed], folders: Folders) -> str:
     """One hash over the kept diagnoses of some cases."""
     return root_hash(
         (
@@ -287,7 +296,7 @@ def diagnoses_hash(plan: Sequence[Entry], folders: Folders) -> str:
     )
 
 
-def _write(file: Path, content: Any) -> None:
+def write_json(file: Path, content: Any) -> None:
     """Write JSON whole or not at all."""
     partial = file.with_suffix(".tmp")
     partial.write_text(json.dumps(content, indent=1))
@@ -323,16 +332,16 @@ def run_record(record: Record, console: Console | None = None) -> Score:
         screen.print("the time is over; the same command goes on")
     outcomes, replies = record.outcomes()
     score = record.score(outcomes, replies)
-    _write(
+    write_json(
         record.out / "outcomes.json", [asdict(o) | {"recognised": o.recognised} for o in outcomes]
     )
-    _write(record.out / "score.json", score.as_dict())
+    write_json(record.out / "score.json", score.as_dict())
     write_page(score, record.exhibits(outcomes), record.out / "score.html")
     print_board(score, screen)
     return score
 
 
-def _discard(folder: Path) -> None:
+def discard(folder: Path) -> None:
     """Delete the contents of a folder that holds a record; refuse any other folder."""
     held = [path for path in folder.glob("*") if path.name != LOCK]
     if held and not (folder / "record.json").exists():

@@ -10,10 +10,9 @@ from typing import Any
 
 from cyclosweep_challenge.record.ledger import Ledger
 from cyclosweep_challenge.record.parts import Size
-from cyclosweep_challenge.record.run import diagnoses_hash
+from cyclosweep_challenge.record.run import Keyed, diagnoses_hash
 from cyclosweep_challenge.runner.folders import Folders
 from cyclosweep_challenge.runner.verify import verify_entry
-from cyclosweep_challenge.trial.plan import Entry
 from cyclosweep_challenge.trial.seal import SealError, root_hash
 
 
@@ -114,7 +113,7 @@ def verify_record(out: str | Path, every: int = 1) -> list[str]:
             elif line["event"] == "diagnosed":
                 if diagnoses_hash(here, folders) != line["root"]:
                     complaints.append(f"{words}: diagnoses are not those that were kept")
-                early = _earliest(here, folders)
+                early = earliest(here, folders)
                 if line["first"] not in committed or early < committed[line["first"]]:
                     complaints.append(f"{words}: diagnosed before its answers were published")
         for entry in plan[::every]:
@@ -124,7 +123,7 @@ def verify_record(out: str | Path, every: int = 1) -> list[str]:
     return complaints
 
 
-def _earliest(plan: Sequence[Entry], folders: Folders) -> str:
+def earliest(plan: Sequence[Keyed], folders: Folders) -> str:
     """Time of the first diagnosis of a slice, in the log's form."""
     first = min((folders.diagnoses / e.key / "diagnosis.json").stat().st_mtime for e in plan)
     return datetime.fromtimestamp(first, UTC).isoformat(timespec="milliseconds")

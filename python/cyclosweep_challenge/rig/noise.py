@@ -26,6 +26,8 @@ NOISES = (
     "start",
 )
 """Families of nuisance. ``start`` is white noise on a drive far from nominal."""
+STRONGER = ("ar0.95", "ar0.97", "ar0.99")
+"""Noise so correlated that error of the model looks like it; in no mix of the first records."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Noise:
     Attributes
     ----------
     family : str
-        One of ``NOISES``.
+        One of ``NOISES`` or ``STRONGER``.
     sigma_deg : float
         Standard deviation of one reading, outliers apart [deg].
     rho : float
@@ -75,10 +77,11 @@ class Noise:
         Raises
         ------
         ValueError
-            If the family is none of ``NOISES``.
+            If the family is none of ``NOISES`` and ``STRONGER``.
         """
-        if family not in NOISES:
-            raise ValueError(f"noise: found {family!r}, expected one of {', '.join(NOISES)}")
+        if family not in (*NOISES, *STRONGER):
+            known = ", ".join((*NOISES, *STRONGER))
+            raise ValueError(f"noise: found {family!r}, expected one of {known}")
         plain = cls(family=family, sigma_deg=sigma_deg, resolution_deg=resolution_deg)
         if family.startswith("ar"):
             return replace(plain, rho=float(family[2:]))

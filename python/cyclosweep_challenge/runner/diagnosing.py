@@ -24,6 +24,8 @@ for arguments in json.loads(sys.argv[1]):
         print(error, file=sys.stderr)
 """
 """Several commands in one process, one after the other; what fails leaves the others alone."""
+DRIVE_FILE = "drive.toml"
+"""Drive file beside a recording of a drive that is not built in."""
 KEPT_ENVIRONMENT = ("PATH", "HOME", "LANG", "LC_ALL", "VIRTUAL_ENV", "PYTHONPATH", "SYSTEMROOT")
 
 
@@ -156,13 +158,8 @@ def predict_batch(
         work = Path(scratch)
         calls = []
         for k, (model, later, _) in enumerate(waiting):
-            shutil.copy(model, work / f"model-{k}.json")
-            shutil.copy(later, work / f"program-{k}.csv")
-            if later.with_suffix(".toml").exists():
-                shutil.copy(later.with_suffix(".toml"), work / f"program-{k}.toml")
-            calls.append(
-                ["simulate", f"model-{k}.json", f"program-{k}.csv", "--out", f"out-{k}.csv"]
-            )
+            shown = lay_out(model, later, work / str(k))
+            calls.append(["simulate", *(f"{k}/{name}" for name in shown), "--out", f"out-{k}.csv"])
         _run(
             [sys.executable, "-c", LAUNCH_MANY],
             [json.dumps(calls)],
@@ -176,20 +173,38 @@ def predict_batch(
                 partial.replace(out)
 
 
+def lay_out(model: Path, later: Path, folder: Path) -> tuple[str, str]:
+    """Copy a model and a programme, with its TOML and drive file, to where a process works.
+
+    Parameters
+    ----------
+    model, later : pathlib.Path
+        Model file, and CSV of the programme.
+    folder : pathlib.Path
+        Where they go.
+
+    Returns
+    -------
+    tuple of str
+        Names of model and programme there.
+    """
+    folder.mkdir(exist_ok=True)
+    shutil.copy(model, folder / "model.json")
+    shutil.copy(later, folder / "program.csv")
+    if later.with_suffix(".toml").exists():
+        shutil.copy(later.with_suffix(".toml"), folder / "program.toml")
+    if (later.parent / DRIVE_FILE).exists():
+        shutil.copy(later.parent / DRIVE_FILE, folder / DRIVE_FILE)
+    return "model.json", "program.csv"
+
+
 def predict(model: Path, later: Path, out: Path, limit_s: float, program: Sequence[str]) -> str:
     """Let a repaired model predict a programme it has not seen; return what went wrong, if so."""
     with tempfile.TemporaryDirectory(prefix="prediction-") as scratch:
         work = Path(scratch)
-        shutil.copy(model, work / "model.json")
-        shutil.copy(later, work / "program.csv")
-        if later.with_suffix(".toml").exists():
-            shutil.copy(later.with_suffix(".toml"), work / "program.toml")
-        message = _run(
-            program,
-            ["simulate", "model.json", "program.csv", "--out", "prediction.csv"],
-            work,
-            limit_s,
-        )
+        shown = lay_out(model, later, work)
+        arguments = ["simulate", *shown, "--out", "prediction.csv"]
+        message = _run(program, arguments, work, limit_s)
         if not message and (work / "prediction.csv").exists():
             shutil.copy(work / "prediction.csv", out)
             return ""

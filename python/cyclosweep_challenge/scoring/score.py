@@ -71,16 +71,16 @@ class Score:
             "calibration": [{"stated": b.stated, **vars(b.frequency)} for b in self.calibration],
             "verdicts": self.verdicts.to_dicts(),
         }
-        cleaned: dict[str, Any] = _nulled(plain)
+        cleaned: dict[str, Any] = as_json(plain)
         return cleaned
 
 
-def _nulled(value: Any) -> Any:
+def as_json(value: Any) -> Any:
     """Return the same data with not-a-number and infinities as null."""
     if isinstance(value, dict):
-        return {key: _nulled(item) for key, item in value.items()}
+        return {key: as_json(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_nulled(item) for item in value]
+        return [as_json(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -12,9 +13,21 @@ from cyclosweep_challenge.rig.noise import NOISES
 from cyclosweep_challenge.rig.specimen import VOCABULARY
 from cyclosweep_challenge.trial.case import Case, make_case
 from cyclosweep_challenge.trial.concealment import ConcealmentError
-from cyclosweep_challenge.trial.tiers import Stratum
+from cyclosweep_challenge.trial.tiers import LOUD_TIERS, Stratum
 
 ATTEMPTS = 8
+
+
+class Weighted(Protocol):
+    """A stratum of any generator."""
+
+    @property
+    def weight(self) -> int:
+        """Cases of this stratum among those of one full turn of the plan."""
+        ...
+
+
+S = TypeVar("S", bound=Weighted)
 
 SMOOTH_AND_ABSORBED = (
     "contact_stiffening",
@@ -32,6 +45,11 @@ ALIAS_MENU = (
     ("phase_dependent_compliance", "poor"),
 )
 """Exact aliases: the first four of the calibration anywhere, the others at a single position."""
+
+FRICTIONS = ("friction_hysteresis", "load_dependent_friction")
+"""Dominant causes of loud recordings, in turn; what acts beside them is drawn."""
+SIGMA_DEG, LOUD_SIGMA_DEG = 0.2, 0.05
+"""Noise of one reading, smaller where the effects would be too large otherwise [deg]."""
 
 ALIAS_AMPLITUDE = {"transmission_error": 0.5, "phase_dependent_compliance": 0.05}
 
@@ -160,19 +178,41 @@ def make_plan(cases: int, seed: int, mix: str = "all", samples: int = 3000) -> l
         raise ValueError(f"mix: found {mix!r}, expected one of {', '.join(MIXES)}")
     if cases < 0:
         raise ValueError(f"cases: found {cases}, expected a whole number not below zero")
-    strata = MIXES[mix]()
+    return [
+        Entry(number, stratum, turn, seed, samples)
+        for number, (stratum, turn) in enumerate(laid_out(MIXES[mix](), cases, seed))
+    ]
+
+
+def laid_out(strata: Sequence[S], cases: int, seed: int) -> list[tuple[S, int]]:
+    """Strata of a number of cases in shuffled turns, each with its number within the stratum.
+
+    Parameters
+    ----------
+    strata : sequence
+        Strata, each as often in one turn as its ``weight`` says.
+    cases : int
+        Number of cases.
+    seed : int
+        Seed of the order within every turn.
+
+    Returns
+    -------
+    list of (stratum, int)
+        A longer list of the same strata and seed begins with the shorter one.
+    """
     one_turn = [k for k, stratum in enumerate(strata) for _ in range(stratum.weight)]
     # Each stratum begins with another cause, so that a short plan sees many of them.
     seen = [5 * k for k in range(len(strata))]
-    entries: list[Entry] = []
+    found: list[tuple[S, int]] = []
     cycle = 0
-    while len(entries) < cases:
+    while len(found) < cases:
         order = np.random.default_rng([seed, 7, cycle]).permutation(one_turn)
-        for k in order[: cases - len(entries)]:
-            entries.append(Entry(len(entries), strata[k], seen[k], seed, samples))
+        for k in order[: cases - len(found)]:
+            found.append((strata[k], seen[k]))
             seen[k] += 1
         cycle += 1
-    return entries
+    return found
 
 
 def _candidates(entry: Entry) -> Sequence[str]:
@@ -181,6 +221,8 @@ def _candidates(entry: Entry) -> Sequence[str]:
         return SMOOTH_AND_ABSORBED
     if entry.stratum.tier == "C5-alien":
         return ALIENS
+    if entry.stratum.tier == "C8":
+        return FRICTIONS
     return VOCABULARY
 
 
@@ -221,6 +263,7 @@ def _attempt(entry: Entry, attempt: int) -> Case:
         stratum.programme,
         stratum.noise,
         samples=entry.samples,
+        sigma_deg=LOUD_SIGMA_DEG if stratum.tier in LOUD_TIERS else SIGMA_DEG,
         resolution_deg=0.5 if stratum.tier == "C2" else 0.0,
         signs=signs,
         rivals=stratum.tier == "C0",

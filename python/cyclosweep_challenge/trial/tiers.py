@@ -1,4 +1,4 @@
-"""The seven ways in which a cause is concealed, and the strata of a challenge."""
+"""The ways in which a cause is concealed, and the strata of a challenge."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ TIERS = {
     "C6": "nothing missing, under every family of nuisance",
     "C7": "an exact alias of the calibration, on this programme or on any",
 }
+LOUD_TIERS = {
+    "C8": "loud: friction of a real rig's size, alone or with up to three effects on top of it",
+    "C8-single": "loud: one effect of any kind",
+}
+"""Tiers of a campaign alone."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +29,7 @@ class Stratum:
     Attributes
     ----------
     tier : str
-        One of ``TIERS``.
+        One of ``TIERS`` or ``LOUD_TIERS``.
     programme, noise : str
         Load programme and noise family.
     d : tuple of float

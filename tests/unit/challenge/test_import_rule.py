@@ -11,12 +11,23 @@ import cyclosweep_challenge as challenge
 
 ROOT = Path(challenge.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
-SCORING = {"opponents", "scoring", "board", "runner", "record", "measured", "scoreboard"}
+SCORING = {
+    "opponents",
+    "scoring",
+    "board",
+    "runner",
+    "record",
+    "measured",
+    "scoreboard",
+    "campaign",
+}
 RIG_MAY = {"numpy", "scipy", "polars"}
 SCORING_MAY = RIG_MAY | {"filelock", "rich", "sklearn", "statsmodels", "pysindy", "plotly"}
 DIAGNOSING = "scoreboard"
 """Folder that calls the diagnosis as a user does; its own rig keeps to the rule of the rig."""
 MAKERS = {"made_rig.py", "made_effects.py"}
+WITH_ITS_LIBRARY = "project_library.py"
+"""Opponent that is given the library of the diagnosis, to tell what the search adds to it."""
 
 
 def imported(path: Path) -> list[str]:
@@ -43,7 +54,7 @@ def is_rig(path: Path) -> bool:
 def may_import(path: Path) -> set[str]:
     if is_rig(path) or path.name in MAKERS:
         return RIG_MAY
-    diagnoses = path.parent.name == DIAGNOSING
+    diagnoses = path.parent.name == DIAGNOSING or path.name == WITH_ITS_LIBRARY
     return SCORING_MAY | {"cyclosweep"} if diagnoses else SCORING_MAY
 
 
@@ -86,6 +97,7 @@ ORDER = (
     "measured",
     "record",
     "scoreboard",
+    "campaign",
 )
 """Folders, each of which imports from those before it alone."""
 
@@ -132,6 +144,14 @@ def test_second_generator_stands_alone() -> None:
                 assert name.startswith("cyclosweep_challenge.second_generator"), (
                     f"{path.name} imports {name}"
                 )
+
+
+def test_opponent_with_the_library_takes_nothing_of_the_search() -> None:
+    [path] = [path for path in FILES if path.name == WITH_ITS_LIBRARY]
+    taken = {name for name in imported(path) if name.startswith("cyclosweep.diagnosis")}
+    assert len(taken) > 4
+    parts = ("calibrate", "hypotheses", "inputs", "prepare")
+    assert all(name.split(".")[2] in parts for name in taken)
 
 
 def test_rule_sees_the_rig() -> None:

@@ -1,5 +1,6 @@
 """Opponents see files only, find what is plain, and are quiet at their tuned setting."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,16 @@ import pytest
 
 from cyclosweep_challenge import make_case
 from cyclosweep_challenge.opponents import contest
-from cyclosweep_challenge.opponents.contest import CHEAP, CHEAPEST, COSTLY, NEEDS, meet_opponents
+from cyclosweep_challenge.opponents.contest import (
+    CHEAP,
+    CHEAPEST,
+    COSTLY,
+    NEEDS,
+    libraries_apart,
+    meet,
+    meet_opponents,
+)
+from cyclosweep_challenge.opponents.project_library import NAMES, project_views, replies
 from cyclosweep_challenge.opponents.subset import best_subset, bic_subset
 from cyclosweep_challenge.opponents.view import RecordingView
 from cyclosweep_challenge.scoring.opponents import OURS, opponent_curves, tuned
@@ -22,7 +32,7 @@ def seen(folder: Path, **more: object) -> RecordingView:
     return RecordingView.read(folder)
 
 
-@pytest.mark.parametrize("name", [*CHEAP, *COSTLY])
+@pytest.mark.parametrize("name", [*CHEAP, *COSTLY, "kennedy_ohagan"])
 def test_each_scores_a_plain_effect_above_nothing(name: str, tmp_path: Path) -> None:
     if name in NEEDS:
         pytest.importorskip(NEEDS[name])
@@ -53,6 +63,48 @@ def test_best_subset_agrees_with_least_squares(tmp_path: Path) -> None:
         single.append(recording.residual.size * -np.log(np.var(left) / np.var(recording.residual)))
     assert found.score == pytest.approx(max(single) - 1e9, abs=1e-2)
     assert "creep" in (bic_subset(recording).named or ())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_regressions_with_the_project_s_library_name_a_plain_effect(
+    name: str, tmp_path: Path
+) -> None:
+    if name in NEEDS:
+        pytest.importorskip(NEEDS[name])
+    make_case(31, ("creep",), 60.0, samples=1200).write(tmp_path)
+    [reply] = replies(tmp_path, (name,)).values()
+    assert reply.flagged
+    assert "creep" in (reply.named or ())
+
+
+def test_whitening_takes_correlated_noise_from_a_regression(tmp_path: Path) -> None:
+    make_case(31, noise="ar0.9", samples=1200).write(tmp_path)
+    views = project_views(tmp_path)
+    assert bic_subset(views["project"]).score > 40.0
+    assert bic_subset(views["whitened"]).score < 4.0
+
+
+def test_project_s_library_has_columns_of_unit_size_for_nearly_all_effects(tmp_path: Path) -> None:
+    make_case(31, samples=1200).write(tmp_path)
+    for view in project_views(tmp_path).values():
+        table, names = view.library
+        assert table.shape[1] == len(names) > 40
+        np.testing.assert_allclose(np.sqrt(np.mean(table**2, axis=0)), 1.0)
+        assert len(set(names)) >= 12
+        assert view.residual.shape == (len(table),)
+
+
+def test_opponents_of_a_campaign_are_met_without_clock_or_position(tmp_path: Path) -> None:
+    case = make_case(31, ("friction_hysteresis",), 60.0, samples=900)
+    folder = case.write(tmp_path)
+    case.recording.select("torque_nm", "angle_deg", "run").write_csv(folder / "recording.csv")
+    names = tuple(n for n in libraries_apart("all") if n.startswith(("bic", "kennedy")))
+    assert len(names) >= 3
+    meet(folder, tmp_path, "here", names)
+    said = json.loads((tmp_path / "here.json").read_text())
+    assert all(said[name]["flagged"] for name in names)
+    assert "friction_hysteresis" in said["bic_subset_project"]["named"]
+    assert libraries_apart("none") == ()
 
 
 def test_only_recordings_fit_for_comparison_are_shown(tmp_path: Path) -> None:
