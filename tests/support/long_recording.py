@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 import cyclosweep as cs
-from cyclosweep.simulation.simulate import EffectValue, Model, simulate
+from cyclosweep.simulation.simulate import EffectValue
 
 COMPLIANCE = 19.8 / 7.2575
 """Compliance of the reference drive at the input [deg/(N m)]."""
@@ -92,10 +92,10 @@ def long_recording(
     -------
     Recording
     """
-    model = Model(
+    model = cs.Model(
         compliance_deg_per_nm=COMPLIANCE, free_play_deg=28.0, datum_deg=0.1, effects=tuple(effects)
     )
-    angle = simulate(model, programme := long_programme(samples)).angle_deg
+    angle = cs.simulate(model, programme := long_programme(samples)).angle_deg
     assert angle is not None
     noise = noise_deg * np.random.default_rng(seed).normal(size=len(programme))
     return programme.with_angle(angle + noise)

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Collection
 
+from threadpoolctl import threadpool_limits
+
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.compose import compose
@@ -70,7 +72,10 @@ def diagnose(
     effects = considered_effects(without)
     say = progress if progress is not None else _say_nothing
     try:
-        return _run_stages(recording, drive, effects, tolerance_deg, seed, full, say)
+        # The matrices are small: a second thread of the linear algebra costs several times the
+        # time, and the last digits would depend on the machine.
+        with threadpool_limits(limits=1, user_api="blas"):
+            return _run_stages(recording, drive, effects, tolerance_deg, seed, full, say)
     except NoDiagnosisError as refusal:
         return refused(recording, drive, refusal, seed)
 
