@@ -87,6 +87,22 @@ def _lines(results: dict[str, Any]) -> list[str]:
             f"| {row['seconds'] / row['variants'] * 1e9:.0f} "
             f"| {row['over_baseline_mib']:.0f} MiB |"
         )
+    lines += [
+        "",
+        "## Diagnosis",
+        "",
+        "The whole diagnosis with its report, one run each. A recording of more than 6,000 samples "
+        "is thinned ([recordings.md](recordings.md#long-recordings)).",
+        "",
+        "| samples | missing | verdict | seconds | processor seconds |",
+        "|---:|---|---|---:|---:|",
+    ]
+    for row in results["diagnosis"]:
+        missing = ", ".join(row["effects"]).replace("_", " ") or "nothing"
+        lines.append(
+            f"| {row['samples']:,} | {missing} | {row['verdict']} | {row['seconds']:.1f} "
+            f"| {row['cpu_seconds']:.1f} |"
+        )
     return lines
 
 

@@ -22,6 +22,7 @@ import polars as pl
 
 import cyclosweep as cs
 from cyclosweep.sweep.dataset import COMPRESSION, ROWS_PER_PART
+from diagnosis import measure_diagnoses
 from measure import Timing, alternate
 from opponents import numba_closed, numpy_closed, theta
 from opponents.common import COLUMNS, columns_of
@@ -61,6 +62,8 @@ def main() -> None:
         results["parquet"] = _parquet(count, rounds, Path(folder))
         print("streams")
         results["streams"] = _streams(arguments, Path(folder))
+    print("diagnosis")
+    results["diagnosis"] = measure_diagnoses(quick=arguments.quick)
     target = BENCHES.parent / ("out/bench" if arguments.quick else "docs")
     write_report(results, target)
     print(f"written to {target.relative_to(BENCHES.parent)}/performance.md")
