@@ -127,6 +127,7 @@ scoreboard: env
 docs: env
 	$(BIN)/python docs/generate.py
 	$(BIN)/python -m cyclosweep_challenge.record --pages proof
+	test ! -f proof/rigs.json || $(BIN)/python -m cyclosweep_challenge.campaign --page proof
 
 golden: env
 	$(BIN)/python -m tests.golden.regenerate

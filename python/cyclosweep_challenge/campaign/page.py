@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from cyclosweep_challenge.campaign.summary import put_summary
 from cyclosweep_challenge.record.markdown import Plain, table, text
 from cyclosweep_challenge.record.targets import judged
 
@@ -264,7 +265,7 @@ def _real(board: Plain) -> str:
         return f"{title}\n\nThe scoreboard was not run: its recordings were absent."
     parts = [
         f"{title}\n\n{board['right']} of {board['judged']} lines of the scoreboard are right "
-        f"([scoreboard.md](../docs/scoreboard.md) says what each asks); diagnosed on "
+        f"(`make scoreboard` says what each asks); diagnosed on "
         f"{board['date']}, code `{board['code'][:12]}`."
     ]
     parts.append(
@@ -277,7 +278,7 @@ def _real(board: Plain) -> str:
 
 
 def write_campaign_page(docs: Path) -> Path:
-    """Write the page again from the figures, the log and the notes beside it.
+    """Write the page again from the figures, the log and the notes beside it, and the summary.
 
     Parameters
     ----------
@@ -290,4 +291,5 @@ def write_campaign_page(docs: Path) -> Path:
     words = notes.read_text().strip() if notes.exists() else ""
     file = docs / f"{NAME}.md"
     file.write_text(campaign_page(content, [json.loads(line) for line in lines], words), "utf-8")
+    put_summary(docs.parent / "docs" / "proof.md", content)
     return file

@@ -25,6 +25,7 @@ from cyclosweep_challenge.campaign.result import Result, make_result
 from cyclosweep_challenge.campaign.rivals import OURS, rivals
 from cyclosweep_challenge.campaign.run import Campaign, run_campaign
 from cyclosweep_challenge.campaign.score import score_of
+from cyclosweep_challenge.campaign.summary import BEGIN, END, WORDS, put_summary, summary
 from cyclosweep_challenge.campaign.unseen import unseen_of
 from cyclosweep_challenge.campaign.verify import _again, verify_campaign
 from cyclosweep_challenge.runner.diagnosing import lay_out
@@ -326,6 +327,29 @@ def test_page_holds_every_figure_with_recordings_and_is_written_from_its_files(
     assert sum(row["cases"] for row in content["tables"]["verdicts"]) == len(campaign.results())
 
 
+def test_summary_stands_between_the_marks_of_the_page_in_plain_words(
+    whole: Path, tmp_path: Path
+) -> None:
+    content = score_of(open_campaign(whole), tmp_path / "absent.json", None)
+    page = tmp_path / "proof.md"
+    page.write_text(f"before\n{BEGIN}\nwhat was there\n{END}\nafter\n")
+    put_summary(page, content)
+    words = page.read_text()
+    assert words.startswith(f"before\n{BEGIN}\n\nSeed {SEED}, ")
+    assert words.endswith(f"{END}\nafter\n")
+    assert "what was there" not in words
+    aimed = [f for f in content["new"] if f["target"] != "none" and f["estimate"]["count"]]
+    assert words.count("\n| ") == len(aimed) + 1
+    assert "| loud: the largest effect has its right name |" in words
+    page.write_text("no marks")
+    put_summary(page, content)
+    assert page.read_text() == "no marks"
+
+
+def test_words_of_the_summary_are_of_figures_that_there_are() -> None:
+    assert set(WORDS) <= set(figures([]))
+
+
 def test_committed_page_is_what_its_figures_give() -> None:
     if not (PROOF / "rigs.json").exists():
         pytest.skip("the record across both generators has not been made")
@@ -334,6 +358,7 @@ def test_committed_page_is_what_its_figures_give() -> None:
     notes = PROOF / "rigs-notes.md"
     words = notes.read_text().strip() if notes.exists() else ""
     assert (PROOF / "rigs.md").read_text("utf-8") == campaign_page(content, log, words)
+    assert summary(content) in (PROOF.parent / "docs" / "proof.md").read_text("utf-8")
 
 
 def test_measured_loops_are_taken_from_the_scoreboard(tmp_path: Path) -> None:
