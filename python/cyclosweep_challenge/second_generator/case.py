@@ -72,14 +72,16 @@ class Case:
         target = pathlib.Path(folder)
         target.mkdir(parents=True, exist_ok=True)
         self.recording.write_csv(target / "recording.csv")
-        head = f'side = "{self.specimen.side}"\ndrive = "{self.specimen.drive}"\n'
-        text = head + f"angle_resolution_deg = {self.resolution_deg:g}\n"
+        side = f'side = "{self.specimen.side}"\n'
+        text = side + f'drive = "{self.specimen.drive}"\n'
+        text += f"angle_resolution_deg = {self.resolution_deg:g}\n"
         if "pole_ripple" in self.truth["aliens"]:
             text += 'torque_from = "motor-current"\n'
         (target / "recording.toml").write_text(text)
         if program:
             self.program.write_csv(target / "program.csv")
-            (target / "program.toml").write_text(head)
+            # The model that predicts knows its drive; the programme needs no drive file beside it.
+            (target / "program.toml").write_text(side)
         if self.specimen.drive_file:
             (target / self.specimen.drive).write_text(self.specimen.drive_file)
         return target
