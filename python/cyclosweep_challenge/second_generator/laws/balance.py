@@ -88,8 +88,6 @@ def _advance(
             break
         twist += gap / slope
     if touch * twist <= 0.0:
-        for r in resistances:
-            r.saturate(-touch)
         return 0.0, 0.0
     for r in resistances:
         r.keep(twist, twist - now, dt)
