@@ -94,8 +94,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     repeats = None
     if search.noise.structured:
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
-        decision = decide_whole_loop(search.chosen, repeats=repeats.is_physics)
-    elif search.start is not search.baseline:
+    if search.noise.structured or search.start is not search.baseline:
         staged = explained_share(search.baseline.fit, search.start.fit, search.seed)
         decision = decide_in_stages(search, staged.share or 0.0)
     else:

@@ -35,9 +35,8 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         another: the search then starts over with that noise.
     """
     if search.noise.structured:
-        say("adding effects one at a time")
-        search.chosen = stepwise.choose_effects(search)
-        return search
+        say("looking for the largest effect")
+        return search_in_stages(search, flexible_basis(search.problem, search.library, None), say)
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()

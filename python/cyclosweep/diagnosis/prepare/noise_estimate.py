@@ -15,8 +15,16 @@ from cyclosweep.diagnosis.prepare.noise import (
 )
 from cyclosweep.simulation.effects.history import Floats
 
-MODEL_ERROR = 0.945
-"""An autocorrelation above this is taken for structured error of the model, not for noise."""
+MODEL_ERROR = 0.9
+"""Autocorrelation above which what is left is noise only if its size is the same everywhere."""
+UNSTEADY = 2.5
+"""Scatter of the size of whitened stretches, over that of steady noise, from which what is left is
+error of the model. Steady noise stays below 1.8 up to an autocorrelation of 0.99; errors of models
+gather at reversals and at certain loads, and begin at 3."""
+STRETCHES = 40
+"""Stretches whose sizes are compared."""
+CORRELATIONS = np.r_[0.0:0.975:0.01, 0.98:0.9981:0.003]
+"""Autocorrelations that are tried."""
 
 
 def estimate_noise(
@@ -63,12 +71,27 @@ def estimate_noise(
             if coarse is not None:
                 return coarse
         sigma = max(sigma, resolution / np.sqrt(12.0))
-    if best > MODEL_ERROR:
+    if best > MODEL_ERROR and unsteadiness(rough.whiten(left)) > UNSTEADY:
         # What is left is not noise but error of the model; filtered, it would be fitted by its
-        # kinks. Rows count equally then.
-        plain = max(float(np.sqrt(left @ left / freedom)), 1e-12)
-        return Noise(plain, 0.0, best, np.inf, 0.0, freedom, gap, plain, structured=True)
+        # kinks. Rows count equally then, and noise is what differs from row to row.
+        floor = max(_floor(left), resolution / np.sqrt(12.0), 1e-6 * float(np.ptp(angle)), 1e-12)
+        return Noise(floor, 0.0, best, np.inf, 0.0, freedom, gap, structured=True)
     return Noise(sigma, upper, best, tail, 0.0, freedom, gap, score_moments=moments)
+
+
+def unsteadiness(white: Floats) -> float:
+    """Scatter of the size of stretches over what it is in steady noise; zero for few rows."""
+    length = len(white) // STRETCHES
+    if length < 5:
+        return 0.0
+    size = np.abs(white[: STRETCHES * length].reshape(STRETCHES, length)).mean(axis=1)
+    expected = np.sqrt((np.pi / 2.0 - 1.0) / length)
+    return float(np.std(np.log(np.maximum(size, 1e-300)))) / float(expected)
+
+
+def _floor(left: Floats) -> float:
+    """Standard deviation of white noise whose second differences are like those of a residual."""
+    return 1.4826 * float(np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0))
 
 
 def _coarse_noise(
@@ -138,7 +161,7 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
     start = rows[alone].T @ rows[alone]
     k = basis.shape[1]
     freedom = len(left) - k
-    grid = np.r_[0.0:0.985:0.01]
+    grid = CORRELATIONS
     value = np.empty(len(grid))
     for index, rho in enumerate(grid):
         gram = start + (current - rho * crossed + rho**2 * earlier) / (1 - rho**2)
