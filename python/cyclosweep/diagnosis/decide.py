@@ -11,7 +11,6 @@ from cyclosweep.diagnosis.identify.verdict import (
     Decision,
     decide,
     decide_in_stages,
-    decide_whole_loop,
 )
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition, repetition
@@ -95,7 +94,8 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     if search.noise.structured:
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
     if search.noise.structured or search.start is not search.baseline:
-        staged = explained_share(search.baseline.fit, search.start.fit, search.seed)
+        found = search.chosen or search.start
+        staged = explained_share(search.baseline.fit, found.fit, search.seed)
         decision = decide_in_stages(search, staged.share or 0.0)
     else:
         decision = decide(search, beyond_baseline, tolerance)

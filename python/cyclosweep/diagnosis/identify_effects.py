@@ -36,7 +36,11 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     """
     if search.noise.structured:
         say("looking for the largest effect")
-        return search_in_stages(search, flexible_basis(search.problem, search.library, None), say)
+        flexible = flexible_basis(search.problem, search.library, None)
+        staged = search_in_stages(search, flexible, say)
+        say("fitting whole loops")
+        staged.chosen = stepwise.whole_loop_structure(staged)
+        return staged
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()

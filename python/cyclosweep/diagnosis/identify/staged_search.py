@@ -15,6 +15,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.friction_first import friction_first
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -76,7 +77,11 @@ def error_factor(left: float) -> float:
     return float(np.sqrt(1.0 + MODEL_ERROR_SHARE**2 * beyond / INDEPENDENT_PIECES))
 
 
-def search_in_stages(searched: Search, flexible: Floats, say: Callable[[str], None]) -> Search:
+def search_in_stages(
+    searched: Search,
+    flexible: Floats,
+    say: Callable[[str], None],
+) -> Search:
     """Explain the largest mismatch first, then what is left of it, stage by stage.
 
     Parameters
@@ -99,6 +104,11 @@ def search_in_stages(searched: Search, flexible: Floats, say: Callable[[str], No
     last = searched
     fitted: FittedStructure = searched.baseline.fit
     mismatch = fitted.rmse_deg
+    factor = error_factor(visibility(fitted, flexible))
+    begun = friction_first(searched, searched.noise.with_model_error(factor)) if factor > 1 else ()
+    if begun:
+        fitted = fit(searched.problem, searched.noise, begun, fitted, rounds=CONVERGED)
+        accepted = fitted.terms
     for _ in range(MOST_STAGES):
         factor = error_factor(visibility(fitted, flexible))
         if not accepted and factor == 1.0:

@@ -122,7 +122,7 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
         IDENTIFIED, or AMBIGUOUS, where the accepted effects leave nothing but noise,
         MOSTLY_EXPLAINED where they explain nine tenths or more, else UNKNOWN_PHYSICS.
     """
-    best = search.start
+    best = search.chosen or search.start
     probability = 1.0 - sum(share for _, share in search.rivals_of_start)
     explanations = [(best, probability), *search.rivals_of_start]
     explanations.sort(key=lambda each: -each[1])

@@ -10,6 +10,9 @@ from cyclosweep.simulation.effects.history import Floats
 
 INDEPENDENT_PIECES = 40.0
 """Rough number of independent pieces of a residual that is error of the model."""
+FAR_OFF = 2.0
+"""Median of a residual over the noise from which a fit is far off, and not a few rows outliers. The
+score of heavy tails, which forgets rows that are far off, would then find the worst fit best."""
 COARSE_STEP = 3.5
 """Resolution steps above this many standard deviations need the interval likelihood."""
 
@@ -114,7 +117,9 @@ class Noise:
         if np.isfinite(self.tail):
             slope, square = self.score_moments
             root = np.sqrt(square)
-            return student_score(white, self.tail)[0] / root, even * (slope / root)
+            far = len(white) > 0 and float(np.median(np.abs(white))) > FAR_OFF
+            shape = student_deviance if far else student_score
+            return shape(white, self.tail)[0] / root, even * (slope / root)
         return white, even
 
     def design(self, columns: Floats, weight: Floats) -> Floats:
@@ -186,6 +191,29 @@ def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
     spread = tail * scale2 + white**2
     score = (tail + 1.0) * white / spread
     return score, (tail + 1.0) * (tail * scale2 - white**2) / spread**2
+
+
+def student_deviance(white: Floats, tail: float) -> tuple[Floats, Floats]:
+    """Signed root of twice the loss of log likelihood under Student's distribution, and its slope.
+
+    Near zero it is like the score; far off it goes on growing.
+
+    Parameters
+    ----------
+    white : ndarray, shape (n,)
+        Rows of unit variance.
+    tail : float
+        Degrees of freedom of the distribution.
+
+    Returns
+    -------
+    deviance, slope : ndarray, shape (n,)
+    """
+    scale2 = (tail - 2.0) / tail if tail > 2.05 else 0.09
+    root = np.sqrt((tail + 1.0) * np.log1p(white**2 / (tail * scale2)))
+    score = student_score(white, tail)[0]
+    slope = np.divide(np.abs(score), root, out=np.ones_like(root), where=root > 1e-12)
+    return np.sign(white) * root, slope
 
 
 def interval_score(angle: Floats, mean: Floats, sigma: float, step: float) -> tuple[Floats, Floats]:

@@ -1,10 +1,8 @@
-"""Stepwise choice of effects where the residual is error of the model rather than noise.
+"""Last stage where loops are far above the noise: the simulation itself is fitted to whole loops.
 
-Where the sensor is far better than any model, the residual is structured down to the last step,
-and a test against noise rejects everything. The simulation itself is then fitted to whole loops,
-crossings of the dead zone included: effects are left out or added one at a time, as long as each
-gains more than its parameters are charged. What remains is judged by whether it repeats from run
-to run.
+Effects are named on rows in contact, whose flank the recording shows. A forecast has to find the
+flank itself, and its crossings of the dead zone tell friction, play and the torque's zero better
+than anything else. Here the named structure is fitted once more, as a simulation, to all rows.
 """
 
 from dataclasses import replace
@@ -28,35 +26,139 @@ from cyclosweep.diagnosis.whole_loop.known_flank import whole_loop_fit
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.model import EffectValue
 
+LEAST_GAIN = 0.15
+"""Share of the error on left-out stretches that a structure must take away."""
+FEW_RUNS = 2
+"""Fitted runs up to which the flanks alone may not tell effects apart."""
+MOST_WORSE = 1.3
+"""Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
+all rows is taken instead."""
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
 """Friction limits and presliding distances to start from, as shares of torque and twist."""
 MOST_ADDED = 1
 """Effects added beyond the usual ones."""
-LEAST_GAIN = 0.15
-"""Share of the error on left-out stretches that the usual effects must take away."""
 TRIED = 2
 """Effects that are fitted in a step, those whose shape is most like what is left."""
 PARAMETER_CHARGE = 2.0
 """What a parameter must gain: twice the log likelihood of independent pieces."""
+EFFECT_CHARGE = 4.0
+"""What an effect must gain beside its parameters, in the same unit: the odds against one more."""
 
 
-def choose_effects(search: Search) -> Candidate:
-    """Fit what such loops usually show, leave out what is not worth its parameters, add what is.
+def whole_loop_structure(search: Search) -> Candidate | None:
+    """Fit the structure that was found, as a simulation, to all rows.
+
+    Where there is hardly more than one loop, effects take each other's place on its flanks, and
+    what loops usually show is fitted to the whole loop as well; the better one is taken.
+
+    Parameters
+    ----------
+    search : Search
+        Of the last stage; its ``start`` is the structure that was found.
 
     Returns
     -------
-    Candidate
-        The baseline where the usual effects do not predict left-out stretches much better.
+    Candidate or None
+        None where a structure does not predict left-out stretches much better than the published
+        model, or fits the flanks worse than before.
     """
     problem = search.problem
     base = fit_forecast(problem, starting_model(problem), (), zero=False, most=10)
-    usual = _usual(search, base)
-    if usual is None or not _predicts_better(usual, base):
-        return search.baseline
-    best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
-    best = _extend(search, _prune(problem, best))
+    fits = [_found(search)]
+    if len(np.unique(problem.history.run[problem.fitted])) <= FEW_RUNS:
+        usual = _usual(search, base)
+        fits.append(None if usual is None else _extend(search, _prune(problem, usual)))
+    offered = [
+        (each, whole_loop_fit(each, base, search.noise))
+        for each in fits
+        if each is not None and each.terms
+    ]
+    room = MOST_WORSE * search.start.fit.rmse_deg
+    offered = [(each, fitted) for each, fitted in offered if fitted.rmse_deg <= room]
+    if not offered:
+        return None
+    best, fitted = min(offered, key=lambda pair: _cost(pair[0]))
+    if not _predicts_better(best, base):
+        return None
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
-    return search.add(whole_loop_fit(best, base, search.noise), gain)
+    return search.add(fitted, gain)
+
+
+def _found(search: Search) -> Forecast | None:
+    """Fit the structure that was found to all rows.
+
+    Parameters
+    ----------
+    search : Search
+
+    Returns
+    -------
+    Forecast or None
+        None where the structure has no terms, or some without a name.
+    """
+    problem, fitted = search.problem, search.start.fit
+    if not fitted.terms or any(term.effect is None for term in fitted.terms):
+        return None
+    model = fitted.model("")
+    terms = [
+        replace(term, shape=value.shape, amplitude=value.amplitudes[0] if term.slips else 0.0)
+        for term, value in zip(fitted.terms, model.effects, strict=True)
+    ]
+    zero = not problem.one_sided and _crosses_late(problem)
+    first = fit_forecast(problem, model, terms, zero=zero, most=10)
+    return _better(
+        first, fit_forecast(problem, first.model, first.terms, zero=zero, most=10, blur=BLUR)
+    )
+
+
+def _crosses_late(problem: Problem) -> bool:
+    """Whether crossings of the dead zone were recorded that show the torque's zero."""
+    history, rows = problem.history, problem.whole_fitted
+    pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
+    return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
+
+
+def _better(first: Forecast, second: Forecast) -> Forecast:
+    """Forecast with the smaller error; the first where they are equal.
+
+    Parameters
+    ----------
+    first : Forecast
+    second : Forecast
+
+    Returns
+    -------
+    Forecast
+    """
+    return second if second.error_deg < first.error_deg else first
+
+
+def _predicts_better(model: Forecast, base: Forecast) -> bool:
+    """Whether a model predicts stretches that were left out much better than the baseline.
+
+    Parameters
+    ----------
+    model : Forecast
+    base : Forecast
+        That of the published model alone.
+
+    Returns
+    -------
+    bool
+    """
+    return left_out_error(model) < (1.0 - LEAST_GAIN) * left_out_error(base)
+
+
+def left_out_error(model: Forecast) -> float:
+    """Root mean square on stretches that were left out in turn [deg]."""
+    problem = model.problem
+    total, count = 0.0, 0
+    for _, rows in whole_stretches(problem):
+        part = refit(model, rows=problem.whole_fitted & ~rows, most=3)
+        left = problem.whole_fitted & rows
+        total += problem.rms_error(part.angle_deg, left) ** 2 * np.count_nonzero(left)
+        count += int(np.count_nonzero(left))
+    return float(np.sqrt(total / max(count, 1)))
 
 
 def _usual(search: Search, base: Forecast) -> Forecast | None:
@@ -95,13 +197,6 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
         joint = fit_forecast(problem, model, terms, zero=zero, most=10)
         found = joint if found is None else _better(found, joint)
     return found
-
-
-def _crosses_late(problem: Problem) -> bool:
-    """Whether crossings of the dead zone were recorded that show the torque's zero."""
-    history, rows = problem.history, problem.whole_fitted
-    pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
-    return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
 
 
 def _prune(problem: Problem, best: Forecast) -> Forecast:
@@ -163,52 +258,8 @@ def _extend(search: Search, best: Forecast) -> Forecast:
 
 def _cost(model: Forecast) -> float:
     """Minus twice the log likelihood of a residual's pieces, and the charge for the parameters."""
-    return 2.0 * INDEPENDENT_PIECES * float(np.log(model.error_deg)) + PARAMETER_CHARGE * len(
-        model.parameters
-    )
-
-
-def _better(first: Forecast, second: Forecast) -> Forecast:
-    """Forecast with the smaller error; the first where they are equal.
-
-    Parameters
-    ----------
-    first : Forecast
-    second : Forecast
-
-    Returns
-    -------
-    Forecast
-    """
-    return second if second.error_deg < first.error_deg else first
-
-
-def _predicts_better(model: Forecast, base: Forecast) -> bool:
-    """Whether a model predicts stretches that were left out much better than the baseline.
-
-    Parameters
-    ----------
-    model : Forecast
-    base : Forecast
-        That of the published model alone.
-
-    Returns
-    -------
-    bool
-    """
-    return left_out_error(model) < (1.0 - LEAST_GAIN) * left_out_error(base)
-
-
-def left_out_error(model: Forecast) -> float:
-    """Root mean square on stretches that were left out in turn [deg]."""
-    problem = model.problem
-    total, count = 0.0, 0
-    for _, rows in whole_stretches(problem):
-        part = refit(model, rows=problem.whole_fitted & ~rows, most=3)
-        left = problem.whole_fitted & rows
-        total += problem.rms_error(part.angle_deg, left) ** 2 * np.count_nonzero(left)
-        count += int(np.count_nonzero(left))
-    return float(np.sqrt(total / max(count, 1)))
+    charge = PARAMETER_CHARGE * len(model.parameters) + EFFECT_CHARGE * len(model.terms)
+    return 2.0 * INDEPENDENT_PIECES * float(np.log(model.error_deg)) + charge
 
 
 def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:

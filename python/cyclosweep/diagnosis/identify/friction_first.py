@@ -1,0 +1,139 @@
+"""Friction, and what else loops usually show, fitted jointly from several starts.
+
+A large friction is taken out as physics first: one effect at a time, it takes the place of creep
+and stiffening or leaves them its own, and what it leaves of a wrong start hides all the rest.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.signs import with_right_signs
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+
+STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
+"""Friction limits and presliding distances to start from, as shares of torque and twist."""
+PARAMETER_CHARGE = 2.0
+"""What a parameter must gain: twice the log likelihood of independent pieces."""
+EFFECT_CHARGE = 8.0
+"""What an effect must gain beside its parameters, in the same unit: the odds against one more."""
+LEAST_REMOVED = 0.5
+"""Share of the mean square mismatch that these effects must take away together."""
+CONVERGED = 20
+"""Most iterations of a fit."""
+
+
+def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
+    """Find friction, and what else loops usually show, where it explains most of a loop.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    noise : Noise
+        Noise and model error together.
+
+    Returns
+    -------
+    tuple of Term
+        None of them where they take away too little, or where none of them slips.
+    """
+    baseline = search.baseline.fit
+    best: FittedStructure | None = None
+    for limit, slip in STARTS:
+        joint = _fitted(search, noise, _usual(search, limit, slip))
+        if joint is not None and (best is None or joint.rmse_deg < best.rmse_deg):
+            best = joint
+    if best is None:
+        return ()
+    best = _prune(search, noise, best)
+    if not any(term.slips for term in best.terms):
+        return ()
+    removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
+    return best.terms if removed > LEAST_REMOVED else ()
+
+
+def _usual(search: Search, limit_share: float, slip_share: float) -> list[Term]:
+    """Terms of the effects that loops usually show.
+
+    Parameters
+    ----------
+    search : Search
+    limit_share, slip_share : float
+        Friction limit and presliding distance, as shares of torque and twist.
+
+    Returns
+    -------
+    list of Term
+    """
+    history = search.problem.history
+    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
+    terms = []
+    for effect in known.values():
+        begun = effect.usual_start(history, limit_share, slip_share)
+        if begun is not None:
+            shape, amplitude = begun
+            terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
+    return terms
+
+
+def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStructure | None:
+    """Fit terms jointly; None where there are none, or an amplitude has the wrong sign.
+
+    Parameters
+    ----------
+    search : Search
+    noise : Noise
+        Noise and model error together.
+    terms : sequence of Term
+
+    Returns
+    -------
+    FittedStructure or None
+    """
+    if not terms:
+        return None
+    found = fit(search.problem, noise, tuple(terms), search.baseline.fit, rounds=CONVERGED)
+    return with_right_signs(found)
+
+
+def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:
+    """Leave out what gains less than its parameters are charged, the least first.
+
+    Parameters
+    ----------
+    search : Search
+    noise : Noise
+        Noise and model error together.
+    best : FittedStructure
+        The best fit so far.
+
+    Returns
+    -------
+    FittedStructure
+    """
+    while len(best.terms) > 1:
+        fits = [
+            _fitted(search, noise, [term for term in best.terms if term is not left_out])
+            for left_out in best.terms
+        ]
+        least = min((each for each in fits if each is not None), key=_cost, default=None)
+        if least is None or _cost(least) >= _cost(best):
+            break
+        best = least
+    return best
+
+
+def _cost(fitted: FittedStructure) -> float:
+    """Minus twice the log likelihood of a residual's pieces, and the charges."""
+    parameters = len(fitted.beta) + len(fitted.fit_parameters)
+    beyond = max(fitted.rmse_deg**2 - fitted.noise.spread_deg**2, 1e-3 * fitted.noise.spread_deg**2)
+    return (
+        INDEPENDENT_PIECES * float(np.log(beyond))
+        + PARAMETER_CHARGE * parameters
+        + EFFECT_CHARGE * len(fitted.terms)
+    )
