@@ -13,9 +13,9 @@ from cyclosweep.diagnosis.identify.fit import ContactFit, fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit
-from cyclosweep.diagnosis.whole_loop.stepwise import choose_effects
 from cyclosweep.simulation import effects
 from tests.support.bench_rig import record
 from tests.unit.test_forecast import drive as loop_drive
@@ -45,7 +45,9 @@ def contact() -> FittedStructure:
 def whole_loop() -> FittedStructure:
     """Friction and soft contacts, fitted to whole loops."""
     search = searched(measured(truth()), loop_drive())
-    return choose_effects(search).fit
+    chosen = identify(search, lambda text: None).chosen
+    assert chosen is not None
+    return chosen.fit
 
 
 @pytest.fixture

@@ -25,8 +25,8 @@ def diagnosed(folder: Path, seed: int, effects: tuple[str, ...], d: tuple[float,
 
 @pytest.fixture(scope="module")
 def drag(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """A drag of d = 400; against the noise alone it was unknown, without a name or a repair."""
-    return diagnosed(tmp_path_factory.mktemp("drag"), 9021, ("viscous_drag",), (400.0,))
+    """A drag of d = 2000; against the noise alone it was unknown, without a name or a repair."""
+    return diagnosed(tmp_path_factory.mktemp("drag"), 9021, ("viscous_drag",), (2000.0,))
 
 
 def test_model_error_vanishes_where_the_mismatch_is_faint() -> None:

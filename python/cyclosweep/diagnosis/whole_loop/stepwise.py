@@ -28,7 +28,7 @@ from cyclosweep.simulation.model import EffectValue
 
 LEAST_GAIN = 0.15
 """Share of the error on left-out stretches that a structure must take away."""
-FEW_RUNS = 2
+FEW_RUNS = 4
 """Fitted runs up to which the flanks alone may not tell effects apart."""
 MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
