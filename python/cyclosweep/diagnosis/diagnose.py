@@ -99,7 +99,9 @@ def _run_stages(
     sliding = find_sliding(recording)
     if sliding is not None:
         return sliding_diagnosis(recording, drive, sliding, effects, seed)
-    problem = prepare(recording, drive.nominal_line(recording.side), int(drive.output_pin_count))
+    line, pins = drive.nominal_line(recording.side), int(drive.output_pin_count)
+    mesh_ratio = float(drive.ratio) if recording.side == "output" else 1.0
+    problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio)
     check_prepared(problem, drive)
     library = build_library(problem.history, problem.fitted, effects)
     calibrated = calibrate(problem, library, seed)

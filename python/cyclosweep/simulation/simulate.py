@@ -10,8 +10,10 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
 from cyclosweep.simulation.elastic_law import ElasticLaw, elastic_law
+from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist
 
 __all__ = [
@@ -162,7 +164,7 @@ def _check(model: Model, programme: Recording) -> None:
             "as in the model"
         )
     for value in model.effects:
-        for column in value.effect.needs:
+        for column in needed_columns(value.effect, value.shape):
             if getattr(programme, column) is None:
                 raise InputError(
                     f"{programme.name}: column {column}: missing, "
@@ -213,6 +215,11 @@ def settle(
     sliding = [value for value in model.effects if value.effect.slips]
     law = elastic_law(model, history.largest_torque_nm) if sliding else None
     others = [v for v in model.effects if not sliding or not v.effect.elastic]
+    moving = travelling(others)
+    history = history.with_state(measured_deg=None)
+    if moving:
+        rounds += MESH_ROUNDS
+        history = on_the_mesh(moving, history, history.angle_deg)
     for _ in range(rounds):
         added = linear_twist(others, history)
         before = history.angle_deg
@@ -221,7 +228,10 @@ def settle(
         else:
             base = model.datum_deg + history.side * model.free_play_deg
             angle = base + model.compliance_deg_per_nm * history.applied_nm + added
-            history = history.with_state(angle_deg=angle)
+            if moving:
+                history = on_the_mesh(moving, history, angle - linear_twist(moving, history))
+            else:
+                history = history.with_state(angle_deg=angle)
         if not any(not v.effect.slips for v in others):
             break
         if float(np.max(np.abs(history.angle_deg - before))) < 1e-6:

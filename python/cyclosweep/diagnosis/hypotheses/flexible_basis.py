@@ -6,6 +6,7 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.effects.orders import travels
 
 SMOOTH = (
     "torque and direction",
@@ -17,6 +18,11 @@ SMOOTH = (
     "position offsets",
 )
 """Families of unnamed shapes that join the named effects in the basis."""
+CLEAR_WAVE = 0.2
+"""Share of what the basis leaves from which a wave along the travel of the mesh joins it. All of
+them together would take the noise itself away, over a whole band of frequencies."""
+MOST_WAVES = 3
+"""Most waves that join the basis."""
 
 
 def flexible_basis(problem: Problem, library: Library, extra: Floats | None = None) -> Floats:
@@ -40,7 +46,11 @@ def flexible_basis(problem: Problem, library: Library, extra: Floats | None = No
     line = line_design(history, history.applied_nm, one_sided=problem.one_sided)[use]
     certain = line if extra is None else np.column_stack([line, extra])
     inner = orthonormal(certain, 1e-10)
-    wanted = [s for s in library.signatures if s.named or s.hypothesis in SMOOTH]
+    wanted = [
+        s
+        for s in library.signatures
+        if (s.named and not travels(s.shape)) or s.hypothesis in SMOOTH
+    ]
     if not wanted:
         return inner
     index = np.concatenate([np.arange(s.first, s.stop) for s in wanted])
@@ -53,4 +63,57 @@ def flexible_basis(problem: Problem, library: Library, extra: Floats | None = No
     most = max(len(inner) // 4 - inner.shape[1], 0)
     strongest = strongest[:most]
     kept = rest @ (mix[:, strongest] / np.sqrt(size[strongest]))
-    return np.column_stack([inner, kept])
+    return _with_clear_waves(problem, library, np.column_stack([inner, kept]))
+
+
+def _with_clear_waves(problem: Problem, library: Library, basis: Floats) -> Floats:
+    """Basis with the waves along the travel of the mesh that explain much of what it leaves.
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording, n rows of which are fitted.
+    library : Library
+        Signatures of all hypotheses on those rows.
+    basis : ndarray, shape (n, k)
+        Orthonormal columns.
+
+    Returns
+    -------
+    ndarray, shape (n, k + q)
+    """
+    waves = [s for s in library.signatures if s.named and travels(s.shape)]
+    left = problem.angle_deg[problem.fitted]
+    left = left - basis @ (basis.T @ left)
+    for _ in range(MOST_WAVES if waves else 0):
+        total = float(left @ left)
+        found = [library.columns[:, s.first : s.stop] for s in waves]
+        share = [_taken(wave, basis, left) / max(total, 1e-300) for wave in found]
+        if max(share) < CLEAR_WAVE:
+            break
+        place = int(np.argmax(share))
+        # With its neighbours, as its order may lie between those that are looked for.
+        wave = np.column_stack(found[max(place - 1, 0) : place + 2])
+        new = orthonormal(wave - basis @ (basis.T @ wave), 1e-3)
+        basis = np.column_stack([basis, new])
+        left = left - new @ (new.T @ left)
+    return basis
+
+
+def _taken(wave: Floats, basis: Floats, left: Floats) -> float:
+    """Sum of squares that a wave takes off what a basis leaves.
+
+    Parameters
+    ----------
+    wave : ndarray, shape (n, 2)
+    basis : ndarray, shape (n, k)
+        Orthonormal columns.
+    left : ndarray, shape (n,)
+        Orthogonal to the basis.
+
+    Returns
+    -------
+    float
+    """
+    beyond = orthonormal(wave - basis @ (basis.T @ wave), 1e-3)
+    return float(np.sum((beyond.T @ left) ** 2))

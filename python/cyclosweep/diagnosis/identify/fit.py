@@ -183,6 +183,8 @@ def fit(
     parameters = fit_parameters_of(terms, problem)
     history = problem.history if start is None else start.history
     mean = history.angle_deg if start is None else start.mean_deg
+    # A model that is told the measured angle explains it by itself: it has to find the position.
+    history = history.with_state(measured_deg=None)
     if start is not None and not any(term.slips for term in terms):
         history = history.with_state(elastic_nm=history.applied_nm, angle_deg=mean)
     work = JointFit(problem, noise, terms, parameters, history, mean)

@@ -108,7 +108,11 @@ def line_design(history: History, torque_nm: Floats, *, one_sided: bool) -> Floa
 
 
 def prepare(
-    recording: Recording, line: NominalLine, output_pin_count: int, most_rows: int = MOST_ROWS
+    recording: Recording,
+    line: NominalLine,
+    output_pin_count: int,
+    most_rows: int = MOST_ROWS,
+    mesh_ratio: float = 1.0,
 ) -> Problem:
     """Thin a long recording, find the flank in contact of every row, and what to fit.
 
@@ -122,6 +126,8 @@ def prepare(
         Number of output pins of the drive.
     most_rows : int
         About the largest number of rows.
+    mesh_ratio : float
+        Turns of the mesh zone a turn of the measured shaft.
 
     Returns
     -------
@@ -163,6 +169,8 @@ def prepare(
         crank_deg=None if recording.crank_deg is None else rows.mean_angle(recording.crank_deg),
         temperature_c=warm,
         output_pin_count=output_pin_count,
+        mesh_ratio=mesh_ratio,
+        measured_deg=angle,
         resets_datum=recording.reset_between_runs,
     )
     one_sided = bool(np.all(side[fitted] > 0) or np.all(side[fitted] < 0))

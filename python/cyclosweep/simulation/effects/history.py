@@ -47,6 +47,12 @@ class History:
         Clock [s], position of the mesh zone [deg], temperature [degC], where recorded.
     output_pin_count : int
         Number of output pins of the drive.
+    mesh_ratio : float
+        Turns of the mesh zone a turn of the measured shaft: one at the input, the ratio of the
+        drive at the output.
+    measured_deg : ndarray, shape (n,), or None
+        Angle of the shaft as it was measured [deg], by which the position of the mesh is known
+        while hypotheses are looked for; None in a fit or a simulation, which has to find it.
     resets_datum : bool
         The rig was reset between runs, so that the datum cannot remember.
     """
@@ -64,6 +70,8 @@ class History:
     crank_deg: Floats | None = None
     temperature_c: Floats | None = None
     output_pin_count: int = 8
+    mesh_ratio: float = 1.0
+    measured_deg: Floats | None = None
     resets_datum: bool = False
 
     def __len__(self) -> int:
@@ -91,6 +99,20 @@ class History:
     def load_nm(self) -> Floats:
         """Magnitude of the elastic torque on the flank in contact, never negative [N m]."""
         return np.maximum(self.elastic_nm * self.side, 0.0)
+
+    @property
+    def travelled_deg(self) -> Floats:
+        """Angle by which the mesh travels: as measured where that is known, else as modelled."""
+        return self.angle_deg if self.measured_deg is None else self.measured_deg
+
+    def mesh_deg(self, ratio: float) -> Floats:
+        """Position of the mesh zone: where it was locked, and what the shaft travelled since [deg].
+
+        ``ratio`` is the number of turns of the mesh zone a turn of the measured shaft. A locking
+        position that was not recorded counts as zero.
+        """
+        travel = ratio * self.travelled_deg
+        return travel if self.crank_deg is None else self.crank_deg + travel
 
     @cached_property
     def run_starts(self) -> Ints:

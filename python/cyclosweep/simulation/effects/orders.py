@@ -1,9 +1,37 @@
-"""Harmonics of the mesh position, shared by the effects that are periodic in it."""
+"""Harmonics of the mesh position, shared by the effects that are periodic in it.
+
+The position is known in one of two ways. Where the output was locked at several recorded positions,
+a shape states integer orders of the locking position. Where it was not, the mesh still travels
+while the shaft twists: a shape then states the ratio by which it travels and orders of position,
+of any value, because a part of a turn does not tell neighbouring integers apart.
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed, spread
 from cyclosweep.simulation.effects.history import Floats, History
+
+RATIO = "travel_ratio"
+"""Shape parameter: turns of the mesh zone a turn of the measured shaft. A shape without it depends
+on the locking position alone."""
+ORDER = "travel_order_{}"
+"""Name of each order of the position of a travelling mesh."""
+MOST_ORDERS = 4
+"""Most orders of one effect."""
+LEAST_TRAVEL_DEG = 60.0
+"""Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
+cycles within the travel are of order 18 and more, beyond most pins of a drive."""
+FEWEST_CYCLES = 3.0
+"""Cycles within the travel from which a wave is looked for. Slower ones look like a curve."""
+MOST_CYCLES = 20.0
+"""Cycles within the travel up to which a wave is looked for."""
+CYCLE_STEP = 0.5
+"""Distance of neighbouring orders that are looked for, in cycles within the travel: half of what
+the travel tells apart."""
+SAME_ORDER = 0.1
+"""Share of an order within which another one is the same."""
 
 
 def distinct_positions(history: History) -> int:
@@ -11,6 +39,51 @@ def distinct_positions(history: History) -> int:
     if history.crank_deg is None:
         return 0
     return len(np.unique(np.round(history.crank_deg % 360.0, 1)))
+
+
+def travels(shape: Shape) -> bool:
+    """Whether a shape goes with the travel of the mesh, so that twist and position interact."""
+    return RATIO in shape
+
+
+def orders_of(shape: Shape) -> tuple[float, ...]:
+    """Orders of a shape, of either kind."""
+    return tuple(value for name, value in shape.items() if name != RATIO)
+
+
+def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
+    """Columns that a programme has to have for an effect of this shape.
+
+    Parameters
+    ----------
+    effect : Effect
+    shape : mapping of str to float
+
+    Returns
+    -------
+    tuple of str
+    """
+    return () if isinstance(effect, MeshPeriodic) and travels(shape) else effect.needs
+
+
+def travel_deg(history: History) -> float:
+    """Range over which the mesh travelled in a recording [deg]."""
+    return history.mesh_ratio * spread(history.travelled_deg)
+
+
+def travel_shapes(history: History) -> list[Shape]:
+    """Single orders of the position of a travelling mesh, from a few cycles within the travel on.
+
+    One cycle a turn of the measured shaft itself is left to an eccentric dial, which is the same.
+    """
+    turns = travel_deg(history) / 360.0
+    cycles = np.arange(FEWEST_CYCLES, MOST_CYCLES + 0.5 * CYCLE_STEP, CYCLE_STEP)
+    dial = turns / history.mesh_ratio
+    return [
+        {RATIO: history.mesh_ratio, ORDER.format(1): float(each / turns)}
+        for each in cycles
+        if abs(each - dial) > CYCLE_STEP
+    ]
 
 
 def harmonics(history: History, shape: Shape) -> Floats:
@@ -21,16 +94,19 @@ def harmonics(history: History, shape: Shape) -> Floats:
     history : History
         Load history with the position of the mesh zone at each sample.
     shape : mapping of str to float
-        The orders [1], by name.
+        The orders [1], by name, and the ratio where the mesh travels.
 
     Returns
     -------
     ndarray, shape (n, 2 orders)
     """
-    assert history.crank_deg is not None
-    angle = np.radians(history.crank_deg)
+    if travels(shape):
+        angle = np.radians(history.mesh_deg(shape[RATIO]))
+    else:
+        assert history.crank_deg is not None
+        angle = np.radians(history.crank_deg)
     return np.column_stack(
-        [wave(order * angle) for order in shape.values() for wave in (np.cos, np.sin)]
+        [wave(order * angle) for order in orders_of(shape) for wave in (np.cos, np.sin)]
     )
 
 
@@ -55,6 +131,12 @@ def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...
     -------
     tuple of Parameter
     """
+    if travels(shape):
+        return tuple(
+            Parameter(f"{wave}_{place}", unit, f"{what}, {wave} of travel order {place}")
+            for place in range(1, len(shape))
+            for wave in ("cos", "sin")
+        )
     return tuple(
         Parameter(f"{wave}_{int(order)}", unit, f"{what}, {wave} of order {int(order)}")
         for order in shape.values()
@@ -66,18 +148,66 @@ class MeshPeriodic(Effect):
     """An effect that is periodic in the position of the mesh zone."""
 
     needs = ("crank_deg",)
-    shown_by = "runs at three or more recorded mesh positions"
-    forms = (ShapeForm(numbered="order_{}"),)
+    shown_by = "runs at three or more recorded mesh positions, or a travel of a sixth of a turn"
+    forms = (ShapeForm(numbered="order_{}"), ShapeForm((RATIO,), numbered=ORDER))
+    shape_parameters = tuple(
+        Parameter(ORDER.format(k), "", "cycles a turn of the mesh zone", 1e-3, 1e4)
+        for k in range(1, MOST_ORDERS + 1)
+    )
 
     def largest(self, history: History) -> float:
         """Size that the first order may well have, in the unit of the amplitudes."""
         raise NotImplementedError
 
-    def expected(self, history: History, shape: Shape) -> Floats:
+    def locked_shapes(self, history: History) -> Sequence[Shape]:
+        """Shapes over which the effect is looked for where the mesh was locked at positions."""
+        raise NotImplementedError
+
+    def shapes(self, history: History) -> Sequence[Shape]:
+        """Orders of the locking position, or of the travel where that hardly varied."""
+        if distinct_positions(history) >= 3:
+            return self.locked_shapes(history)
+        return travel_shapes(history)
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Orders that are looked for, and a little beyond.
+
+        Parameters
+        ----------
+        parameter : Parameter
+            One of ``shape_parameters``.
+        history : History
+            Load history of the recording.
+
+        Returns
+        -------
+        Parameter
+            The same with other bounds.
+        """
+        turns = max(travel_deg(history), 1e-9) / 360.0
+        lower, upper = 0.5 * FEWEST_CYCLES / turns, 1.2 * MOST_CYCLES / turns
+        return Parameter(parameter.name, parameter.unit, parameter.meaning, lower, upper)
+
+    def expected(self, history: History, shape: Shape) -> Floats | None:
         """Amplitudes that fall with the square of the order, as those of smooth shapes do.
 
-        A few positions leave combinations of orders open, which would swing between them.
+        A few positions leave combinations of orders open, which would swing between them. A travel
+        leaves nothing open.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+
+        Returns
+        -------
+        ndarray, shape (k,), or None
+            None for a travelling mesh.
         """
+        if travels(shape):
+            return None
         orders = np.array([order for order in shape.values() for _ in range(2)])
         # The orders of the pins are no harmonics of a turn but first orders of their own.
         pins = history.output_pin_count
@@ -85,12 +215,75 @@ class MeshPeriodic(Effect):
         return np.asarray(self.largest(history) / own**2)
 
     def untestable(self, history: History) -> str | None:
-        """Need at least three positions."""
-        reason = super().untestable(history)
-        if reason is None and distinct_positions(history) < 3:
-            reason = "the mesh zone stood at fewer than three positions"
-        return reason
+        """Need at least three positions, or a travel over a good part of a turn."""
+        if distinct_positions(history) >= 3 or travel_deg(history) >= LEAST_TRAVEL_DEG:
+            return None
+        reason = super().untestable(history) or "the mesh zone stood at fewer than three positions"
+        return f"{reason}, and it travelled by {travel_deg(history):.3g} deg only"
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Orders of both."""
-        return listed("order_{}", [*shape.values(), *found.values()])
+        both = [*orders_of(shape), *orders_of(found)]
+        if not travels(shape):
+            return listed("order_{}", both)
+        if any(abs(new - old) < SAME_ORDER * old for new in orders_of(found) for old in both[:-1]):
+            return None
+        orders = listed(ORDER, both, MOST_ORDERS)
+        return None if orders is None else {RATIO: shape[RATIO], **orders}
+
+    def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
+        """Orders that were found, with the phase of each.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Fitted shape.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes.
+
+        Returns
+        -------
+        str
+            Empty where the mesh was locked at positions.
+        """
+        if not travels(shape):
+            return ""
+        apart = 360.0 / travel_deg(history)
+        pairs = np.reshape(amplitudes, (-1, 2))
+        parts = []
+        for order, (cosine, sine) in zip(orders_of(shape), pairs, strict=True):
+            phase = float(np.degrees(np.arctan2(sine, cosine)))
+            parts.append(f"order {order:.3g} (crest at {phase / order:.3g} deg)")
+        unit = "itself" if shape[RATIO] == 1 else f"of which one output turn has {shape[RATIO]:g}"
+        return (
+            f"Here it goes with the travel of the mesh, in cycles a turn of the input {unit}: "
+            f"{', '.join(parts)}; the travel tells orders apart that differ by {apart:.2g}. "
+            "It is tied to the position of mesh and motor."
+        )
+
+    def notes(self, history: History, shape: Shape, amplitudes: Floats) -> tuple[str, ...]:
+        """Where the staircase is so steep that the shaft jumps.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Fitted shape.
+        amplitudes : ndarray, shape (k,)
+            Fitted amplitudes.
+        """
+        if not travels(shape):
+            return ()
+        step = 1e-3
+        here = self.columns(history, shape)
+        ahead = history.with_state(angle_deg=history.travelled_deg + step, measured_deg=None)
+        slope = (self.columns(ahead, shape) - here) @ np.asarray(amplitudes) / step
+        if float(np.max(slope, initial=0.0)) < 1.0:
+            return ()
+        return (
+            f"{self.name} is steeper than the travel itself: the shaft jumps there, and a "
+            "simulation takes one of several positions at which it can stand.",
+        )

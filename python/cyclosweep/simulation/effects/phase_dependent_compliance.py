@@ -13,7 +13,10 @@ from cyclosweep.simulation.effects.orders import (
 
 
 class PhaseDependentCompliance(MeshPeriodic):
-    """Compliance periodic in the mesh position: orders 1-4, and those of the output pins."""
+    """Compliance periodic in the mesh position: orders 1-4, and those of the output pins.
+
+    Where the mesh travels, any order.
+    """
 
     name = "phase_dependent_compliance"
     physics = (
@@ -24,7 +27,7 @@ class PhaseDependentCompliance(MeshPeriodic):
     tell_tale = "slope differs by crank position; orders 1-4, N_OP and 2 N_OP"
     family = "position"
 
-    def shapes(self, history: History) -> Sequence[Shape]:
+    def locked_shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, the low ones together, and the pin orders."""
         pins = history.output_pin_count
         sets = [(1,), (2,), (3,), (4,), (pins,), (2 * pins,), (1, 2), (2, 4), (1, 2, 3)]

@@ -13,7 +13,11 @@ from cyclosweep.simulation.effects.orders import (
 
 
 class TransmissionError(MeshPeriodic):
-    """Offset periodic in the position of the mesh zone, orders 1 to 3."""
+    """Offset periodic in the position of the mesh zone.
+
+    Orders 1 to 3 of the position at which it is locked, or any order of the position to which it
+    travels.
+    """
 
     name = "transmission_error"
     physics = (
@@ -21,10 +25,13 @@ class TransmissionError(MeshPeriodic):
         "where the mesh zone stands. It does not depend on the load."
     )
     source = "Blanche, Yang, Cycloid drives with machining tolerances, J. Mech. Des. 111(3), 1989"
-    tell_tale = "offset periodic in crank position, orders 1-3, whatever the load"
+    tell_tale = (
+        "offset periodic in crank position, orders 1-3, whatever the load; a staircase along the "
+        "travel"
+    )
     family = "run offsets"
 
-    def shapes(self, history: History) -> Sequence[Shape]:
+    def locked_shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, and the first few together."""
         return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3)])
 

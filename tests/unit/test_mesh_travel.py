@@ -1,0 +1,139 @@
+"""Position of the mesh while the shaft twists: what it is, and what stands on it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.effects.orders import (
+    CYCLE_STEP,
+    LEAST_TRAVEL_DEG,
+    travel_deg,
+    travel_shapes,
+)
+from cyclosweep.simulation.model import EffectValue, Model, linear_twist
+from cyclosweep.simulation.simulate import history_of
+from tests.support.travelling_mesh import COMPLIANCE, PLAY, ramp, recording, staircase, twist
+from tests.unit.test_effects import history
+
+WAVE = (7.0, 1.5, 20.0)
+"""Order, amplitude [deg] and crest [deg]."""
+
+
+def model(scale: float = 1.0, friction_nm: float = 0.0, size: float = WAVE[1]) -> Model:
+    """Model with the staircase, measured at the input or, with a scale, at the output."""
+    order, _, crest = WAVE
+    wave = (
+        scale
+        * size
+        * np.array([np.cos(np.radians(order * crest)), np.sin(np.radians(order * crest))])
+    )
+    effects = [
+        EffectValue(
+            "transmission_error",
+            {"travel_ratio": 1.0 / scale, "travel_order_1": order},
+            tuple(wave),
+        )
+    ]
+    if friction_nm:
+        shape = {"slip_deg": 1.7 * scale, "scatter": 0.8}
+        effects.insert(0, EffectValue("friction_hysteresis", shape, (friction_nm,)))
+    return Model(
+        compliance_deg_per_nm=COMPLIANCE * scale,
+        free_play_deg=PLAY * scale,
+        side="input" if scale == 1.0 else "output",
+        effects=tuple(effects),
+    )
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.0 / 13.0])
+def test_simulation_finds_the_position_that_bisection_finds(scale: float) -> None:
+    torque = ramp((0.5, 30.0, -30.0, 0.5), 0.25)
+    programme = cs.Recording.from_arrays(torque, side="input" if scale == 1.0 else "output")
+    found = cs.simulate(model(scale), programme).angle_deg
+    assert found is not None
+    # Without torque the shaft stands anywhere in its play.
+    loaded = np.abs(torque) > 1e-6
+    expected = twist(torque, [WAVE], scale=scale)
+    assert found[loaded] == pytest.approx(expected[loaded], abs=1e-6 * scale)
+
+
+def test_simulation_is_a_fixed_point_where_the_staircase_is_nearly_as_steep_as_the_travel() -> None:
+    steep = model(size=0.97 / np.radians(WAVE[0]))
+    programme = cs.Recording.from_arrays(ramp((0.5, 30.0, 0.5), 0.1))
+    angle = cs.simulate(steep, programme).angle_deg
+    assert angle is not None
+    at = history_of(programme, steep).with_state(angle_deg=angle)
+    straight = PLAY + COMPLIANCE * programme.torque_nm
+    assert angle == pytest.approx(straight + linear_twist(steep.effects, at), abs=1e-8)
+
+
+def test_friction_and_staircase_settle_on_each_other() -> None:
+    rough = model(friction_nm=1.0)
+    programme = cs.Recording.from_arrays(ramp((0.5, 30.0, -30.0, 0.5), 0.25))
+    angle = cs.simulate(rough, programme).angle_deg
+    assert angle is not None
+    # Less the staircase at its own angle, the path is that of friction alone, pushed by it.
+    plain = np.asarray(angle - staircase(angle, [WAVE]))
+    smooth = cs.simulate(
+        Model(**{**vars(rough), "effects": rough.effects[:1]}), programme
+    ).angle_deg
+    assert smooth is not None
+    loaded = np.abs(programme.torque_nm) > 2.0
+    assert np.max(np.abs((plain - smooth)[loaded])) < 0.35 * WAVE[1]
+    assert np.max(np.abs((angle - smooth)[loaded])) > 0.8 * WAVE[1]
+
+
+def test_position_is_where_it_was_locked_and_the_travel_since() -> None:
+    known = history(crank_deg=np.full(610, 30.0))
+    at_output = known.mesh_deg(13.0)
+    assert at_output == pytest.approx(30.0 + 13.0 * known.angle_deg)
+    assert history(crank_deg=None).mesh_deg(1.0) == pytest.approx(known.angle_deg)
+    measured = known.with_state(measured_deg=known.angle_deg + 1.0)
+    assert measured.mesh_deg(13.0) == pytest.approx(at_output + 13.0)
+
+
+def test_travel_is_looked_for_only_where_positions_do_not_tell() -> None:
+    effect = find("transmission_error")
+    assert all("travel_ratio" not in shape for shape in effect.shapes(history()))
+    fixed = history(crank_deg=None)
+    assert all("travel_ratio" in shape for shape in effect.shapes(fixed))
+    short = history(crank_deg=None, angle_deg=np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610))
+    assert "59 deg" in str(effect.untestable(short))
+    assert effect.untestable(short.with_state(mesh_ratio=13.0)) is None
+
+
+def test_one_cycle_a_turn_of_the_shaft_is_left_to_the_dial() -> None:
+    turning = history(crank_deg=None, angle_deg=np.linspace(0.0, 360.0 * 5.0, 610))
+    cycles = [s["travel_order_1"] * travel_deg(turning) / 360.0 for s in travel_shapes(turning)]
+    assert min(abs(each - 5.0) for each in cycles) > CYCLE_STEP
+    assert find("dial_eccentricity").untestable(turning) is None
+
+
+def test_a_staircase_goes_through_a_model_file(tmp_path: Path) -> None:
+    path = tmp_path / "model.json"
+    path.write_text(model(1.0 / 13.0).to_json())
+    assert Model.from_json(path) == model(1.0 / 13.0)
+
+
+def test_a_programme_for_a_travelling_mesh_needs_no_locking_position() -> None:
+    load = cs.Recording.from_arrays([1.0, 5.0])
+    assert len(cs.simulate(model(), load)) == 2
+    locked = Model(
+        1.0, 2.0, effects=(EffectValue("transmission_error", {"order_1": 1.0}, (0.1, 0.2)),)
+    )
+    with pytest.raises(cs.InputError, match="crank_deg"):
+        cs.simulate(locked, load)
+
+
+def test_a_staircase_steeper_than_the_travel_is_said() -> None:
+    effect, shape = find("transmission_error"), {"travel_ratio": 1.0, "travel_order_1": 7.0}
+    steep = 1.05 / np.radians(7.0)
+    assert "jumps" in effect.notes(history(), shape, np.array([0.0, steep]))[0]
+    assert effect.notes(history(), shape, np.array([0.0, 0.9 * steep])) == ()
+
+
+def test_made_recording_has_no_locking_position() -> None:
+    assert recording([(0.5, 5.0, 0.5)], [WAVE]).crank_deg is None
