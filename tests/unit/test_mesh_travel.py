@@ -135,5 +135,18 @@ def test_a_staircase_steeper_than_the_travel_is_said() -> None:
     assert effect.notes(history(), shape, np.array([0.0, 0.9 * steep])) == ()
 
 
+def test_a_second_order_is_a_harmonic_where_it_is_near_one_and_else_its_own() -> None:
+    effect = find("transmission_error")
+
+    def both(first: float, second: float) -> list[float] | None:
+        shapes = [{"travel_ratio": 1.0, "travel_order_1": each} for each in (first, second)]
+        found = effect.combined(*shapes)
+        return None if found is None else list(found.values())[1:]
+
+    assert both(7.0, 14.6) == [7.0, 14.0]
+    assert both(7.0, 11.0) == [7.0, 11.0]
+    assert both(7.0, 8.0) is None
+
+
 def test_made_recording_has_no_locking_position() -> None:
     assert recording([(0.5, 5.0, 0.5)], [WAVE]).crank_deg is None

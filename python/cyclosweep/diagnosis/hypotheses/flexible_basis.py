@@ -19,8 +19,12 @@ SMOOTH = (
 )
 """Families of unnamed shapes that join the named effects in the basis."""
 CLEAR_WAVE = 0.2
-"""Share of what the basis leaves from which a wave along the travel of the mesh joins it. All of
-them together would take the noise itself away, over a whole band of frequencies."""
+"""Share of what the basis leaves from which a wave along the travel of the mesh joins it, where its
+amplitudes are those of the other branches: correlated noise makes waves, but never the same twice.
+All waves together would take the noise itself away, over a whole band of frequencies."""
+OWN_PART = 0.3
+"""Root mean square of a wave that the basis has to leave. What is left of a wave that the basis
+nearly contains is the noise of the angle by which its position is known."""
 MOST_WAVES = 3
 """Most waves that join the basis."""
 
@@ -83,15 +87,16 @@ def _with_clear_waves(problem: Problem, library: Library, basis: Floats) -> Floa
     ndarray, shape (n, k + q)
     """
     waves = [s for s in library.signatures if s.named and travels(s.shape)]
-    left = problem.angle_deg[problem.fitted]
+    use = problem.fitted
+    branch = 2 * problem.history.run[use] + (problem.history.sense[use] > 0)
+    left = problem.angle_deg[use]
     left = left - basis @ (basis.T @ left)
     for _ in range(MOST_WAVES if waves else 0):
-        total = float(left @ left)
         found = [library.columns[:, s.first : s.stop] for s in waves]
-        share = [_taken(wave, basis, left) / max(total, 1e-300) for wave in found]
-        if max(share) < CLEAR_WAVE:
-            break
+        share = [_repeated_share(wave - basis @ (basis.T @ wave), left, branch) for wave in found]
         place = int(np.argmax(share))
+        if share[place] < CLEAR_WAVE:
+            break
         # With its neighbours, as its order may lie between those that are looked for.
         wave = np.column_stack(found[max(place - 1, 0) : place + 2])
         new = orthonormal(wave - basis @ (basis.T @ wave), 1e-3)
@@ -100,20 +105,30 @@ def _with_clear_waves(problem: Problem, library: Library, basis: Floats) -> Floa
     return basis
 
 
-def _taken(wave: Floats, basis: Floats, left: Floats) -> float:
-    """Sum of squares that a wave takes off what a basis leaves.
+def _repeated_share(wave: Floats, left: Floats, branch: np.ndarray) -> float:
+    """Share of a residual that a wave explains on each branch as it is fitted to the others.
 
     Parameters
     ----------
     wave : ndarray, shape (n, 2)
-    basis : ndarray, shape (n, k)
-        Orthonormal columns.
     left : ndarray, shape (n,)
-        Orthogonal to the basis.
+        The residual.
+    branch : ndarray of int, shape (n,)
+        Label of the branch of each row.
 
     Returns
     -------
     float
+        Negative where the branches contradict each other.
     """
-    beyond = orthonormal(wave - basis @ (basis.T @ wave), 1e-3)
-    return float(np.sum((beyond.T @ left) ** 2))
+    parts = [branch == label for label in np.unique(branch)]
+    inner = np.array([wave[part].T @ wave[part] for part in parts])
+    along = np.array([wave[part].T @ left[part] for part in parts])
+    others = inner.sum(axis=0) - inner
+    size = float(np.trace(inner.sum(axis=0)))
+    if size < OWN_PART**2 * wave.size or len(parts) < 2:
+        return 0.0
+    others = others + 1e-6 * size * np.eye(wave.shape[1])
+    fitted = np.linalg.solve(others, (along.sum(axis=0) - along)[:, :, None])[:, :, 0]
+    change = np.einsum("pi,pij,pj->", fitted, inner, fitted) - 2.0 * np.sum(fitted * along)
+    return float(-change / max(float(left @ left), 1e-300))

@@ -7,6 +7,7 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
+from cyclosweep.simulation.effects.orders import travels
 from cyclosweep.simulation.elastic_law import elastic_law
 
 LEAST_MOVEMENT = 0.6
@@ -55,7 +56,10 @@ def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> tu
         found.append(_stiffness(problem, unsteady=unsteady))
     else:
         found.append(_finding("stiffness", "Not reported, for the same reason as the play."))
-    if repeats is not None and repeats > LEAST_REPEAT and not unsteady:
+    named = _named_staircase(forecast)
+    if named is not None:
+        found.append(named)
+    elif repeats is not None and repeats > LEAST_REPEAT and not unsteady:
         found.append(_staircase(problem, forecast, repeats))
     return tuple(found)
 
@@ -307,6 +311,16 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
         f"{values.min():.2g} to {values.max():.2g}. It contains what friction that grows with load "
         "takes of the torque.",
     )
+
+
+def _named_staircase(forecast: Forecast) -> Finding | None:
+    """Orders of a staircase that is one of the effects; None where none is."""
+    for term, value in zip(forecast.terms, forecast.model.effects, strict=True):
+        if term.effect is not None and travels(term.shape):
+            amplitudes = np.array(value.amplitudes)
+            law = term.effect.found_law(forecast.history, term.shape, amplitudes)
+            return _finding("staircase", f"Named: {term.name.replace('_', ' ')}. {law}")
+    return None
 
 
 def _staircase(problem: Problem, forecast: Forecast, repeats: float) -> Finding:

@@ -18,8 +18,8 @@ RATIO = "travel_ratio"
 on the locking position alone."""
 ORDER = "travel_order_{}"
 """Name of each order of the position of a travelling mesh."""
-MOST_ORDERS = 4
-"""Most orders of one effect."""
+MOST_ORDERS = 2
+"""Most orders of one effect on a travelling mesh. More of them, free to move, make any curve."""
 LEAST_TRAVEL_DEG = 60.0
 """Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
 cycles within the travel are of order 18 and more, beyond most pins of a drive."""
@@ -30,8 +30,10 @@ MOST_CYCLES = 20.0
 CYCLE_STEP = 0.5
 """Distance of neighbouring orders that are looked for, in cycles within the travel: half of what
 the travel tells apart."""
-SAME_ORDER = 0.1
+SAME_ORDER = 0.25
 """Share of an order within which another one is the same."""
+HARMONIC = 0.08
+"""Share of an order within which a multiple of the first one is taken for its harmonic."""
 
 
 def distinct_positions(history: History) -> int:
@@ -150,9 +152,8 @@ class MeshPeriodic(Effect):
     needs = ("crank_deg",)
     shown_by = "runs at three or more recorded mesh positions, or a travel of a sixth of a turn"
     forms = (ShapeForm(numbered="order_{}"), ShapeForm((RATIO,), numbered=ORDER))
-    shape_parameters = tuple(
-        Parameter(ORDER.format(k), "", "cycles a turn of the mesh zone", 1e-3, 1e4)
-        for k in range(1, MOST_ORDERS + 1)
+    shape_parameters = (
+        Parameter(ORDER.format(1), "", "cycles a turn of the mesh zone", 1e-3, 1e4),
     )
 
     def largest(self, history: History) -> float:
@@ -170,7 +171,7 @@ class MeshPeriodic(Effect):
         return travel_shapes(history)
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Orders that are looked for, and a little beyond.
+        """Orders that are looked for.
 
         Parameters
         ----------
@@ -185,7 +186,7 @@ class MeshPeriodic(Effect):
             The same with other bounds.
         """
         turns = max(travel_deg(history), 1e-9) / 360.0
-        lower, upper = 0.5 * FEWEST_CYCLES / turns, 1.2 * MOST_CYCLES / turns
+        lower, upper = FEWEST_CYCLES / turns, MOST_CYCLES / turns
         return Parameter(parameter.name, parameter.unit, parameter.meaning, lower, upper)
 
     def expected(self, history: History, shape: Shape) -> Floats | None:
@@ -223,13 +224,18 @@ class MeshPeriodic(Effect):
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Orders of both."""
-        both = [*orders_of(shape), *orders_of(found)]
         if not travels(shape):
-            return listed("order_{}", both)
-        if any(abs(new - old) < SAME_ORDER * old for new in orders_of(found) for old in both[:-1]):
+            return listed("order_{}", [*orders_of(shape), *orders_of(found)])
+        known, new = orders_of(shape), orders_of(found)[0]
+        multiple = max(round(new / known[0]), 1) * known[0]
+        if abs(multiple - new) < HARMONIC * new:
+            new = multiple
+        if len(known) == MOST_ORDERS or any(abs(new - old) < SAME_ORDER * old for old in known):
             return None
-        orders = listed(ORDER, both, MOST_ORDERS)
-        return None if orders is None else {RATIO: shape[RATIO], **orders}
+        return {
+            RATIO: shape[RATIO],
+            **dict(zip(map(ORDER.format, (1, 2)), (*known, new), strict=True)),
+        }
 
     def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
         """Orders that were found, with the phase of each.
