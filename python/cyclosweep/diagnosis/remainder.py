@@ -88,7 +88,7 @@ def _unfitted(concluded: Conclusion, regions: Sequence[Region]) -> Remainder:
 
 
 def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
-    """Describe a residual that repeats from run to run, as steps tied to the mesh do.
+    """Describe error of the model: steps where it repeats from run to run, else no more than that.
 
     Parameters
     ----------
@@ -103,12 +103,15 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     """
     fitted = accepted.fit
     left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
-    place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
+    shape, place = "misfit of the model", "which does not repeat from run to run"
+    if repeats.is_physics:
+        shape = "staircase tied to the position of the mesh"
+        place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
     evidence, wave = accepted.sinusoid
     if wave is not None and evidence > STRONG_WAVE:
         place += f", strongest {wave.place}"
     return Remainder(
-        shape="staircase tied to the position of the mesh",
+        shape=shape,
         place=place,
         size_deg=float(np.quantile(np.abs(left), STEP_QUANTILE)),
     )
