@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cyclosweep_challenge.campaign.result import Result
-from cyclosweep_challenge.scoring.intervals import share_of
+from cyclosweep_challenge.scoring.intervals import NOTHING, share_of
 
 OURS = "the diagnosis"
 """Its row beside those of the opponents."""
@@ -66,8 +66,11 @@ def _row(
     loud: Sequence[tuple[Result, Mapping[str, Any]]],
 ) -> dict[str, Any]:
     """Shares of one detector at its defaults, and found at equal false alarms."""
-    scores = np.array([reply["score"] for reply in quiet] or [np.inf], dtype=float)
-    limit = float(np.quantile(scores, 1.0 - TUNED, method="higher"))
+    found_tuned = NOTHING
+    if len(quiet) * TUNED >= 1.0:
+        scores = np.array([reply["score"] for reply in quiet], dtype=float)
+        limit = float(np.quantile(scores, 1.0 - TUNED, method="higher"))
+        found_tuned = share_of([reply["score"] > limit for _, reply in loud])
     names_any = any(reply["named"] is not None for _, reply in loud)
     right = [
         bool(reply["flagged"])
@@ -79,6 +82,6 @@ def _row(
         "who": name,
         "alarms": vars(share_of([reply["flagged"] for reply in quiet])),
         "found": vars(share_of([reply["flagged"] for _, reply in loud])),
-        "found_tuned": vars(share_of([reply["score"] > limit for _, reply in loud])),
+        "found_tuned": vars(found_tuned),
         "named_right": vars(share_of(right)) if names_any else None,
     }

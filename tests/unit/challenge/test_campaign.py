@@ -305,6 +305,9 @@ def test_rivals_stand_beside_the_diagnosis_on_the_same_files() -> None:
     # One in twenty of the quiet ones lies above 38.
     assert theirs["found_tuned"]["value"] == 0.5
     assert theirs["named_right"]["value"] == 0.2
+    # Fewer than twenty recordings with nothing missing decide no threshold of one in twenty.
+    few, _ = rivals([*nulls[:19], *singles], replies)
+    assert few["found_tuned"]["count"] == 0
 
 
 def test_page_holds_every_figure_with_recordings_and_is_written_from_its_files(
