@@ -28,7 +28,8 @@ MADE = (
 MEASURED = (
     "conic_runin1",
     "conic_1pre5",
-    "conic_2pre1",
+    "damper-30lb-1in-0.5Hz",
+    "damper-36lb-1in-0.25Hz",
 )
 """Recordings of the shared folder."""
 
