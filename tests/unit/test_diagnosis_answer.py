@@ -15,7 +15,7 @@ from cyclosweep.result.statement import statement_of
 from tests.support.bench_rig import record
 from tests.support.published_schema import check_content
 
-ONLY_WHERE_THEY_APPLY = {"unknown", "drift", "thinning"}
+ONLY_WHERE_THEY_APPLY = {"unknown", "drift", "change", "thinning"}
 KEYS = {entry.name for entry in dataclasses.fields(Answer)} - ONLY_WHERE_THEY_APPLY
 
 

@@ -1,6 +1,9 @@
 """Composition: the answer of a diagnosis from what its stages have found."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+
+import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
@@ -19,6 +22,8 @@ from cyclosweep.recording import Recording
 from cyclosweep.result import (
     Answer,
     Bound,
+    CalibratedParameter,
+    DriveChange,
     Finding,
     Mismatch,
     NoiseEstimate,
@@ -32,6 +37,8 @@ from cyclosweep.result.part import finite
 from cyclosweep.result.statement import statement_of
 
 MODEL_FILE = "model.json"
+EVEN_SPREAD = float(np.sqrt(12.0))
+"""Range of an even spread over its standard deviation."""
 
 
 def compose(
@@ -125,11 +132,47 @@ def _answer(
             *(fault.reason for fault in recording.faults),
         ),
         unknown=remainder(concluded, verified, regions),
-        stationary=verified.drift is None,
+        stationary=verified.drift is None and verified.change is None,
         drift=verified.drift,
+        change=verified.change,
         findings=_findings(concluded, verified),
     )
+    if verified.change is not None:
+        answer = _with_range(answer, verified.change)
     return replace(answer, statement=statement_of(answer))
+
+
+def _with_range(answer: Answer, change: DriveChange) -> Answer:
+    """Widen the standard errors of the compliance by the range over which it moved.
+
+    Parameters
+    ----------
+    answer : Answer
+        With the calibrated parameters.
+    change : DriveChange
+        Compliance early and late.
+
+    Returns
+    -------
+    Answer
+    """
+    early, late = change.compliance_early_deg_per_nm, change.compliance_late_deg_per_nm
+    moved = 2.0 * abs(late - early) / (late + early) / EVEN_SPREAD
+
+    def widened(parameters: Mapping[str, CalibratedParameter]) -> Mapping[str, CalibratedParameter]:
+        found = dict(parameters)
+        for name in ("compliance_scale", "compliance_deg_per_nm"):
+            value = found[name]
+            error = float(np.hypot(value.std_error or 0.0, moved * value.estimate))
+            found[name] = replace(value, std_error=error)
+        return found
+
+    before, after = answer.baseline, answer.repaired
+    return replace(
+        answer,
+        baseline=replace(before, parameters=widened(before.parameters)),
+        repaired=replace(after, parameters=widened(after.parameters)),
+    )
 
 
 def _noise(search: Search) -> NoiseEstimate:

@@ -9,7 +9,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition
-from cyclosweep.result import Region, Remainder
+from cyclosweep.result import DriveChange, Region, Remainder
 
 STRONG_WAVE = 5.0
 """Log evidence from which a sinusoid in the residual is worth naming."""
@@ -35,6 +35,8 @@ def remainder(
     -------
     Remainder or None
     """
+    if verified.change is not None:
+        return _of_change(concluded, verified.change)
     if not verified.decision.unexplained or verified.decision.best is None:
         return None
     if verified.drift is not None:
@@ -42,6 +44,29 @@ def remainder(
     if concluded.repetition is not None:
         return _staircase(concluded.accepted, concluded.repetition)
     return _unnamed_term(concluded.best) or _unfitted(concluded, regions)
+
+
+def _of_change(concluded: Conclusion, change: DriveChange) -> Remainder:
+    """Describe a compliance that moved while the drive was tested.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+    change : DriveChange
+        Compliance early and late.
+
+    Returns
+    -------
+    Remainder
+    """
+    history = concluded.accepted.fit.history
+    moved = change.compliance_late_deg_per_nm - change.compliance_early_deg_per_nm
+    return Remainder(
+        shape="change of the drive while it was tested",
+        place="at equal torque, earlier against later",
+        size_deg=abs(moved) * history.largest_torque_nm,
+    )
 
 
 def _unnamed_term(best: Candidate) -> Remainder | None:

@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cyclosweep.diagnosis.change import find_change
 from cyclosweep.diagnosis.decide import Conclusion
-from cyclosweep.diagnosis.identify.verdict import Decision
+from cyclosweep.diagnosis.identify.verdict import MOSTLY, Decision
 from cyclosweep.diagnosis.verify.experiment import next_experiment
 from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
-from cyclosweep.result import NextExperiment, RunToRunDrift, SelfCheck
+from cyclosweep.result import DriveChange, NextExperiment, RunToRunDrift, SelfCheck, Verdict
 
 NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, 1.0, "")
 MOST_RIVALS = 2
@@ -32,6 +33,8 @@ class Verification:
         Errors on data that were not fitted.
     drift : RunToRunDrift or None
         How far a model of some runs fails on others, where the drive changed between them.
+    change : DriveChange or None
+        How far the compliance moved over the recording, where it did.
     self_check : SelfCheck or None
         Rates on synthetic twins; None where they were not asked for.
     next_experiment : NextExperiment or None
@@ -41,6 +44,7 @@ class Verification:
     decision: Decision
     held_out: HeldOutResult
     drift: RunToRunDrift | None
+    change: DriveChange | None
     self_check: SelfCheck | None
     next_experiment: NextExperiment | None
 
@@ -64,14 +68,26 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
     held = judge_left_out(concluded.accepted.fit) if full else NOTHING_HELD_OUT
     drift = _drift(concluded, held) if concluded.search.noise.structured else None
     decision = concluded.decision
+    change = find_change(concluded)
     if drift is not None:
         decision = replace(decision, verdict="UNKNOWN_PHYSICS", unexplained=True)
+    elif change is not None:
+        decision = _of_changed_drive(concluded)
     if not full:
-        return Verification(decision, held, drift, None, None)
+        return Verification(decision, held, drift, change, None, None)
     say("checking on synthetic twins")
     checked = _self_check(concluded)
     say("choosing the next experiment")
-    return Verification(decision, held, drift, checked, _next_experiment(concluded, decision))
+    following = _next_experiment(concluded, decision)
+    return Verification(decision, held, drift, change, checked, following)
+
+
+def _of_changed_drive(concluded: Conclusion) -> Decision:
+    """Verdict where the drive changed: named effects explain most of it at best."""
+    share = concluded.explained.share or 0.0
+    named = bool(concluded.accepted.fit.terms) and share >= MOSTLY
+    verdict: Verdict = "MOSTLY_EXPLAINED" if named else "UNKNOWN_PHYSICS"
+    return replace(concluded.decision, verdict=verdict, unexplained=True)
 
 
 def _drift(concluded: Conclusion, held: HeldOutResult) -> RunToRunDrift | None:

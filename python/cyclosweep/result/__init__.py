@@ -2,6 +2,7 @@
 
 from cyclosweep.result.answer import SCHEMA, Answer, Finding, RunToRunDrift
 from cyclosweep.result.calibration import Baseline, CalibratedParameter, NoiseEstimate, Thinning
+from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import (
     Bound,
     EffectParameter,
@@ -29,6 +30,7 @@ __all__ = [
     "Baseline",
     "Bound",
     "CalibratedParameter",
+    "DriveChange",
     "EffectParameter",
     "Explained",
     "Explanation",

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from cyclosweep.result.calibration import Baseline, NoiseEstimate, Thinning
+from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import Bound, Explanation, FoundEffect, Remainder, Untestable
 from cyclosweep.result.mismatch import Explained, Mismatch
 from cyclosweep.result.part import EMPTY, LEFT_OUT, Part
@@ -85,5 +86,7 @@ class Answer(Part):
     """Whether all runs are of one drive; null where there is no diagnosis."""
     drift: RunToRunDrift | None = field(default=None, metadata=LEFT_OUT)
     """How far they are not."""
+    change: DriveChange | None = field(default=None, metadata=LEFT_OUT)
+    """How far the compliance moved while the drive was tested."""
     findings: tuple[Finding, ...] = ()
     """What the measured loops show, where whole loops were fitted."""

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from cyclosweep.result.answer import Answer
 from cyclosweep.result.calibration import CalibratedParameter, Thinning
+from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import Explanation
 from cyclosweep.result.mismatch import Region
 from cyclosweep.result.proof import HeldOutBlock
@@ -48,7 +49,7 @@ def _nothing_missing(answer: Answer) -> str:
         "Nothing is missing: simulation and recording agree within the noise of "
         f"{degrees(answer.noise.sigma_deg)}, and every effect this recording can show is below "
         f"{degrees(_largest_bound(answer))} (tolerance {degrees(answer.tolerance_deg)}). "
-        + calibration_words(answer.repaired.parameters)
+        + _calibration(answer)
     )
 
 
@@ -59,8 +60,7 @@ def _insufficient(answer: Answer) -> str:
     return (
         "No difference was found, but the recording is too poor to rule out what matters: "
         f"{names} could be as large as {degrees(_largest_bound(answer))}, above the "
-        f"tolerance of {degrees(answer.tolerance_deg)}. "
-        + calibration_words(answer.repaired.parameters)
+        f"tolerance of {degrees(answer.tolerance_deg)}. " + _calibration(answer)
     )
 
 
@@ -70,7 +70,7 @@ def _identified(answer: Answer) -> str:
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. Size after "
         f"re-calibration: {_sizes(answer)}. It shows most at {place_of(answer.mismatch.regions)}."
-        f"{_improvement(answer)} {calibration_words(answer.repaired.parameters)}"
+        f"{_improvement(answer)} {_calibration(answer)}"
     )
 
 
@@ -80,7 +80,7 @@ def _ambiguous(answer: Answer) -> str:
     return (
         f"Something is missing, and this recording cannot say which: {options}. It shows most "
         f"at {place_of(answer.mismatch.regions)}.{_improvement(answer)} "
-        f"{calibration_words(answer.repaired.parameters)}"
+        f"{_calibration(answer)}"
     )
 
 
@@ -101,7 +101,7 @@ def _mostly_explained(answer: Answer) -> str:
         f"mismatch; what is left is above the noise and has no name of its own: {remains}. Size "
         f"after re-calibration: {_sizes(answer)}. It shows most at "
         f"{place_of(answer.mismatch.regions)}.{_improvement(answer)} "
-        f"{calibration_words(answer.repaired.parameters)}"
+        f"{_calibration(answer)}"
     )
 
 
@@ -115,8 +115,8 @@ def _unknown(answer: Answer) -> str:
     if answer.unknown is not None:
         size = f"{answer.unknown.size_deg:.2g} deg"
         remains = f": a {answer.unknown.shape} of {size}, {answer.unknown.place}"
-    calibration = calibration_words(answer.repaired.parameters)
-    if answer.drift is not None:
+    calibration = _calibration(answer)
+    if answer.drift is not None and answer.change is None:
         remains = ": a drift from run to run"
         calibration = (
             "The recording is not stationary: a model of some runs misses others by "
@@ -187,6 +187,42 @@ def _others(explanations: Sequence[Explanation]) -> str:
         f", with a probability of {100 * first.probability:.0f} %; not ruled out: "
         + " or ".join(_option(explanation) for explanation in rest)
     )
+
+
+def _calibration(answer: Answer) -> str:
+    """What the calibration found; the compliance as a range where the drive changed."""
+    if answer.change is None:
+        return calibration_words(answer.repaired.parameters)
+    return change_words(answer.change, answer.repaired.parameters)
+
+
+def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParameter]) -> str:
+    """Say that the drive changed, and between which ends its compliance lies.
+
+    Parameters
+    ----------
+    change : DriveChange
+        Compliance early and late.
+    parameters : mapping of str to CalibratedParameter
+        Calibrated parameters by name.
+
+    Returns
+    -------
+    str
+    """
+    early, late = change.compliance_early_deg_per_nm, change.compliance_late_deg_per_nm
+    low, high = (100 * bound for bound in sorted(map(abs, change.ci95)))
+    nominal = parameters["compliance_deg_per_nm"].nominal
+    went = "rose" if change.share > 0 else "fell"
+    words = (
+        f"The drive changed while it was tested: compliance {went}"
+        f" by {100 * abs(change.share):.2g} % (95 %: {low:.2g} to {high:.2g}) from {early:.2g} to "
+        f"{late:.2g} deg/(N m) at equal torque, earlier against later"
+    )
+    if nominal:
+        ends = sorted((early / nominal, late / nominal))
+        words += f", {ends[0]:.2g} to {ends[1]:.2g} times nominal"
+    return f"{words}. No stiffness of it holds to three digits."
 
 
 def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:

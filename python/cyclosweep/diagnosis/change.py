@@ -1,0 +1,364 @@
+"""Change of the drive while it was tested: the same part of the load history, earlier and later."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.growth import growth
+from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
+from cyclosweep.result import DriveChange
+from cyclosweep.simulation.effects.history import Floats, History
+
+SAME_ENDS = 0.04
+"""Share of the range of torque within which the ends of two equal sweeps agree."""
+SAME_RATE = 1.5
+"""Factor within which the rates of two equal sweeps agree, where there is a clock."""
+LEAST_LOAD = 0.3
+"""Share of the largest torque that a sweep has to reach on a side to show a slope there."""
+WINDOW = (0.25, 0.95)
+"""Part of the load of a sweep over which its slope is taken: away from the dead zone, and from the
+reversal itself."""
+FEWEST_ROWS = 3
+"""Rows of a sweep from which a slope is taken."""
+FEWEST_SWEEPS = 6
+"""Equal sweeps beyond one a group from which a trend is told from scatter."""
+DRAWS = 1999
+"""Orders of the sweeps that are tried at random."""
+LEVEL = 0.002
+"""Share of these orders that may show as large a trend: one false alarm in 500 steady drives."""
+CLEANED_LEVEL = 0.02
+"""Probability by chance that growth may have once the named effects are removed: the measured one
+has been tested already, this asks only whether an effect explains it."""
+LEAST_CHANGE = 0.03
+"""Change of the compliance that matters: below it a stiffness still holds to two digits."""
+LEAST_RATIO = 4.0
+"""Trend over its standard error from the scatter of equal sweeps, as a second guard: neighbouring
+sweeps share slow noise, which the random orders do not."""
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval in standard errors."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Rows between two reversals on one side of zero torque.
+
+    Attributes
+    ----------
+    rows : ndarray of int
+        Rows, in order.
+    state : tuple of int
+        Side, direction, whether it is the first of its run, and position of the mesh.
+    start_nm, end_nm : float
+        Torques of the reversals before and after [N m].
+    rate : float
+        Rate of the torque [N m/s]; zero without a clock.
+    limit_nm : float
+        Largest load on this side [N m].
+    """
+
+    rows: np.ndarray
+    state: tuple[float, ...]
+    start_nm: float
+    end_nm: float
+    rate: float
+    limit_nm: float
+
+    def equals(self, other: "Sweep", room_nm: float) -> bool:
+        """Whether another sweep passes the same states.
+
+        Parameters
+        ----------
+        other : Sweep
+            The other one.
+        room_nm : float
+            Torque within which the ends agree [N m].
+
+        Returns
+        -------
+        bool
+        """
+        if self.state != other.state:
+            return False
+        if abs(self.start_nm - other.start_nm) > room_nm:
+            return False
+        if abs(self.end_nm - other.end_nm) > room_nm:
+            return False
+        slow, fast = sorted((self.rate, other.rate))
+        return fast <= SAME_RATE * slow
+
+
+@dataclass(frozen=True)
+class Trend:
+    """Trend of the logarithm of the compliance over the recording.
+
+    Attributes
+    ----------
+    slope, std_error : float
+        Change from the first row to the last, and its standard error.
+    p_value : float
+        Share of random orders of equal sweeps with as large a trend.
+    middle : float
+        Weighted mean of the place of the sweeps, 0 at the first row and 1 at the last.
+    first, last : float
+        Places of the first and last sweep.
+    sweeps : int
+        Number of sweeps compared.
+    """
+
+    slope: float
+    std_error: float
+    p_value: float
+    middle: float
+    first: float
+    last: float
+    sweeps: int
+
+    @property
+    def is_change(self) -> bool:
+        """Whether the drive changed, beyond scatter and by as much as matters."""
+        change = abs(self.slope) * (self.last - self.first)
+        beyond = abs(self.slope) >= LEAST_RATIO * self.std_error
+        return self.p_value <= LEVEL and beyond and change >= LEAST_CHANGE
+
+
+def find_change(concluded: Conclusion) -> DriveChange | None:
+    """Compare equal parts of the load history, as measured and with the named effects removed.
+
+    Two comparisons: slopes of equal sweeps (same direction, reversals, mesh position and rate),
+    and growth of the loops at equal torque where the range grows. Neither a law that is not quite
+    right nor another load can differ between them. What the accepted effects explain, as creep
+    that settles, is no change; what they alone would bring in is none either.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+
+    Returns
+    -------
+    DriveChange or None
+        None where the compliance holds, or no state was passed often enough to see it.
+    """
+    problem, fit = concluded.search.problem, concluded.accepted.fit
+    compliance = fit.history.compliance_deg_per_nm
+    if compliance <= 0:
+        return None
+    line = fit.history.datum_deg + fit.history.side * fit.history.free_play_deg
+    effects = fit.mean_deg - line - compliance * problem.history.applied_nm
+    cleaned = problem.angle_deg - effects if fit.terms else problem.angle_deg
+    return _by_sweeps(concluded, cleaned) or _by_growth(concluded, cleaned)
+
+
+def _by_sweeps(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None:
+    """Change of the slope of equal sweeps.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+    cleaned_deg : ndarray, shape (n,)
+        Measured twist less the accepted effects [deg].
+
+    Returns
+    -------
+    DriveChange or None
+    """
+    problem = concluded.search.problem
+    groups = equal_sweeps(problem.history)
+    measured = trend(problem.history, problem.angle_deg, groups, concluded.search.seed)
+    if measured is None or not measured.is_change:
+        return None
+    left = trend(problem.history, cleaned_deg, groups, concluded.search.seed)
+    if left is None or not left.is_change or left.slope * measured.slope < 0:
+        return None
+    compliance = concluded.accepted.fit.history.compliance_deg_per_nm
+    span = left.last - left.first
+    half = NORMAL_95 * left.std_error
+    return DriveChange(
+        compliance_early_deg_per_nm=compliance
+        * float(np.exp(left.slope * (left.first - left.middle))),
+        compliance_late_deg_per_nm=compliance
+        * float(np.exp(left.slope * (left.last - left.middle))),
+        share=float(np.expm1(left.slope * span)),
+        ci95=(
+            float(np.expm1((left.slope - half) * span)),
+            float(np.expm1((left.slope + half) * span)),
+        ),
+        p_value=left.p_value,
+        sweeps=left.sweeps,
+    )
+
+
+def _by_growth(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None:
+    """Growth of the loops at equal torque, the calibrated compliance being the middle one.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+    cleaned_deg : ndarray, shape (n,)
+        Measured twist less the accepted effects [deg].
+
+    Returns
+    -------
+    DriveChange or None
+    """
+    problem = concluded.search.problem
+    measured = growth(problem.history, problem.angle_deg)
+    if measured is None or not measured.is_change:
+        return None
+    left = growth(problem.history, cleaned_deg)
+    if left is None or left.p_value > CLEANED_LEVEL or left.logarithm < LEAST_CHANGE:
+        return None
+    compliance = concluded.accepted.fit.history.compliance_deg_per_nm
+    half = NORMAL_95 * measured.std_error
+    return DriveChange(
+        compliance_early_deg_per_nm=compliance * float(np.exp(-measured.logarithm / 2.0)),
+        compliance_late_deg_per_nm=compliance * float(np.exp(measured.logarithm / 2.0)),
+        share=float(np.expm1(measured.logarithm)),
+        ci95=(
+            float(np.expm1(measured.logarithm - half)),
+            float(np.expm1(measured.logarithm + half)),
+        ),
+        p_value=max(measured.p_value, left.p_value),
+        sweeps=2 * (measured.cycles + 1),
+    )
+
+
+def equal_sweeps(history: History) -> list[list[Sweep]]:
+    """Group the sweeps of a load history by the states that they pass; single ones are left out.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the prepared rows.
+
+    Returns
+    -------
+    list of list of Sweep
+        Each in the order recorded.
+    """
+    room = SAME_ENDS * float(np.ptp(history.applied_nm))
+    groups: list[list[Sweep]] = []
+    for sweep in _sweeps(history):
+        for group in groups:
+            if group[0].equals(sweep, room):
+                group.append(sweep)
+                break
+        else:
+            groups.append([sweep])
+    return [group for group in groups if len(group) > 1]
+
+
+def _sweeps(history: History) -> list[Sweep]:
+    """Sweeps between reversals, each side of zero torque apart, in the order recorded."""
+    torque = history.applied_nm
+    threshold = REVERSAL_SHARE * float(np.ptp(torque))
+    found = []
+    for number in np.unique(history.run):
+        rows = np.flatnonzero(history.run == number)
+        ends = [0, *turning_points(torque[rows], threshold).tolist(), len(rows) - 1]
+        for first, last in itertools.pairwise(ends):
+            part = rows[first : last + 1]
+            if len(part) < FEWEST_ROWS:
+                continue
+            start, end = float(torque[part[0]]), float(torque[part[-1]])
+            direction = 1.0 if end > start else -1.0
+            rate = 0.0
+            if history.time_s is not None:
+                lapse = float(history.time_s[part[-1]] - history.time_s[part[0]])
+                rate = abs(end - start) / lapse if lapse > 0 else 0.0
+            crank = 0.0 if history.crank_deg is None else float(history.crank_deg[part[0]])
+            for side in (1.0, -1.0):
+                limit = max(side * start, side * end)
+                if limit >= LEAST_LOAD * history.largest_torque_nm:
+                    state = (side, direction, float(first == 0), crank)
+                    found.append(Sweep(part, state, start, end, rate, limit))
+    return found
+
+
+def trend(
+    history: History, angle_deg: Floats, groups: list[list[Sweep]], seed: int
+) -> Trend | None:
+    """Trend of the slope of equal sweeps; None where too few can be compared.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the prepared rows.
+    angle_deg : ndarray, shape (n,)
+        Twist of which the slope is taken [deg].
+    groups : list of list of Sweep
+        Equal sweeps.
+    seed : int
+        Seed of the random orders.
+
+    Returns
+    -------
+    Trend or None
+    """
+    parts = [_slopes(history, angle_deg, group) for group in groups]
+    parts = [part for part in parts if part.shape[1] > 1]
+    count = sum(part.shape[1] for part in parts)
+    if count - len(parts) < FEWEST_SWEEPS:
+        return None
+    centred = []
+    for place, slope, weight in parts:
+        place_left = place - np.average(place, weights=weight)
+        centred.append((place_left, slope - np.average(slope, weights=weight), weight))
+    lever = sum(float(weight @ place**2) for place, _, weight in centred)
+    if lever <= 0:
+        return None
+    found = sum(float((weight * place) @ slope) for place, slope, weight in centred) / lever
+    left = sum(float(weight @ (slope - found * place) ** 2) for place, slope, weight in centred)
+    freedom = count - len(parts) - 1
+    rng = np.random.default_rng(seed)
+    drawn = np.zeros(DRAWS)
+    for place, slope, weight in centred:
+        order = rng.permuted(np.tile(np.arange(len(slope)), (DRAWS, 1)), axis=1)
+        drawn += slope[order] @ (weight * place)
+    as_large = int(np.count_nonzero(np.abs(drawn) >= abs(found) * lever * (1.0 - 1e-9)))
+    place, weight = (np.concatenate([part[k] for part in parts]) for k in (0, 2))
+    return Trend(
+        slope=found,
+        std_error=float(np.sqrt(left / freedom / lever)),
+        p_value=(1 + as_large) / (1 + DRAWS),
+        middle=float(np.average(place, weights=weight)),
+        first=float(place.min()),
+        last=float(place.max()),
+        sweeps=count,
+    )
+
+
+def _slopes(history: History, angle_deg: Floats, group: list[Sweep]) -> Floats:
+    """Place, logarithm of the slope and its weight for the sweeps of a group that have one.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the prepared rows.
+    angle_deg : ndarray, shape (n,)
+        Twist of which the slope is taken [deg].
+    group : list of Sweep
+        Equal sweeps; the slope is taken over the range of torque that all of them pass.
+
+    Returns
+    -------
+    ndarray, shape (3, sweeps)
+    """
+    side = group[0].state[0]
+    load = side * history.applied_nm
+    lower, upper = (share * min(sweep.limit_nm for sweep in group) for share in WINDOW)
+    found = []
+    for sweep in group:
+        rows = sweep.rows[(load[sweep.rows] >= lower) & (load[sweep.rows] <= upper)]
+        if len(rows) < FEWEST_ROWS:
+            continue
+        torque = history.applied_nm[rows] - history.applied_nm[rows].mean()
+        lever = float(torque @ torque)
+        slope = float(torque @ angle_deg[rows]) / lever if lever > 0 else 0.0
+        if slope > 0:
+            found.append((float(rows.mean()) / len(history), np.log(slope), lever * slope**2))
+    return np.array(found).reshape(-1, 3).T
