@@ -216,3 +216,9 @@ def test_a_pattern_that_fits_no_line_is_one_line(capsys: pytest.CaptureFixture[s
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert "nonesuch" in said
+
+
+def test_the_page_in_docs_asks_what_the_lines_ask(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[3] / "docs" / "scoreboard.md").read_text("utf-8")
+    for line in all_lines(tmp_path):
+        assert f"| {line.name} | {line.asks} | {line.answer} | {line.source} |" in text
