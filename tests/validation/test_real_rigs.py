@@ -30,6 +30,8 @@ MEASURED = (
     "conic_1pre5",
     "damper-30lb-1in-0.5Hz",
     "damper-36lb-1in-0.25Hz",
+    "wall-no-clock",
+    "wall-row-clock",
 )
 """Recordings of the shared folder."""
 

@@ -66,7 +66,11 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
     Verification
     """
     held = judge_left_out(concluded.accepted.fit) if full else NOTHING_HELD_OUT
-    drift = _drift(concluded, held) if concluded.search.noise.structured else None
+    drift = None
+    if concluded.search.noise.structured:
+        # The verdict rests on it, so that runs held out are forecast for it in any case.
+        forecast = full or not concluded.search.problem.held_out.any()
+        drift = _drift(concluded, held if forecast else judge_left_out(concluded.accepted.fit))
     decision = concluded.decision
     change = find_change(concluded)
     if drift is not None:
