@@ -8,6 +8,7 @@ from pathlib import Path
 import polars as pl
 
 from cyclosweep._moved import MOVED, RENAMED
+from cyclosweep.design.part_units import PART_INPUTS, PART_LISTS, PART_OUTPUTS
 from cyclosweep.design.units import INPUTS, OUTPUTS, Quantity
 from cyclosweep.reference.facts import COUNTED, KINDS
 from cyclosweep.reference.rows import broken_rows, broken_table, tally, validate
@@ -80,6 +81,13 @@ def nomenclature() -> str:
         + "\n`twist_1tn_deg`, `twist_4p5tn_deg`, ...: twist at the input [deg] under 1, 4.5, ... "
         "nominal torques, Eq. (13);\n`twist_minus_4p5tn_deg` under a load of -4.5: in the other "
         "direction, the negative of the twist under 4.5.\n"
+        + "\n## Inputs of the component model\n\n[components.md](components.md) says what they "
+        "mean together. The second table's keys are no axes.\n\n"
+        + _table(PART_INPUTS)
+        + "\n"
+        + _table(PART_LISTS)
+        + "\n## Results of the component model\n\n"
+        + _table(PART_OUTPUTS)
     )
 
 

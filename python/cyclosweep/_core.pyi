@@ -1,7 +1,7 @@
 """Types of the compiled core."""
 
 from collections.abc import Sequence
-from typing import Final, final
+from typing import Final, TypedDict, final
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,7 @@ __all__ = [
     "DEBUG_BUILD",
     "SEGMENT_FIELDS",
     "DesignError",
+    "PartStudy",
     "Study",
     "__version__",
     "active_pins",
@@ -19,6 +20,9 @@ __all__ = [
     "input_table",
     "kernel_evaluations",
     "output_table",
+    "part_input_table",
+    "part_output_table",
+    "part_status_labels",
     "play",
     "remembered_datum",
     "sectors",
@@ -62,6 +66,70 @@ class Study:
     ) -> _Evaluated: ...
     def explain(self, index: int) -> str | None: ...
 
+class _Mechanism(TypedDict):
+    lobes: int
+    discs: int
+    output_pins: int
+    eccentricity: float
+    ring_radius: float
+    pin_circle_radius: float
+    hole_clocking: float
+    ring_gap: float
+    ring_enlargement: float
+    profile_rotation: float
+    hole_gap: float
+    ring_stiffness: float
+    hole_stiffness: float
+    bearing_stiffness: float
+    bearing_clearance: float
+    shaft_compliance: float
+    ring_gap_errors: list[float]
+    hole_gap_errors: list[float]
+    pin_stiffness: list[float]
+
+class _State(TypedDict):
+    converged: bool
+    steps: int
+    residual: float
+    input_torque: float
+    twist: float
+    stiffness: float
+    discs: list[list[float]]
+    ring_forces: list[list[float]]
+    pin_forces: list[list[float]]
+    pressures: list[float]
+    budget: list[float]
+    shaft_compliance: float
+    pin_circle_radius: float
+
+@final
+class PartStudy:
+    def __new__(
+        cls,
+        values: Sequence[tuple[str, float]],
+        law: str,
+        root: Sequence[float],
+        ring_gap_errors: Sequence[float],
+        hole_gap_errors: Sequence[float],
+        engine: str,
+        limits: Sequence[tuple[str, float, float, int]],
+        published_limits: Sequence[int],
+    ) -> PartStudy: ...
+    def evaluate_range(
+        self, study: Study, start: int, stop: int, outputs: Sequence[str]
+    ) -> _Evaluated: ...
+    def evaluate_at(
+        self, study: Study, indices: npt.NDArray[np.uint64], outputs: Sequence[str]
+    ) -> _Evaluated: ...
+    def explain(self, study: Study, index: int) -> str | None: ...
+    def mechanism(self, study: Study, variant: int) -> _Mechanism: ...
+    def state(
+        self, study: Study, variant: int, torque: float, crank: float, engine: str
+    ) -> _State: ...
+
+def part_input_table() -> list[tuple[str, str, float, str]]: ...
+def part_output_table() -> list[tuple[str, str]]: ...
+def part_status_labels() -> list[str]: ...
 def kernel_evaluations() -> tuple[int, int]: ...
 def input_table() -> list[tuple[str, bool, bool]]: ...
 def output_table(loads: Sequence[float]) -> list[tuple[str, str]]: ...

@@ -25,7 +25,8 @@
 //!
 //! Discs, flange, bearings, ring pins and all contacts are rigid; the loading line is straight
 //! beyond the free play; friction, hysteresis and memory are not in the model (operators for them
-//! are in [`model::hysteresis`]). `statics` shares loads among equal springs on a rigid disc and is
+//! are in [`model::hysteresis`]). The contacts, clearances and bearings that it leaves out are those
+//! of [`components`], a model of its own. `statics` shares loads among equal springs on a rigid disc and is
 //! valid for one or two discs. Ratios 3 to 300, 3 to 64 pins, 1 to 4 discs.
 //!
 //! # How to use it
@@ -91,6 +92,7 @@
 
 #![doc = include_str!("../katex-header.html")]
 
+pub mod components;
 mod kernel;
 pub mod model;
 #[cfg(feature = "python")]

@@ -18,9 +18,9 @@ from pydantic import ValidationError
 import cyclosweep._core as _core
 from cyclosweep.atomic import write_text
 from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion, count_active_pins
-from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.nominal_line import NominalLine, Side
 from cyclosweep.design.numbers import checked_loads
+from cyclosweep.design.parts import PartInputs
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
 from cyclosweep.design.toml_files import one_line, read_toml
 from cyclosweep.errors import InputError
@@ -39,7 +39,7 @@ __all__ = [
 _BUILT_IN = {"reference-87": "reference_87.toml"}
 
 
-class Drive(DriveInputs):
+class Drive(PartInputs):
     """A single-stage cycloidal drive, frozen and checked.
 
     Every attribute is a key of a drive file, an axis of a study and a column of a sweep; its
@@ -209,11 +209,6 @@ class Drive(DriveInputs):
                 if key != name and not (name == "shaft" and key.startswith("shaft_"))
             }
         return self._from_table(table, self.name)
-
-    def study(self, loads_tn: tuple[float, ...] = ()) -> _core.Study:
-        """Return the core's study of this drive alone."""
-        kinds = [segment.kind for segment in self.shaft]
-        return _core.Study(list(self.values().items()), kinds, [], "grid", 1, 0, list(loads_tn), [])
 
     def explain(self) -> str | None:
         """Why this drive cannot be built, with the numbers that show it; None when it can."""

@@ -65,7 +65,7 @@ class DriveInputs(TomlTable):
                 "neither [[shaft]] nor output_stiffness_nm_per_arcmin, expected one of them"
             )
         for key, mark in self.provenance.items():
-            if key not in self.inputs():
+            if key not in self.marked():
                 raise ValueError(f"provenance.{key}: no such input of this drive")
             if mark.partition(":")[0].strip() not in MARKS:
                 raise ValueError(
@@ -74,8 +74,12 @@ class DriveInputs(TomlTable):
         return self
 
     def inputs(self) -> tuple[str, ...]:
-        """Names of every input that can be an axis of a study of this drive, in order."""
+        """Names of every input of the published model, in order; each can be an axis of a study."""
         return (*self._SCALARS, *(name for name, _ in dimensions(self.shaft)))
+
+    def marked(self) -> tuple[str, ...]:
+        """Names of every key that can have a mark of where its number comes from."""
+        return self.inputs()
 
     def values(self) -> dict[str, float]:
         """Every input's value by name, NaN where left out, the criterion by its number."""
@@ -86,6 +90,11 @@ class DriveInputs(TomlTable):
                 value = CRITERIA.index(value)
             values[name] = math.nan if value is None else float(value)
         return {**values, **dict(dimensions(self.shaft))}
+
+    def study(self, loads_tn: tuple[float, ...] = ()) -> _core.Study:
+        """Return the core's study of this drive alone."""
+        kinds = [segment.kind for segment in self.shaft]
+        return _core.Study(list(self.values().items()), kinds, [], "grid", 1, 0, list(loads_tn), [])
 
     @property
     def nominal_torque_nm(self) -> float:

@@ -3,29 +3,11 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import cyclosweep._core as _core
+from cyclosweep.design.part_units import PART_INPUTS, PART_LISTS, PART_OUTPUTS, Quantity
 
 __all__ = ["INPUTS", "OUTPUTS", "Quantity", "quantity", "twist_column"]
-
-
-class Quantity(NamedTuple):
-    """One named quantity.
-
-    Attributes
-    ----------
-    symbol : str
-        The paper's symbol, empty where it has none.
-    unit : str
-        Unit of the values, "1" for pure numbers.
-    meaning : str
-        What it is, in one sentence without a full stop.
-    """
-
-    symbol: str
-    unit: str
-    meaning: str
 
 
 INPUTS: dict[str, Quantity] = {
@@ -178,8 +160,9 @@ def quantity(name: str) -> Quantity:
     """
     if name in OUTPUTS:
         return OUTPUTS[name]
-    if name in INPUTS:
-        return INPUTS[name]
+    for known in (INPUTS, PART_OUTPUTS, PART_INPUTS, PART_LISTS):
+        if name in known:
+            return known[name]
     if match := re.fullmatch(r"twist_((?:minus_)?[0-9a-z]+)tn_deg", name):
         load = match[1].replace("minus_", "-").replace("p", ".")
         return Quantity("theta'", "deg", f"twist at the input under {load} T_N, Eq. (13)")

@@ -14,11 +14,12 @@ __all__ = ["BROKEN_MODELS", "broken_model"]
 
 
 def _lengths_as_metres(drive: Drive) -> Drive:
-    table = drive.model_dump()
+    table = drive.model_dump(exclude_none=True)
     for part in (table, *table["shaft"]):
         for name, value in part.items():
             if name.endswith("_mm"):
-                part[name] = 1e3 * value
+                is_list = isinstance(value, tuple)
+                part[name] = [1e3 * gap for gap in value] if is_list else 1e3 * value
     return type(drive).model_validate(table)
 
 

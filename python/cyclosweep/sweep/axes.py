@@ -18,6 +18,7 @@ import cyclosweep._core as _core
 from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers, whole_number
+from cyclosweep.design.parts import PART_DEFAULTS
 from cyclosweep.errors import InputError
 
 __all__ = [
@@ -36,7 +37,9 @@ __all__ = [
 WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
 """Inputs that take whole numbers only."""
 
-OPTIONAL = frozenset(name for name, _, optional in _core.input_table() if optional)
+OPTIONAL = frozenset(
+    [name for name, _, optional in _core.input_table() if optional] + list(PART_DEFAULTS)
+)
 """Inputs that may be left out."""
 
 # Counts have at most three digits: a longer range is not one of whole numbers.
@@ -173,7 +176,7 @@ def known_input(drive: Drive, name: str) -> str:
     InputError
         With the nearest name that the drive does have.
     """
-    known = drive.inputs()
+    known = drive.every_input()
     if name not in known:
         close = difflib.get_close_matches(name, known, n=1)
         hint = f", did you mean {close[0]}?" if close else ""

@@ -19,9 +19,18 @@ from cyclosweep.sweep.scan import frame
 from cyclosweep.sweep.study import Study
 from cyclosweep.sweep.summary import PartSummary, summary_of_part
 
-__all__ = ["COMPRESSION", "ROWS_PER_PART", "Dataset", "Part", "scan_dataset"]
+__all__ = [
+    "COMPRESSION",
+    "ROWS_PER_PART",
+    "SOLVED_ROWS_PER_PART",
+    "Dataset",
+    "Part",
+    "scan_dataset",
+]
 
 ROWS_PER_PART = 2**18
+SOLVED_ROWS_PER_PART = 2**14
+"""Variants a part whose equilibria are solved: some seconds' work."""
 COMPRESSION: Literal["lz4"] = "lz4"
 _FOOTER = "cyclosweep"
 _FORMAT = "cyclosweep.dataset/1"

@@ -14,8 +14,9 @@ import polars as pl
 from polars.io.plugins import register_io_source
 
 import cyclosweep._core as _core
+from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError
-from cyclosweep.sweep.study import Limits, Study
+from cyclosweep.sweep.study import Limits, Study, StudyModel
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["Evaluations", "frame", "kernel_evaluations", "scan", "sweep"]
 
 DEFAULT_BATCH = 100_000
+SOLVED_BATCH = 5_000
+"""Variants a batch whose equilibria are solved: well under a second, or Ctrl-C would hang."""
 _LARGEST_FRAME = 2**32 - 1  # rows polars can count
 
 
@@ -68,6 +71,8 @@ def scan(
     *,
     loads_tn: Sequence[float] | None = None,
     limits: Limits | None = None,
+    model: StudyModel | None = None,
+    solver: Engine | None = None,
 ) -> pl.LazyFrame:
     """Sweep a space lazily.
 
@@ -83,6 +88,11 @@ def scan(
     limits : mapping, optional
         ``{column: (least or None, greatest or None)}``; a variant outside gets the status
         ``limit_<column>`` and null results.
+    model : {"published", "components"}, optional
+        The published model alone, by default, or with the component model's columns, each of
+        which is solved for only where a query needs it.
+    solver : {"quadratic", "full"}, optional
+        How the component model finds its equilibria; the faster one by default.
 
     Returns
     -------
@@ -108,7 +118,8 @@ def scan(
     ... ].to_list()
     [10, 10]
     """
-    study = Study.of(space, loads_tn=loads_tn, limits=limits)
+    study = Study.of(space, loads_tn=loads_tn, limits=limits, model=model, solver=solver)
+    most = DEFAULT_BATCH if study.model == "published" else SOLVED_BATCH
 
     def source(
         with_columns: list[str] | None,
@@ -119,7 +130,7 @@ def scan(
         wanted = list(study.schema()) if with_columns is None else with_columns
         start = study.space.start
         stop = study.space.stop if n_rows is None else min(study.space.stop, start + n_rows)
-        size = batch_size or DEFAULT_BATCH
+        size = min(batch_size or most, most) if most < DEFAULT_BATCH else batch_size or most
         for first in range(start, stop, size):
             yield frame(study, first, min(first + size, stop), wanted, predicate)
 
@@ -133,6 +144,8 @@ def sweep(
     *,
     loads_tn: Sequence[float] | None = None,
     limits: Limits | None = None,
+    model: StudyModel | None = None,
+    solver: Engine | None = None,
 ) -> pl.DataFrame:
     """Sweep a space into memory.
 
@@ -140,7 +153,7 @@ def sweep(
     ----------
     space : Space or Study
         What varies.
-    loads_tn, limits : optional
+    loads_tn, limits, model, solver : optional
         As for :func:`scan`.
 
     Returns
@@ -160,7 +173,7 @@ def sweep(
     >>> cs.sweep(space)["status"].to_list()
     ['ok', 'eccentricity_too_large_for_ring']
     """
-    study = Study.of(space, loads_tn=loads_tn, limits=limits)
+    study = Study.of(space, loads_tn=loads_tn, limits=limits, model=model, solver=solver)
     count = study.space.stop - study.space.start
     if count > _LARGEST_FRAME:
         raise InputError(
@@ -255,22 +268,62 @@ def _results(
     picked: npt.NDArray[np.uint64] | None,
 ) -> list[pl.Series]:
     outputs = [name for name in names if name != "status"]
-    if picked is None:
-        status, any_refused, columns = study.core.evaluate_range(start, stop, outputs)
-    else:
-        status, any_refused, columns = study.core.evaluate_at(picked, outputs)
+    of_parts = [name for name in outputs if name in _PARTS and study.model == "components"]
+    published = [name for name in outputs if name not in of_parts]
+    status, any_refused, columns = _evaluated(study.core, published, start, stop, picked)
+    values = dict(zip(published, columns, strict=True))
+    may_not_apply = dict(zip(published, study.core.may_not_apply(published), strict=True))
+    if study.model == "components":
+        status, any_refused, columns = _solved(study, of_parts, start, stop, picked)
+        values.update(zip(of_parts, columns, strict=True))
+        may_not_apply.update(dict.fromkeys(of_parts, True))
     dtypes = study.schema()
     series = {"status": pl.Series("status", status)}
-    may_not_apply = study.core.may_not_apply(outputs)
-    for name, values, nullable in zip(outputs, columns, may_not_apply, strict=True):
-        series[name] = pl.Series(name, values, nan_to_null=nullable)
+    for name in outputs:
+        series[name] = pl.Series(name, values[name], nan_to_null=may_not_apply[name])
     table = pl.DataFrame(series)
     if any_refused and outputs:
         # Nothing is copied: polars joins the validity to the columns.
         built = pl.col("status") == 0
         table = table.with_columns(pl.when(built).then(pl.col(*outputs)))
     table = table.with_columns(
-        *(pl.col(name).cast(dtypes[name]) for name in outputs if dtypes[name] != pl.Float64()),
+        *(_cast(name, dtypes[name]) for name in outputs if dtypes[name] != pl.Float64()),
         pl.col("status").cat.to(dtypes["status"]),
     )
     return [table[name] for name in names]
+
+
+_PARTS = frozenset(name for name, _ in _core.part_output_table())
+
+
+def _cast(name: str, dtype: pl.DataType) -> pl.Expr:
+    """Turn a column of floats into its own type; codes into the words of an Enum."""
+    if isinstance(dtype, pl.Enum):
+        return pl.col(name).cast(pl.UInt8).cat.to(dtype)
+    return pl.col(name).cast(dtype)
+
+
+def _evaluated(
+    core: _core.Study,
+    outputs: list[str],
+    start: int,
+    stop: int,
+    picked: npt.NDArray[np.uint64] | None,
+) -> tuple[npt.NDArray[np.uint8], bool, npt.NDArray[np.float64]]:
+    """Statuses of the published model and its columns."""
+    if picked is None:
+        return core.evaluate_range(start, stop, outputs)
+    return core.evaluate_at(picked, outputs)
+
+
+def _solved(
+    study: Study,
+    outputs: list[str],
+    start: int,
+    stop: int,
+    picked: npt.NDArray[np.uint64] | None,
+) -> tuple[npt.NDArray[np.uint8], bool, npt.NDArray[np.float64]]:
+    """Statuses of both models and the component model's columns."""
+    if picked is None:
+        return study.part_core.evaluate_range(study.core, start, stop, outputs)
+    return study.part_core.evaluate_at(study.core, picked, outputs)

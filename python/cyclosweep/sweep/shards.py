@@ -11,14 +11,15 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from cyclosweep.design.numbers import whole_number
+from cyclosweep.design.parts import Engine as Solver
 from cyclosweep.errors import InputError, SweepError
 from cyclosweep.sweep.attempts import run_shards
-from cyclosweep.sweep.dataset import ROWS_PER_PART, Dataset
+from cyclosweep.sweep.dataset import ROWS_PER_PART, SOLVED_ROWS_PER_PART, Dataset
 from cyclosweep.sweep.executors import Engine, executor_of, lend
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.progress import Progress
 from cyclosweep.sweep.space import Space
-from cyclosweep.sweep.study import Limits, Study
+from cyclosweep.sweep.study import Limits, Study, StudyModel
 from cyclosweep.sweep.summary import PartSummary, Summary, summarise
 
 __all__ = ["Engine", "run_shards", "shard", "sink"]
@@ -36,7 +37,9 @@ def sink(
     loads_tn: Sequence[float] | None = None,
     limits: Limits | None = None,
     objective: Objective | None = None,
-    rows_per_part: int = ROWS_PER_PART,
+    model: StudyModel | None = None,
+    solver: Solver | None = None,
+    rows_per_part: int | None = None,
     engine: Engine = "threads",
     workers: int | None = None,
     scheduler: str | None = None,
@@ -55,12 +58,13 @@ def sink(
         Keep the whole parts of an earlier run of the same study.
     fresh : bool
         Delete what an earlier sweep left in the folder.
-    loads_tn, limits : optional
+    loads_tn, limits, model, solver : optional
         As for :func:`cyclosweep.sweep.scan`.
     objective : Objective, optional
         What the summary's ten best variants are best in.
-    rows_per_part : int
-        Variants a part.
+    rows_per_part : int, optional
+        Variants a part, by default what a thread computes in seconds: 2^18, or 2^14 with the
+        component model.
     engine : {"threads", "processes", "dask"}
         Where parts are computed.
     workers : int, optional
@@ -93,7 +97,9 @@ def sink(
     ...     cs.sink(space, folder).status
     {'ok': 3}
     """
-    study = Study.of(space, loads_tn=loads_tn, limits=limits, objective=objective)
+    study = Study.of(
+        space, loads_tn=loads_tn, limits=limits, objective=objective, model=model, solver=solver
+    )
     dataset = _dataset(study, folder, rows_per_part)
     if executor is None:
         make = executor_of(engine, workers=workers, scheduler=scheduler)
@@ -139,7 +145,7 @@ def shard(
     *,
     index: int,
     of: int,
-    rows_per_part: int = ROWS_PER_PART,
+    rows_per_part: int | None = None,
     progress: bool | None = None,
 ) -> Summary:
     """Compute every ``of``-th part of a study, beginning with part ``index``.
@@ -155,7 +161,7 @@ def shard(
         Where the dataset goes, the same for every task.
     index, of : int
         Number of the task from 0, and how many there are.
-    rows_per_part : int
+    rows_per_part : int, optional
         Variants a part, the same for every task.
     progress : bool, optional
         Show a progress bar; by default when standard error is a terminal.
@@ -192,7 +198,9 @@ def shard(
     return summarise(summaries, study)
 
 
-def _dataset(study: Study, folder: str | Path, rows_per_part: int) -> Dataset:
+def _dataset(study: Study, folder: str | Path, rows_per_part: int | None) -> Dataset:
+    if rows_per_part is None:
+        rows_per_part = ROWS_PER_PART if study.model == "published" else SOLVED_ROWS_PER_PART
     return Dataset(study, Path(folder), whole_number("rows_per_part", rows_per_part, least=1))
 
 

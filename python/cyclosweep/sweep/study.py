@@ -9,22 +9,34 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import polars as pl
 
 import cyclosweep._core as _core
 from cyclosweep.design.numbers import checked_loads, real_numbers
+from cyclosweep.design.parts import PART_DEFAULTS, Engine
 from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study_file import read_study_file
 
-__all__ = ["DEFAULT_LOADS_TN", "Objective", "Study"]
+__all__ = ["DEFAULT_LOADS_TN", "Objective", "Study", "StudyModel"]
 
 DEFAULT_LOADS_TN: tuple[float, ...] = (1.0, 2.0, 3.0, 4.0, 4.5)
-_KIND_DTYPES = {"real": pl.Float64(), "count": pl.UInt32(), "flag": pl.Boolean()}
+SOLVERS = ("quadratic", "full", "failed")
+"""Values of ``solver_status``, in the order of their codes."""
+
+_KIND_DTYPES: dict[str, pl.DataType] = {
+    "real": pl.Float64(),
+    "count": pl.UInt32(),
+    "flag": pl.Boolean(),
+    "solver": pl.Enum(SOLVERS),
+}
+
+StudyModel = Literal["published", "components"]
+"""The published model alone, or with the columns of the component model."""
 
 Limits = Mapping[str, tuple[float | None, float | None]]
 
@@ -43,12 +55,18 @@ class Study:
         Column, least and greatest value; a variant outside gets the status ``limit_<column>``.
     objective : Objective or None
         What the summary's best variants are best in.
+    model : {"published", "components"}
+        Whether the component model's columns are there.
+    solver : {"quadratic", "full"}
+        How the component model finds its equilibria.
     """
 
     space: Space
     loads_tn: tuple[float, ...] = DEFAULT_LOADS_TN
     limits: tuple[tuple[str, float, float], ...] = ()
     objective: Objective | None = None
+    model: StudyModel = "published"
+    solver: Engine = "quadratic"
 
     @classmethod
     def of(
@@ -58,6 +76,8 @@ class Study:
         loads_tn: Sequence[float] | None = None,
         limits: Limits | None = None,
         objective: Objective | None = None,
+        model: StudyModel | None = None,
+        solver: Engine | None = None,
     ) -> Study:
         """Make a study of a space; a study passes through.
 
@@ -72,6 +92,10 @@ class Study:
             ``{column: (least or None, greatest or None)}``.
         objective : Objective, optional
             What the summary's best variants are best in.
+        model : {"published", "components"}, optional
+            The published model alone, by default, or with the component model's columns.
+        solver : {"quadratic", "full"}, optional
+            How the component model finds its equilibria, by default the faster one.
 
         Raises
         ------
@@ -80,18 +104,22 @@ class Study:
             column.
         """
         if isinstance(space, Study):
-            if loads_tn is not None or limits is not None or objective is not None:
-                raise InputError("a study already has its loads, limits and objective")
+            if any(given is not None for given in (loads_tn, limits, objective, model, solver)):
+                raise InputError("a study already has its loads, limits, objective and model")
             return space
+        model, solver = _known(model or "published", solver or "quadratic")
         loads = checked_loads(DEFAULT_LOADS_TN if loads_tn is None else loads_tn)
         if len(set(loads)) != len(loads):
             raise InputError(f"loads_tn: found {list(loads)}, expected each load once")
         bounds = [_bounds(name, low, high) for name, (low, high) in (limits or {}).items()]
-        study = cls(space, loads, tuple(bounds), objective)
-        columns = [*space.drive.inputs(), *(name for name, _ in _core.output_table(list(loads)))]
+        study = cls(space, loads, tuple(bounds), objective, model, solver)
+        columns = [*space.drive.every_input(), *study.outputs]
+        axes = {axis.name for axis in space.axes}
         for name, _, _ in bounds:
-            if name not in columns or name == "criterion":
+            if name not in columns or name in ("criterion", "solver_status"):
                 raise InputError(f"limits.{name}: no such column, expected an input or a result")
+            if name in PART_DEFAULTS and name not in axes:
+                raise InputError(f"limits.{name}: does not vary, expected an axis or a result")
         if objective is not None:
             dtype = study.schema().get(objective.column)
             if dtype is None:
@@ -121,6 +149,8 @@ class Study:
                 loads_tn=file.loads_tn,
                 limits=file.bounds(),
                 objective=file.chosen_objective(),
+                model=file.model,
+                solver=file.solver,
             )
         except InputError as error:
             text = str(error)
@@ -129,10 +159,20 @@ class Study:
     @functools.cached_property
     def core(self) -> _core.Study:
         """The core's study; made on first use and never pickled."""
-        return self.space.core(self.loads_tn, self.limits)
+        published = [limit for limit in self.limits if limit[0] not in _PART_KINDS]
+        return self.space.core(self.loads_tn, published)
+
+    @functools.cached_property
+    def part_core(self) -> _core.PartStudy:
+        """The core's component model; made on first use and never pickled."""
+        numbered = list(enumerate(self.limits))
+        of_parts = [(*limit, number) for number, limit in numbered if limit[0] in _PART_KINDS]
+        published = [number for number, limit in numbered if limit[0] not in _PART_KINDS]
+        return self.space.drive.part_study(self.solver, tuple(of_parts), tuple(published))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {key: value for key, value in self.__dict__.items() if key != "core"}
+        cores = ("core", "part_core")
+        return {key: value for key, value in self.__dict__.items() if key not in cores}
 
     def __len__(self) -> int:
         return len(self.space)
@@ -142,12 +182,16 @@ class Study:
         """Result columns and their kinds, without those that are axes of the study."""
         axes = {axis.name for axis in self.space.axes}
         table = _core.output_table(list(self.loads_tn))
+        if self.model == "components":
+            table = [*table, *_PART_KINDS.items()]
         return {name: kind for name, kind in table if name not in axes}
 
     @functools.cached_property
     def statuses(self) -> tuple[str, ...]:
         """Every value the ``status`` column can take."""
-        return (*_core.status_labels(), *(f"limit_{name}" for name, _, _ in self.limits))
+        parts = _core.part_status_labels() if self.model == "components" else []
+        limits = (f"limit_{name}" for name, _, _ in self.limits)
+        return (*_core.status_labels(), *parts, *limits)
 
     def schema(self) -> dict[str, pl.DataType]:
         """Columns of a sweep and their types, in order."""
@@ -169,13 +213,35 @@ class Study:
             "loads_tn": [repr(load) for load in self.loads_tn],
             "limits": [[name, repr(low), repr(high)] for name, low, high in self.limits],
             "version": _core.__version__,
+            **self._part_definition(),
         }
+
+    def _part_definition(self) -> dict[str, Any]:
+        """Return what else decides the numbers of the component model; nothing without it."""
+        if self.model == "published":
+            return {}
+        parts = self.space.drive.part_definition()
+        return {"model": self.model, "solver": self.solver, "parts": parts}
 
     @functools.cached_property
     def hash(self) -> str:
         """SHA-256 of the definition: datasets with the same hash hold the same numbers."""
         text = json.dumps(self.definition(), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+_PART_KINDS = dict(_core.part_output_table())
+
+
+def _known(model: StudyModel, solver: Engine) -> tuple[StudyModel, Engine]:
+    """Return the names of a model and a solver; InputError for one that is not known."""
+    for name, value, known in (
+        ("model", model, get_args(StudyModel)),
+        ("solver", solver, get_args(Engine)),
+    ):
+        if value not in known:
+            raise InputError(f"{name}: found {value!r}, expected one of {', '.join(known)}")
+    return model, solver
 
 
 def _bounds(name: str, low: float | None, high: float | None) -> tuple[str, float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import polars as pl
 from pydantic import Field, ValidationError
@@ -74,6 +74,8 @@ class StudyFile(TomlTable):
 
     drive: str = "reference-87"
     loads_tn: list[float] | None = None
+    model: Literal["published", "components"] | None = None
+    solver: Literal["quadratic", "full"] | None = None
     sample: _Sample = _Sample()
     axes: dict[str, dict[str, Any]] = Field(default_factory=dict)
     limits: dict[str, _Limit] = Field(default_factory=dict)

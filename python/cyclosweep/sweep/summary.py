@@ -78,7 +78,7 @@ def summary_of_part(rows: pl.DataFrame, start: int, stop: int, study: Study) -> 
     """
     counts = rows["status"].value_counts().sort("status")
     status = dict(zip(counts["status"].to_list(), counts["count"].to_list(), strict=True))
-    names = [name for name, kind in study.outputs.items() if kind != "flag"]
+    names = [name for name, kind in study.outputs.items() if kind not in ("flag", "solver")]
     lows = rows.select(pl.col(names).min()).row(0)
     highs = rows.select(pl.col(names).max()).row(0)
     ranges = {

@@ -3,7 +3,7 @@
 mod blocks;
 mod cache;
 mod evaluate;
-mod lanes;
+pub(crate) mod lanes;
 mod map_stage;
 mod outputs;
 mod packed;

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use thiserror::Error;
 
+use crate::components::inputs::{PART_INPUTS, PARTS_AT};
 use crate::kernel::blocks::{Stages, explained};
 use crate::kernel::outputs::Output;
 use crate::kernel::packed::Inputs;
@@ -127,7 +128,12 @@ impl Study {
             Limited::Output(_) => None,
         });
         let mut named = space.axes().iter().map(|axis| axis.input).chain(limited);
-        if let Some(input) = named.find(|input| *input >= inputs) {
+        // The component model's inputs are a band of their own.
+        let parts = PARTS_AT..PARTS_AT + PART_INPUTS;
+        let varies = |input| space.axes().iter().any(|axis| axis.input == input);
+        let unknown =
+            |input: &usize| *input >= inputs && !(parts.contains(input) && varies(*input));
+        if let Some(input) = named.find(unknown) {
             return Err(StudyError::NoSuchInput { input, inputs });
         }
         if let Some(load) = loads.iter().find(|load| !load.is_finite()) {
@@ -203,6 +209,11 @@ impl Study {
         &self.loads
     }
 
+    /// Value of an input where it does not vary, in the core's unit.
+    pub(crate) const fn base_value(&self, input: Input) -> f64 {
+        self.base.get(input)
+    }
+
     /// Number of shaft segments.
     #[must_use]
     pub fn segments(&self) -> usize {
@@ -221,6 +232,9 @@ impl Study {
         let mut inputs = self.base.clone();
         for (number, axis) in self.space.axes().iter().enumerate() {
             let mut value = [0.0];
+            if axis.input >= PARTS_AT {
+                continue;
+            }
             self.space.fill(number, Rows::At(&[variant]), &mut value);
             inputs.set(axis.input, value[0] * factor(axis.input));
         }

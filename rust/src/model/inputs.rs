@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use crate::components::inputs::{PARTS_AT, PartInput, part_index};
+
 /// A scalar input of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
@@ -147,6 +149,9 @@ pub fn input_index(name: &str, segments: usize) -> Option<usize> {
     if let Some(found) = Input::ALL.iter().position(|input| input.name() == name) {
         return Some(found);
     }
+    if let Some(part) = part_index(name) {
+        return Some(part);
+    }
     let (number, field) = name.strip_prefix("shaft_")?.split_once('_')?;
     let segment = number.parse::<usize>().ok()?.checked_sub(1)?;
     let field = SEGMENT_FIELDS.iter().position(|known| *known == field)?;
@@ -156,6 +161,9 @@ pub fn input_index(name: &str, segments: usize) -> Option<usize> {
 /// What turns an input's value into the core's unit.
 #[must_use]
 pub fn factor(index: usize) -> f64 {
+    if let Some(part) = index.checked_sub(PARTS_AT) {
+        return PartInput::ALL[part].row().1;
+    }
     Input::ALL
         .get(index)
         .map_or(MILLI, |input| input.name_and_factor().1)

@@ -22,7 +22,7 @@ pub(crate) use arrangement::{
 
 /// A number in [0, 1) for tests: SplitMix64 of a stream and an index.
 #[cfg(test)]
-fn random(stream: u64, index: u64) -> f64 {
+pub(crate) fn random(stream: u64, index: u64) -> f64 {
     let mut x = (stream << 40)
         .wrapping_add(index)
         .wrapping_mul(0x9E37_79B9_7F4A_7C15);

@@ -1,5 +1,6 @@
 //! Bindings for Python, and nothing else; everything Python can see is registered here.
 
+mod components;
 mod formulas;
 mod hysteresis;
 mod study;
@@ -61,6 +62,7 @@ fn status_labels() -> Vec<&'static str> {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     hysteresis::register(module)?;
+    components::register(module)?;
     module.add("DEBUG_BUILD", cfg!(debug_assertions))?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SEGMENT_FIELDS", SEGMENT_FIELDS)?;

@@ -42,7 +42,7 @@ pub fn kernel_evaluations() -> (u64, u64) {
 /// One axis as Python describes it: (name, form, numbers).
 type AxisSpec<'py> = (String, String, PyReadonlyArray1<'py, f64>);
 /// The status codes, whether any variant is refused, and the columns asked for.
-type Evaluated<'py> = (Bound<'py, PyArray1<u8>>, bool, Bound<'py, PyArray2<f64>>);
+pub type Evaluated<'py> = (Bound<'py, PyArray1<u8>>, bool, Bound<'py, PyArray2<f64>>);
 
 fn values_of(form: &str, numbers: &[f64]) -> PyResult<Values> {
     match (form, numbers) {
@@ -89,6 +89,11 @@ fn kind_of(name: &str) -> PyResult<SegmentKind> {
 }
 
 impl PyStudy {
+    /// The study.
+    pub const fn study(&self) -> &Study {
+        &self.study
+    }
+
     fn axis_number(&self, name: &str) -> PyResult<usize> {
         let index = input_index(name, self.study.segments());
         let found = self
@@ -109,7 +114,8 @@ impl PyStudy {
         names.iter().map(find).collect()
     }
 
-    fn check_range(&self, start: u64, stop: u64) -> PyResult<usize> {
+    /// Requires variants start..stop of the study; how many they are.
+    pub fn check_range(&self, start: u64, stop: u64) -> PyResult<usize> {
         if start <= stop && stop <= self.study.space().len() {
             Ok((stop - start) as usize)
         } else {
@@ -120,7 +126,8 @@ impl PyStudy {
         }
     }
 
-    fn check_indices(&self, indices: &[u64]) -> PyResult<()> {
+    /// Requires variants of the study.
+    pub fn check_indices(&self, indices: &[u64]) -> PyResult<()> {
         let len = self.study.space().len();
         match indices.iter().find(|index| **index >= len) {
             None => Ok(()),
@@ -177,13 +184,15 @@ impl PyStudy {
             .iter()
             .map(|kind| kind_of(kind))
             .collect::<PyResult<Vec<_>>>()?;
+        // Inputs of the component model are axes, never values of a published design.
         let index = |name: &str| {
             let unknown = || PyValueError::new_err(format!("unknown input {name}"));
             input_index(name, kinds.len()).ok_or_else(unknown)
         };
         let mut inputs = vec![f64::NAN; segment_input(kinds.len(), 0)];
         for (name, value) in &base {
-            inputs[index(name)?] = *value;
+            let place = inputs.get_mut(index(name)?);
+            *place.ok_or_else(|| PyValueError::new_err(format!("unknown input {name}")))? = *value;
         }
         let code = inputs[Input::Criterion as usize];
         let criterion = Criterion::ALL

@@ -1,0 +1,189 @@
+"""Keys of a drive file that the component model reads, and what stands in for those left out."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, ClassVar, Literal
+
+import polars as pl
+from pydantic import Field, field_validator
+
+import cyclosweep._core as _core
+from cyclosweep.design.inputs import DriveInputs
+from cyclosweep.design.loaded import LoadedState, loaded_state
+from cyclosweep.design.shaft import NonNegative, Positive
+
+__all__ = ["PART_DEFAULTS", "Engine", "PartInputs"]
+
+Engine = Literal["full", "quadratic"]
+"""How equilibria are found: by power laws, or by their secants at the expected forces."""
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Poisson = Annotated[float, Field(gt=-1, le=0.5)]
+
+PART_DEFAULTS = {name: (kind, number, of) for name, kind, number, of in _core.part_input_table()}
+"""For each input: ``required``, ``number``, ``same`` as another input, or so many ``widths``."""
+
+_THICK_FLANGE = (1.224, 0.231, 5.117)
+
+
+class PartInputs(DriveInputs):
+    """A drive with the numbers of its contacts, clearances and bearings.
+
+    The meaning and unit of each stand in :mod:`cyclosweep.design.part_units`. A drive without
+    ``ring_pin_radius_mm`` and ``disc_width_mm`` has no component model; for every other key left
+    out a default stands in, which :meth:`part_table` lists as assumed.
+    """
+
+    ring_pin_radius_mm: Positive | None = None
+    disc_width_mm: Positive | None = None
+    ring_clearance_mm: Finite | None = None
+    ring_circle_enlargement_mm: Finite | None = None
+    profile_offset_mm: Finite | None = None
+    profile_shift_mm: Finite | None = None
+    profile_rotation_deg: NonNegative | None = None
+    hole_clearance_mm: Finite | None = None
+    eccentric_bearing_stiffness_n_per_mm: Positive | None = None
+    eccentric_bearing_clearance_mm: NonNegative | None = None
+    disc_1_reach_mm: Positive | None = None
+    disc_2_reach_mm: Positive | None = None
+    disc_3_reach_mm: Positive | None = None
+    disc_4_reach_mm: Positive | None = None
+    ring_youngs_modulus_gpa: Positive | None = None
+    ring_poisson_ratio: Poisson | None = None
+    disc_youngs_modulus_gpa: Positive | None = None
+    disc_poisson_ratio: Poisson | None = None
+    disc_density_kg_m3: Positive | None = None
+    friction_ring: NonNegative | None = None
+    friction_output: NonNegative | None = None
+    friction_bearing: NonNegative | None = None
+    contact_law: Literal["palmgren", "johnson"] | None = None
+    pin_root_compliance: tuple[NonNegative, Finite, NonNegative] | None = None
+    ring_gap_errors_mm: tuple[Finite, ...] | None = None
+    hole_gap_errors_mm: tuple[Finite, ...] | None = None
+
+    _PARTS: ClassVar[tuple[str, ...]] = tuple(PART_DEFAULTS)
+    _FIXED: ClassVar[tuple[str, ...]] = (
+        "contact_law",
+        "pin_root_compliance",
+        "ring_gap_errors_mm",
+        "hole_gap_errors_mm",
+    )
+
+    @field_validator(
+        "pin_root_compliance", "ring_gap_errors_mm", "hole_gap_errors_mm", mode="before"
+    )
+    @classmethod
+    def _lists_are_sequences(cls, value: object) -> object:
+        return tuple(value) if isinstance(value, list) else value
+
+    def every_input(self) -> tuple[str, ...]:
+        """Names of every input, those of the component model after the published one's."""
+        return (*self.inputs(), *self._PARTS)
+
+    def marked(self) -> tuple[str, ...]:
+        """Names of every key that can have a mark of where its number comes from."""
+        return (*self.every_input(), *self._FIXED)
+
+    def part_values(self) -> dict[str, float]:
+        """Every input of the component model by name, NaN where left out."""
+        given = {name: getattr(self, name) for name in self._PARTS}
+        return {name: math.nan if value is None else value for name, value in given.items()}
+
+    def part_definition(self) -> dict[str, str]:
+        """Return what decides the component model's numbers, for the hash of a study."""
+        names = (*self._PARTS, *self._FIXED)
+        given = {name: getattr(self, name) for name in names}
+        return {name: repr(value) for name, value in given.items() if value is not None}
+
+    def part_table(self) -> pl.DataFrame:
+        """Every number that the component model uses, and whether it is given or assumed.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``key``, ``value`` in the key's unit, ``mark``: the provenance where the file has it,
+            ``given`` where it has none, ``assumed: ...`` where a default stands in; and
+            ``missing``.
+        """
+        rows = []
+        for name, (kind, number, of) in PART_DEFAULTS.items():
+            value = getattr(self, name)
+            mark = self.provenance.get(name, "given")
+            if value is None:
+                value, mark = self._default(kind, number, of)
+            rows.append({"key": name, "value": value, "mark": mark})
+        schema = {"key": pl.String, "value": pl.Float64, "mark": pl.String}
+        return pl.DataFrame(rows, schema=schema)
+
+    def _default(self, kind: str, number: float, of: str) -> tuple[float | None, str]:
+        if kind == "number":
+            return number, "assumed: default"
+        if kind == "same":
+            return getattr(self, of), f"assumed: as {of}"
+        if kind == "widths" and self.disc_width_mm is not None:
+            return number * self.disc_width_mm, f"assumed: {number:.3g} times {of}"
+        return None, "missing"
+
+    def loaded(
+        self,
+        output_torque_nm: float | None = None,
+        crank_rad: float = 0.0,
+        *,
+        engine: Engine = "full",
+    ) -> LoadedState:
+        """Solve the component model at one load and one position of the crank.
+
+        Parameters
+        ----------
+        output_torque_nm : float, optional
+            Torque at the output [N m], not zero; the rated one by default.
+        crank_rad : float
+            Angle of the eccentric from ring pin 0 [rad].
+        engine : {"full", "quadratic"}
+            Power laws, or their secants at the expected forces.
+
+        Returns
+        -------
+        LoadedState
+
+        Raises
+        ------
+        DesignError
+            When the drive cannot be built or has no component model.
+        InputError
+            For a torque that is zero or no finite number.
+
+        Examples
+        --------
+        >>> import cyclosweep as cs
+        >>> drive = cs.Drive.reference_87().replace(ring_pin_radius_mm=2.0, disc_width_mm=12.0)
+        >>> drive.loaded(585.0, 0.3).converged
+        True
+        """
+        torque = self.output_torque_nm if output_torque_nm is None else output_torque_nm
+        study = self.study()
+        if (reason := study.explain(0)) is not None:
+            raise _core.DesignError(f"{self.name}: {reason}")
+        part_study = self.part_study(engine)
+        if (reason := part_study.explain(study, 0)) is not None:
+            raise _core.DesignError(f"{self.name}: {reason}")
+        return loaded_state(study, part_study, torque, crank_rad, engine)
+
+    def part_study(
+        self,
+        engine: Engine = "quadratic",
+        limits: tuple[tuple[str, float, float, int], ...] = (),
+        published_limits: tuple[int, ...] = (),
+    ) -> _core.PartStudy:
+        """Return the core's component model of studies of this drive."""
+        return _core.PartStudy(
+            list(self.part_values().items()),
+            self.contact_law or "palmgren",
+            list(self.pin_root_compliance or _THICK_FLANGE),
+            list(self.ring_gap_errors_mm or ()),
+            list(self.hole_gap_errors_mm or ()),
+            engine,
+            list(limits),
+            list(published_limits),
+        )
