@@ -8,7 +8,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
-from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 
 
 def calibrate(problem: Problem, library: Library, seed: int) -> Search:
@@ -59,4 +59,5 @@ def noise_beyond(problem: Problem, library: Library, known: Candidate | None) ->
         problem.gap[use],
         problem.resolution_deg,
         problem.weight[use],
+        gaps(use, problem.history.run, None)[use],
     )

@@ -266,7 +266,7 @@ def _log_likelihood_ratio(problem: Problem, noise: Noise, mean: Floats, held: Fl
     float
         In nat.
     """
-    gap = gaps(held, problem.history.run, problem.history.time_s)
+    gap = gaps(held, problem.history.run, None if noise.by_rows else problem.history.time_s)
     block = replace(problem, fitted=held, held_out=~held, gap=gap)
     local = replace(noise, gap=gap[held])
     null = fit(block, local, ())

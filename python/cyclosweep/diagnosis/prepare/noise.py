@@ -46,6 +46,8 @@ class Noise:
         are, not what Student's distribution says, for outliers are not drawn from it.
     model_error_factor : float
         Size of noise and model error together over that of the noise; one without model error.
+    by_rows : bool
+        Whether ``gap`` counts rows although there is a clock.
     """
 
     sigma_deg: float
@@ -59,6 +61,7 @@ class Noise:
     structured: bool = False
     score_moments: tuple[float, float] = (1.0, 1.0)
     model_error_factor: float = 1.0
+    by_rows: bool = False
 
     @property
     def spread_deg(self) -> float:

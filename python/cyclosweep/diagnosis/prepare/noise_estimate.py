@@ -21,6 +21,10 @@ UNSTEADY = 2.5
 """Scatter of the size of whitened stretches, over that of steady noise, from which what is left is
 error of the model. Steady noise stays below 1.8 up to an autocorrelation of 0.99; errors of models
 gather at reversals and at certain loads, and begin at 3."""
+UNEVEN = 0.1
+"""Difference of steps by the clock from steps by rows from which it matters which of them count."""
+MUCH_LIKELIER = 3.0
+"""Log likelihood by which correlation from row to row must be ahead of one by the clock [nat]."""
 STRETCHES = 40
 """Stretches whose sizes are compared."""
 CORRELATIONS = np.r_[0.0:0.975:0.01, 0.98:0.9981:0.003]
@@ -33,6 +37,7 @@ def estimate_noise(
     gap: Floats,
     resolution: float,
     weight: Floats,
+    row_gap: Floats | None = None,
 ) -> Noise:
     """Noise from what a flexible basis leaves, by restricted maximum likelihood.
 
@@ -48,6 +53,8 @@ def estimate_noise(
         Step of the angle reading [deg].
     weight : ndarray, shape (n,)
         Samples averaged in each row.
+    row_gap : ndarray, shape (n,), optional
+        The same as ``gap``, counted in rows where that goes by the clock; the likelier one is used.
 
     Returns
     -------
@@ -61,7 +68,13 @@ def estimate_noise(
     scale *= np.sqrt(count / freedom)
     clean = np.clip(left, -4 * scale, 4 * scale)
     best, upper = _correlation(clean, basis, gap)
-    rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
+    by_rows = False
+    if row_gap is not None and not np.allclose(gap, row_gap, atol=UNEVEN):
+        other, its_upper = _correlation(clean, basis, row_gap)
+        by_rows = _likelihood(clean, row_gap, other) > _likelihood(clean, gap, best) + MUCH_LIKELIER
+        if by_rows:
+            best, upper, gap = other, its_upper, row_gap
+    rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap, by_rows=by_rows)
     sigma, tail, moments = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     averaged = float(np.median(weight)) > 1.5
@@ -75,8 +88,8 @@ def estimate_noise(
         # What is left is not noise but error of the model; filtered, it would be fitted by its
         # kinks. Rows count equally then, and noise is what differs from row to row.
         floor = max(_floor(left), resolution / np.sqrt(12.0), 1e-6 * float(np.ptp(angle)), 1e-12)
-        return Noise(floor, 0.0, best, np.inf, 0.0, freedom, gap, structured=True)
-    return Noise(sigma, upper, best, tail, 0.0, freedom, gap, score_moments=moments)
+        return replace(rough, sigma_deg=floor, correlation=0.0, structured=True)
+    return replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments)
 
 
 def unsteadiness(white: Floats) -> float:
@@ -179,6 +192,28 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
     if best == 0 and value[0] - value[1] > 1.0:
         return 0.0, 0.0
     return float(grid[best]), float(grid[within[-1]])
+
+
+def _likelihood(left: Floats, gap: Floats, correlation: float) -> float:
+    """Log likelihood of a residual whose rows correlate by a power of their distance [nat].
+
+    Parameters
+    ----------
+    left : ndarray, shape (n,)
+        Residual [deg].
+    gap : ndarray, shape (n,)
+        Steps since the row before, zero where unrelated.
+    correlation : float
+        Autocorrelation over one step.
+
+    Returns
+    -------
+    float
+    """
+    noise = Noise(1.0, correlation, correlation, np.inf, 0.0, float(len(left)), gap)
+    pair = np.where(gap > 0, correlation**gap, 0.0)
+    spread = len(left) * np.log(max(float(np.mean(noise.whiten(left) ** 2)), 1e-300))
+    return -0.5 * float(spread + np.log1p(-(pair**2)).sum())
 
 
 def _size(

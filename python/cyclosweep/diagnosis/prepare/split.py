@@ -30,7 +30,7 @@ def restrict(problem: Problem, noise: Noise, rows: Flags) -> tuple[Problem, Nois
     Problem, Noise
     """
     kept = problem.fitted & rows
-    gap = gaps(kept, problem.history.run, problem.history.time_s)
+    gap = gaps(kept, problem.history.run, None if noise.by_rows else problem.history.time_s)
     part = replace(problem, fitted=kept, held_out=problem.fitted & ~rows, gap=gap)
     return part, replace(noise, gap=gap[kept])
 
