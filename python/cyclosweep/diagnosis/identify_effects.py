@@ -7,13 +7,17 @@ import numpy as np
 from cyclosweep.diagnosis.calibrate import noise_beyond
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.staged_search import search_in_stages
+from cyclosweep.diagnosis.identify.staged_search import search_in_stages, visibility
 from cyclosweep.diagnosis.identify.verdict import decide
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
+from cyclosweep.simulation.effects.history import Floats
 
 RESTARTS = 2
 """Times the search starts over because the noise turned out to be another."""
+LOUD = 1000.0
+"""Signal-to-noise ratio from which a mismatch is judged against the error of models from the start:
+no law of an effect is exact to a thousandth."""
 SAME_NOISE = 0.04
 """Change of correlation, and of the logarithm of the size, up to which noise is the same."""
 
@@ -34,13 +38,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         With all visited structures. Another one where the best of them showed the noise to be
         another: the search then starts over with that noise.
     """
-    if search.noise.structured:
-        say("looking for the largest effect")
-        flexible = flexible_basis(search.problem, search.library, None)
-        staged = search_in_stages(search, flexible, say)
-        say("fitting whole loops")
-        staged.chosen = stepwise.whole_loop_structure(staged)
-        return staged
+    flexible = flexible_basis(search.problem, search.library, None)
+    if search.noise.structured or visibility(search.baseline.fit, flexible) > LOUD:
+        return _by_size(search, flexible, say)
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()
@@ -54,10 +54,37 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     else:
         search.run(say)
     if decide(search, [], 0.0).unexplained:
-        say("starting over with the largest effect")
-        flexible = flexible_basis(search.problem, search.library, None)
         return search_in_stages(search, flexible, say)
     return search
+
+
+def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Search:
+    """Explain a loud mismatch stage by stage, and fit the result to whole loops.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model.
+    say : callable
+        Called with a few words before each long step.
+
+    Returns
+    -------
+    Search
+        Of the last stage.
+    """
+    staged = search_in_stages(search, flexible, say)
+    if staged.start is not staged.baseline:
+        noise = noise_beyond(search.problem, search.library, staged.start)
+        if not noise.structured and not _is_same(noise, search.noise):
+            say("starting over with better-known noise")
+            again = Search(search.problem, noise, search.library, search.seed)
+            staged = search_in_stages(again, flexible, say, staged.start.fit.terms)
+    say("fitting whole loops")
+    staged.chosen = stepwise.whole_loop_structure(staged)
+    return staged
 
 
 def _is_same(first: Noise, second: Noise) -> bool:

@@ -81,6 +81,7 @@ def search_in_stages(
     searched: Search,
     flexible: Floats,
     say: Callable[[str], None],
+    begun: tuple[Term, ...] = (),
 ) -> Search:
     """Explain the largest mismatch first, then what is left of it, stage by stage.
 
@@ -92,6 +93,8 @@ def search_in_stages(
         Columns of a flexible model, see `visibility`.
     say : callable
         Called with a few words before each long step.
+    begun : tuple of Term
+        Terms accepted before; without them friction is looked for first.
 
     Returns
     -------
@@ -105,7 +108,8 @@ def search_in_stages(
     fitted: FittedStructure = searched.baseline.fit
     mismatch = fitted.rmse_deg
     factor = error_factor(visibility(fitted, flexible))
-    begun = friction_first(searched, searched.noise.with_model_error(factor)) if factor > 1 else ()
+    if not begun and factor > 1.0:
+        begun = friction_first(searched, searched.noise.with_model_error(factor))
     if begun:
         fitted = fit(searched.problem, searched.noise, begun, fitted, rounds=CONVERGED)
         accepted = fitted.terms
