@@ -19,11 +19,13 @@ __all__ = [
     "hole_locus",
     "input_table",
     "kernel_evaluations",
+    "line_contact",
     "output_table",
     "part_input_table",
     "part_output_table",
     "part_status_labels",
     "play",
+    "profile_radii",
     "remembered_datum",
     "sectors",
     "slip_state",
@@ -130,6 +132,16 @@ class PartStudy:
 def part_input_table() -> list[tuple[str, str, float, str]]: ...
 def part_output_table() -> list[tuple[str, str]]: ...
 def part_status_labels() -> list[str]: ...
+def line_contact(
+    force: float,
+    length: float,
+    radii: Sequence[float],
+    first: Sequence[float],
+    second: Sequence[float],
+) -> list[float]: ...
+def profile_radii(
+    lobes: int, ring_radius: float, pin_radius: float, eccentricity: float
+) -> list[float]: ...
 def kernel_evaluations() -> tuple[int, int]: ...
 def input_table() -> list[tuple[str, bool, bool]]: ...
 def output_table(loads: Sequence[float]) -> list[tuple[str, str]]: ...

@@ -32,6 +32,11 @@ REQUIRED = {
 }
 EXPLAINED = {
     "Krol et al. 2019, design 1: inner force": (348.87, 387.5),
+    "unit case: ring force": (10.04, 10.2467),
+    "unit case: output force": (20.26, 20.7239),
+    "unit case: ring pressure": (118.56, 119.441),
+    "unit case: output pressure": (89.21, 90.2207),
+    "29:1: force on a ring roller": (213.3, 217.588),
     "Eq. (6): extra length of a shoulder / d at D/d = 1.25": (0.0453, 0.061),
     "Eq. (6): extra length of a shoulder / d at D/d = 2": (0.1257, 0.1094),
     "Eq. (6): extra length of a shoulder / d at D/d = 3": (0.1493, 0.1204),

@@ -132,10 +132,17 @@ def _computed(model: Model) -> Iterator[Fact]:
 
 def _not_computed() -> Iterator[Fact]:
     for fact, unit, reason in (
-        ("Krol et al. 2019: contact stresses of twelve designs", "MPa", "no contact model yet"),
-        ("unit case: ring force and contact stresses", "N", "no contact model yet"),
-        ("29:1: ring roller and bearing forces", "N", "no contact model yet"),
-        ("Wang 2016: volumes", "mm^3", "no volume in the model"),
+        (
+            "29:1: bearing forces at 0 deg",
+            "N",
+            "at one position of a pattern whose clocking is not printed",
+        ),
+        (
+            "Wang 2016: volumes",
+            "mm^3",
+            "their formula, the last term of which is an area, is not the cylinder of "
+            "drive_volume_mm3",
+        ),
         (
             "13:1 printed drive: output stiffness 310 to 337 N m/rad",
             "N m/rad",

@@ -7,7 +7,14 @@ from dataclasses import asdict
 import polars as pl
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.reference import criteria, identities, independent, paper_87, solved_problems
+from cyclosweep.reference import (
+    contacts,
+    criteria,
+    identities,
+    independent,
+    paper_87,
+    solved_problems,
+)
 from cyclosweep.reference.broken_models import BROKEN_MODELS, broken_model
 from cyclosweep.reference.facts import KINDS, Fact
 from cyclosweep.reference.model import Model
@@ -87,6 +94,7 @@ def _facts(model: Model, drive: Drive) -> list[Fact]:
         *identities.facts(model),
         *solved_problems.facts(model),
         *independent.facts(model),
+        *contacts.facts(model),
         *criteria.mciver(model),
         *criteria.facts(model, drive),
     ]

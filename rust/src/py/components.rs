@@ -8,10 +8,12 @@ use pyo3::types::PyDict;
 use crate::components::contact::PowerLaws;
 use crate::components::equilibrium::{Equilibrium, Loaded};
 use crate::components::inputs::{PART_INPUTS, PARTS_AT, PartInput, Substitute, part_index};
+use crate::components::laws::{self, Material};
 use crate::components::mechanism::{Circles, Mechanism, Position};
 use crate::components::outputs::PartOutput;
 use crate::components::parts::{ContactLaw, Fixed, PartError, Parts};
 use crate::components::pin_root::RootCompliance;
+use crate::components::profile::Profile;
 use crate::components::quadratic;
 use crate::components::study::{PartLimit, PartStudy};
 use crate::components::turn::{Engine, contact_totals};
@@ -306,11 +308,54 @@ fn solved(
     full.solve(torque, &full.first_motion(torque))
 }
 
+/// Half width (mm) and pressure (MPa) of a line contact after Hertz, and its approaches (mm) after
+/// Palmgren and Johnson: force (N), length (mm), radii (mm, a hollow one below zero), and Young's
+/// modulus (GPa) and Poisson's ratio of both bodies.
+#[pyfunction]
+fn line_contact(
+    force: f64,
+    length: f64,
+    radii: [f64; 2],
+    first: [f64; 2],
+    second: [f64; 2],
+) -> [f64; 4] {
+    let [first, second] = [first, second].map(|[modulus, poisson]| Material {
+        youngs_modulus: modulus * 1e9,
+        poisson,
+    });
+    let (length, radii) = (length * MILLI, radii.map(|radius| radius * MILLI));
+    let curvature = 1.0 / radii[0] + 1.0 / radii[1];
+    let found = laws::hertz(force / length, curvature, first, second);
+    let bodies = [(first, radii[0].abs()), (second, radii[1].abs())];
+    [
+        found.half_width * 1e3,
+        found.pressure * 1e-6,
+        laws::palmgren(first, second, length) * force.powf(laws::APPROACH_EXPONENT) * 1e3,
+        laws::johnson(force / length, curvature, bodies) * 1e3,
+    ]
+}
+
+/// Radii of curvature (mm) of a disc's profile at a lobe's top and in its pit, below zero where it
+/// is hollow, and the smallest convex one: lobes, ring circle, ring pin and eccentricity (mm).
+#[pyfunction]
+fn profile_radii(lobes: usize, ring_radius: f64, pin_radius: f64, eccentricity: f64) -> [f64; 3] {
+    let profile = Profile {
+        lobes,
+        ring_radius,
+        pin_radius,
+        eccentricity,
+    };
+    let at = |cosine| 1.0 / profile.path_curvature(cosine) - pin_radius;
+    [at(-1.0), at(1.0), profile.radius_min()]
+}
+
 /// Registers what Python sees of the component model.
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPartStudy>()?;
     module.add_function(wrap_pyfunction!(part_input_table, module)?)?;
     module.add_function(wrap_pyfunction!(part_output_table, module)?)?;
     module.add_function(wrap_pyfunction!(part_status_labels, module)?)?;
+    module.add_function(wrap_pyfunction!(line_contact, module)?)?;
+    module.add_function(wrap_pyfunction!(profile_radii, module)?)?;
     Ok(())
 }
