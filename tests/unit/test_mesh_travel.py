@@ -13,7 +13,7 @@ from cyclosweep.simulation.effects.orders import (
     travel_deg,
     travel_shapes,
 )
-from cyclosweep.simulation.model import EffectValue, Model, linear_twist
+from cyclosweep.simulation.model import EffectValue, linear_twist
 from cyclosweep.simulation.simulate import history_of
 from tests.support.travelling_mesh import COMPLIANCE, PLAY, ramp, recording, staircase, twist
 from tests.unit.test_effects import history
@@ -22,7 +22,7 @@ WAVE = (7.0, 1.5, 20.0)
 """Order, amplitude [deg] and crest [deg]."""
 
 
-def model(scale: float = 1.0, friction_nm: float = 0.0, size: float = WAVE[1]) -> Model:
+def model(scale: float = 1.0, friction_nm: float = 0.0, size: float = WAVE[1]) -> cs.Model:
     """Model with the staircase, measured at the input or, with a scale, at the output."""
     order, _, crest = WAVE
     wave = (
@@ -40,7 +40,7 @@ def model(scale: float = 1.0, friction_nm: float = 0.0, size: float = WAVE[1]) -
     if friction_nm:
         shape = {"slip_deg": 1.7 * scale, "scatter": 0.8}
         effects.insert(0, EffectValue("friction_hysteresis", shape, (friction_nm,)))
-    return Model(
+    return cs.Model(
         compliance_deg_per_nm=COMPLIANCE * scale,
         free_play_deg=PLAY * scale,
         side="input" if scale == 1.0 else "output",
@@ -78,7 +78,7 @@ def test_friction_and_staircase_settle_on_each_other() -> None:
     # Less the staircase at its own angle, the path is that of friction alone, pushed by it.
     plain = np.asarray(angle - staircase(angle, [WAVE]))
     smooth = cs.simulate(
-        Model(**{**vars(rough), "effects": rough.effects[:1]}), programme
+        cs.Model(**{**vars(rough), "effects": rough.effects[:1]}), programme
     ).angle_deg
     assert smooth is not None
     loaded = np.abs(programme.torque_nm) > 2.0
@@ -115,13 +115,13 @@ def test_one_cycle_a_turn_of_the_shaft_is_left_to_the_dial() -> None:
 def test_a_staircase_goes_through_a_model_file(tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text(model(1.0 / 13.0).to_json())
-    assert Model.from_json(path) == model(1.0 / 13.0)
+    assert cs.Model.from_json(path) == model(1.0 / 13.0)
 
 
 def test_a_programme_for_a_travelling_mesh_needs_no_locking_position() -> None:
     load = cs.Recording.from_arrays([1.0, 5.0])
     assert len(cs.simulate(model(), load)) == 2
-    locked = Model(
+    locked = cs.Model(
         1.0, 2.0, effects=(EffectValue("transmission_error", {"order_1": 1.0}, (0.1, 0.2)),)
     )
     with pytest.raises(cs.InputError, match="crank_deg"):
