@@ -26,7 +26,6 @@ MADE = (
 )
 """Made recordings that take seconds."""
 MEASURED = (
-    "conic_runin1",
     "conic_1pre5",
     "damper-30lb-1in-0.5Hz",
     "damper-36lb-1in-0.25Hz",
