@@ -41,8 +41,6 @@ TRIED = 2
 """Effects that are fitted in a step, those whose shape is most like what is left."""
 PARAMETER_CHARGE = 2.0
 """What a parameter must gain: twice the log likelihood of independent pieces."""
-EFFECT_CHARGE = 4.0
-"""What an effect must gain beside its parameters, in the same unit: the odds against one more."""
 
 
 def whole_loop_structure(search: Search) -> Candidate | None:
@@ -66,8 +64,7 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     base = fit_forecast(problem, starting_model(problem), (), zero=False, most=10)
     fits = [_found(search)]
     if len(np.unique(problem.history.run[problem.fitted])) <= FEW_RUNS:
-        usual = _usual(search, base)
-        fits.append(None if usual is None else _extend(search, _prune(problem, usual)))
+        fits.append(_usual_structure(search, base))
     offered = [
         (each, whole_loop_fit(each, base, search.noise))
         for each in fits
@@ -77,9 +74,11 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     offered = [(each, fitted) for each, fitted in offered if fitted.rmse_deg <= room]
     if not offered:
         return None
-    best, fitted = min(offered, key=lambda pair: _cost(pair[0]))
-    if not _predicts_better(best, base):
+    errors = [left_out_error(each) for each, _ in offered]
+    first = int(np.argmin(errors))
+    if errors[first] >= (1.0 - LEAST_GAIN) * left_out_error(base):
         return None
+    best, fitted = offered[first]
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
     return search.add(fitted, gain)
 
@@ -133,22 +132,6 @@ def _better(first: Forecast, second: Forecast) -> Forecast:
     return second if second.error_deg < first.error_deg else first
 
 
-def _predicts_better(model: Forecast, base: Forecast) -> bool:
-    """Whether a model predicts stretches that were left out much better than the baseline.
-
-    Parameters
-    ----------
-    model : Forecast
-    base : Forecast
-        That of the published model alone.
-
-    Returns
-    -------
-    bool
-    """
-    return left_out_error(model) < (1.0 - LEAST_GAIN) * left_out_error(base)
-
-
 def left_out_error(model: Forecast) -> float:
     """Root mean square on stretches that were left out in turn [deg]."""
     problem = model.problem
@@ -159,6 +142,27 @@ def left_out_error(model: Forecast) -> float:
         total += problem.rms_error(part.angle_deg, left) ** 2 * np.count_nonzero(left)
         count += int(np.count_nonzero(left))
     return float(np.sqrt(total / max(count, 1)))
+
+
+def _usual_structure(search: Search, base: Forecast) -> Forecast | None:
+    """Usual effects less those that are not worth their parameters, with what is worth its own.
+
+    Parameters
+    ----------
+    search : Search
+    base : Forecast
+        That of the published model alone.
+
+    Returns
+    -------
+    Forecast or None
+    """
+    problem = search.problem
+    usual = _usual(search, base)
+    if usual is None:
+        return None
+    best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
+    return _extend(search, _prune(problem, best))
 
 
 def _usual(search: Search, base: Forecast) -> Forecast | None:
@@ -258,7 +262,7 @@ def _extend(search: Search, best: Forecast) -> Forecast:
 
 def _cost(model: Forecast) -> float:
     """Minus twice the log likelihood of a residual's pieces, and the charge for the parameters."""
-    charge = PARAMETER_CHARGE * len(model.parameters) + EFFECT_CHARGE * len(model.terms)
+    charge = PARAMETER_CHARGE * len(model.parameters)
     return 2.0 * INDEPENDENT_PIECES * float(np.log(model.error_deg)) + charge
 
 

@@ -27,6 +27,9 @@ FEWEST_CYCLES = 3.0
 """Cycles within the travel from which a wave is looked for. Slower ones look like a curve."""
 MOST_CYCLES = 20.0
 """Cycles within the travel up to which a wave is looked for."""
+FEWEST_STATES = 2 * int(MOST_CYCLES)
+"""Different torques from which waves along the travel are looked for: two for each cycle. With
+fewer, as with weights, waves of different orders are the same."""
 CYCLE_STEP = 0.5
 """Distance of neighbouring orders that are looked for, in cycles within the travel: half of what
 the travel tells apart."""
@@ -69,7 +72,9 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
 
 
 def travel_deg(history: History) -> float:
-    """Range over which the mesh travelled in a recording [deg]."""
+    """Range over which the mesh travelled [deg]; zero where it stood at few places."""
+    if len(np.unique(np.round(history.applied_nm, 6))) < FEWEST_STATES:
+        return 0.0
     return history.mesh_ratio * spread(history.travelled_deg)
 
 
