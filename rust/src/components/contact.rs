@@ -7,7 +7,7 @@ use crate::components::mechanism::{MAX_DISCS, Mechanism};
 /// Penetrations below it count as none (m).
 pub(crate) const LEAST_DEPTH: f64 = 1e-250;
 
-/// Forces of a drive's contacts at penetrations of [`LEAST_DEPTH`] and more.
+/// Forces of a drive's contacts at penetrations of `LEAST_DEPTH` and more.
 pub trait ContactLaws: Copy {
     /// Force over penetration, and slope of the force (N/m), of a ring contact of a disc.
     fn ring(&self, disc: usize, depth: f64) -> (f64, f64);
