@@ -127,7 +127,7 @@ _RENAMED_IN_DIAGNOSIS = {
     "search.Node": "identify.candidate.Candidate",
     "structured.Repetition": "whole_loop.run_comparison.Repetition",
     "structured.Steadiness": "whole_loop.run_comparison.Steadiness",
-    "structured.climb": "whole_loop.stepwise.choose_effects",
+    "structured.climb": "whole_loop.stepwise.whole_loop_structure",
     "structured.repetition": "whole_loop.run_comparison.repetition",
     "structured.steadiness": "whole_loop.run_comparison.steadiness",
     "told.ForecastFit": "whole_loop.known_flank.WholeLoopFit",

@@ -143,7 +143,7 @@ def test_loop_is_described(found: cs.Diagnosis) -> None:
     check_content(found.content)
     topics = {row["topic"] for row in found.content["findings"]}
     assert {
-        "play", "friction hysteresis", "friction that grows with load", "stiffness", "staircase",
+        "play", "friction hysteresis", "friction that grows with load", "stiffness",
     } <= topics  # fmt: skip
     assert found.verdict == "MOSTLY_EXPLAINED"
     hidden = {row["name"] for row in found.content["not_testable"]}
@@ -177,7 +177,8 @@ def test_drift_between_fitted_runs_is_seen(changes: bool) -> None:
     found = cs.diagnose(loops, drive(), full=False)
     check_content(found.content)
     assert found.content["stationary"] is not changes
-    assert ("unfit for a stiffness" in found.statement) is changes
+    unfit = ("unfit for a stiffness", "No stiffness of it holds")
+    assert any(words in found.statement for words in unfit) is changes
 
 
 def test_loops_of_another_size_are_no_drift() -> None:

@@ -262,7 +262,7 @@ def _bounds(concluded: Conclusion, *, excluded: bool) -> tuple[Bound, ...]:
 def _not_testable(concluded: Conclusion) -> tuple[Untestable, ...]:
     """What the recording cannot show, by calibration and by its rig."""
     rows = hidden_effects(concluded.search)
-    if concluded.search.noise.structured:
+    if concluded.search.noise.structured or concluded.search.chosen is not None:
         rows += rig_limits(concluded.search.problem)
     if concluded.accepted.fit.torque_zero is not None:
         rows = [row for row in rows if row.name != "torque_offset"]

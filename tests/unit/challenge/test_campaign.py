@@ -357,7 +357,10 @@ def test_committed_page_is_what_its_figures_give() -> None:
     if not (PROOF / "rigs.json").exists():
         pytest.skip("the record across both generators has not been made")
     content = json.loads((PROOF / "rigs.json").read_text())
-    log = [json.loads(line) for line in (PROOF / "rigs-published.jsonl").open()]
+    log = [
+        json.loads(line)
+        for line in (PROOF / "rigs-published.jsonl").read_text("utf-8").splitlines()
+    ]
     notes = PROOF / "rigs-notes.md"
     words = notes.read_text().strip() if notes.exists() else ""
     assert (PROOF / "rigs.md").read_text("utf-8") == campaign_page(content, log, words)
