@@ -133,7 +133,7 @@ _RENAMED_IN_DIAGNOSIS = {
     "told.ForecastFit": "whole_loop.known_flank.WholeLoopFit",
     "told.told_fit": "whole_loop.known_flank.whole_loop_fit",
     "told.told_path": "whole_loop.known_flank.known_flank_path",
-    "verdict.decide_structured": "identify.verdict.decide_whole_loop",
+    "verdict.decide_structured": "identify.verdict.decide_in_stages",
 }
 RENAMED: dict[str, str] = {
     f"cyclosweep.diagnosis.{old}": f"cyclosweep.diagnosis.{new}"

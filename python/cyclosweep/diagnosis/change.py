@@ -174,20 +174,12 @@ def _by_sweeps(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None
     if left is None or not left.is_change or left.slope * measured.slope < 0:
         return None
     compliance = concluded.accepted.fit.history.compliance_deg_per_nm
-    span = left.last - left.first
-    half = NORMAL_95 * left.std_error
-    return DriveChange(
-        compliance_early_deg_per_nm=compliance
-        * float(np.exp(left.slope * (left.first - left.middle))),
-        compliance_late_deg_per_nm=compliance
-        * float(np.exp(left.slope * (left.last - left.middle))),
-        share=float(np.expm1(left.slope * span)),
-        ci95=(
-            float(np.expm1((left.slope - half) * span)),
-            float(np.expm1((left.slope + half) * span)),
-        ),
-        p_value=left.p_value,
-        sweeps=left.sweeps,
+    return _drive_change(
+        compliance,
+        (left.slope * (left.first - left.middle), left.slope * (left.last - left.middle)),
+        left.std_error * (left.last - left.first),
+        left.p_value,
+        left.sweeps,
     )
 
 
@@ -213,17 +205,50 @@ def _by_growth(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None
     if left is None or left.p_value > CLEANED_LEVEL or left.logarithm < LEAST_CHANGE:
         return None
     compliance = concluded.accepted.fit.history.compliance_deg_per_nm
-    half = NORMAL_95 * measured.std_error
+    return _drive_change(
+        compliance,
+        (-measured.logarithm / 2.0, measured.logarithm / 2.0),
+        measured.std_error,
+        max(measured.p_value, left.p_value),
+        2 * (measured.cycles + 1),
+    )
+
+
+def _drive_change(
+    compliance: float,
+    logarithms: tuple[float, float],
+    std_error: float,
+    p_value: float,
+    sweeps: int,
+) -> DriveChange:
+    """Change of the compliance from the logarithms of what it was early and late.
+
+    Parameters
+    ----------
+    compliance : float
+        Calibrated compliance [deg/(N m)].
+    logarithms : tuple of float
+        Of the compliance early and late, over the calibrated one.
+    std_error : float
+        Standard error of their difference.
+    p_value : float
+        Probability of such a change on a steady drive.
+    sweeps : int
+        Number of compared sweeps.
+
+    Returns
+    -------
+    DriveChange
+    """
+    early, late = logarithms
+    half = NORMAL_95 * std_error
     return DriveChange(
-        compliance_early_deg_per_nm=compliance * float(np.exp(-measured.logarithm / 2.0)),
-        compliance_late_deg_per_nm=compliance * float(np.exp(measured.logarithm / 2.0)),
-        share=float(np.expm1(measured.logarithm)),
-        ci95=(
-            float(np.expm1(measured.logarithm - half)),
-            float(np.expm1(measured.logarithm + half)),
-        ),
-        p_value=max(measured.p_value, left.p_value),
-        sweeps=2 * (measured.cycles + 1),
+        compliance_early_deg_per_nm=compliance * float(np.exp(early)),
+        compliance_late_deg_per_nm=compliance * float(np.exp(late)),
+        share=float(np.expm1(late - early)),
+        ci95=(float(np.expm1(late - early - half)), float(np.expm1(late - early + half))),
+        p_value=p_value,
+        sweeps=sweeps,
     )
 
 

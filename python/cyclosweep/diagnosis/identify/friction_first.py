@@ -24,7 +24,8 @@ EFFECT_CHARGE = 8.0
 LEAST_REMOVED = 0.5
 """Share of the mean square mismatch that these effects must take away together."""
 CONVERGED = 20
-"""Most iterations of a fit."""
+"""Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
+them."""
 
 
 def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
@@ -45,7 +46,8 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     baseline = search.baseline.fit
     best: FittedStructure | None = None
     for limit, slip in STARTS:
-        joint = _fitted(search, noise, _usual(search, limit, slip))
+        begun = [term for term, _ in usual_effects(search, limit, slip)]
+        joint = _fitted(search, noise, begun)
         if joint is not None and (best is None or joint.rmse_deg < best.rmse_deg):
             best = joint
     if best is None:
@@ -57,8 +59,10 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     return best.terms if removed > LEAST_REMOVED else ()
 
 
-def _usual(search: Search, limit_share: float, slip_share: float) -> list[Term]:
-    """Terms of the effects that loops usually show.
+def usual_effects(
+    search: Search, limit_share: float, slip_share: float
+) -> list[tuple[Term, float]]:
+    """Terms of the effects that loops usually show, each with its starting amplitude.
 
     Parameters
     ----------
@@ -68,7 +72,8 @@ def _usual(search: Search, limit_share: float, slip_share: float) -> list[Term]:
 
     Returns
     -------
-    list of Term
+    list of (Term, float)
+        None where the library has none of them.
     """
     history = search.problem.history
     known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
@@ -77,7 +82,8 @@ def _usual(search: Search, limit_share: float, slip_share: float) -> list[Term]:
         begun = effect.usual_start(history, limit_share, slip_share)
         if begun is not None:
             shape, amplitude = begun
-            terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
+            term = Term(effect, shape, None, amplitude if effect.slips else 0.0)
+            terms.append((term, amplitude))
     return terms
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import friction_first
+from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -29,9 +29,6 @@ FAINT = 30.0
 """Signal-to-noise ratio up to which a mismatch is judged against the noise alone."""
 MOST_STAGES = 4
 """Stages of a search."""
-CONVERGED = 20
-"""Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
-them."""
 LEAST_OF_MISMATCH = 0.04
 """Size from which an effect is told from the model error of the others, as a share of the mismatch
 of the calibrated model."""

@@ -86,26 +86,6 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explained, False)
 
 
-def decide_whole_loop(chosen: Candidate | None, *, repeats: bool) -> Decision:
-    """Verdict where the residual is error of the model: only what repeats counts as physics left.
-
-    Parameters
-    ----------
-    chosen : Candidate or None
-        Structure fitted to whole loops.
-    repeats : bool
-        Whether its residual repeats from run to run.
-
-    Returns
-    -------
-    Decision
-    """
-    if chosen is None or not chosen.fit.terms:
-        return Decision("INSUFFICIENT_DATA", None, [], False)
-    verdict: Verdict = "UNKNOWN_PHYSICS" if repeats else "IDENTIFIED"
-    return Decision(verdict, chosen, [(chosen, 1.0)], repeats)
-
-
 def decide_in_stages(search: Search, explained_share: float) -> Decision:
     """Verdict where effects were accepted in stages, against the error of their models.
 

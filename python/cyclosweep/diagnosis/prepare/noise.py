@@ -93,6 +93,11 @@ class Noise:
         rows[1:] /= self._new.reshape(shape)
         return rows
 
+    def log_likelihood(self, rows: Floats) -> float:
+        """Log likelihood [nat] of rows (n,) of this correlation and of whatever size suits best."""
+        size = max(float(np.mean(self.whiten(rows) ** 2)), 1e-300)
+        return -0.5 * float(len(rows) * np.log(size) + np.log1p(-(self._pair**2)).sum())
+
     def residual(self, angle: Floats, mean: Floats) -> tuple[Floats, Floats]:
         """Unit-variance white residual, and the weight by which rows of a design enter.
 

@@ -68,19 +68,19 @@ def estimate_noise(
     scale *= np.sqrt(count / freedom)
     clean = np.clip(left, -4 * scale, 4 * scale)
     best, upper = _correlation(clean, basis, gap)
-    by_rows = False
+    rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
     if row_gap is not None and not np.allclose(gap, row_gap, atol=UNEVEN):
         other, its_upper = _correlation(clean, basis, row_gap)
-        by_rows = _likelihood(clean, row_gap, other) > _likelihood(clean, gap, best) + MUCH_LIKELIER
-        if by_rows:
-            best, upper, gap = other, its_upper, row_gap
-    rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap, by_rows=by_rows)
+        likelier = replace(rough, correlation=other, gap=row_gap).log_likelihood(clean)
+        if likelier > replace(rough, correlation=best).log_likelihood(clean) + MUCH_LIKELIER:
+            rough = Noise(1.0, its_upper, other, np.inf, 0.0, freedom, row_gap, by_rows=True)
+            best = other
     sigma, tail, moments = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     averaged = float(np.median(weight)) > 1.5
     if resolution > 0 and not averaged:
         if sigma**2 < 0.165 * resolution**2 and count >= 60:
-            coarse = _coarse_noise(angle, whole, gap, resolution, sigma)
+            coarse = _coarse_noise(angle, whole, rough.gap, resolution, sigma)
             if coarse is not None:
                 return coarse
         sigma = max(sigma, resolution / np.sqrt(12.0))
@@ -192,28 +192,6 @@ def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float
     if best == 0 and value[0] - value[1] > 1.0:
         return 0.0, 0.0
     return float(grid[best]), float(grid[within[-1]])
-
-
-def _likelihood(left: Floats, gap: Floats, correlation: float) -> float:
-    """Log likelihood of a residual whose rows correlate by a power of their distance [nat].
-
-    Parameters
-    ----------
-    left : ndarray, shape (n,)
-        Residual [deg].
-    gap : ndarray, shape (n,)
-        Steps since the row before, zero where unrelated.
-    correlation : float
-        Autocorrelation over one step.
-
-    Returns
-    -------
-    float
-    """
-    noise = Noise(1.0, correlation, correlation, np.inf, 0.0, float(len(left)), gap)
-    pair = np.where(gap > 0, correlation**gap, 0.0)
-    spread = len(left) * np.log(max(float(np.mean(noise.whiten(left) ** 2)), 1e-300))
-    return -0.5 * float(spread + np.log1p(-(pair**2)).sum())
 
 
 def _size(

@@ -10,6 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.friction_first import (
+    PARAMETER_CHARGE,
+    STARTS,
+    usual_effects,
+)
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
@@ -33,14 +38,10 @@ FEW_RUNS = 4
 MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
 all rows is taken instead."""
-STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
-"""Friction limits and presliding distances to start from, as shares of torque and twist."""
 MOST_ADDED = 1
 """Effects added beyond the usual ones."""
 TRIED = 2
 """Effects that are fitted in a step, those whose shape is most like what is left."""
-PARAMETER_CHARGE = 2.0
-"""What a parameter must gain: twice the log likelihood of independent pieces."""
 
 
 def whole_loop_structure(search: Search) -> Candidate | None:
@@ -182,21 +183,14 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
     Forecast or None
     """
     problem = search.problem
-    history = problem.history
-    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
     zero = not problem.one_sided and _crosses_late(problem)
     found: Forecast | None = None
     for limit, slip in STARTS:
-        terms, values = [], []
-        for effect in known.values():
-            begun = effect.usual_start(history, limit, slip)
-            if begun is None:
-                continue
-            shape, amplitude = begun
-            terms.append(Term(effect, shape, None, amplitude if effect.slips else 0.0))
-            values.append(EffectValue(effect.name, shape, (amplitude,)))
-        if not terms:
+        begun = usual_effects(search, limit, slip)
+        if not begun:
             return None
+        terms = [term for term, _ in begun]
+        values = [EffectValue(term.name, term.shape, (size,)) for term, size in begun]
         model = replace(base.model, effects=tuple(values))
         joint = fit_forecast(problem, model, terms, zero=zero, most=10)
         found = joint if found is None else _better(found, joint)
