@@ -31,6 +31,7 @@ __all__ = [
     "slip_state",
     "solve_slip",
     "status_labels",
+    "torque_twist",
 ]
 
 DEBUG_BUILD: Final[bool]
@@ -129,6 +130,15 @@ class PartStudy:
         self, study: Study, variant: int, torque: float, crank: float, engine: str
     ) -> _State: ...
 
+def torque_twist(
+    part_study: PartStudy,
+    study: Study,
+    side: str,
+    crank: float,
+    sense: float,
+    torque: float,
+    steps: int,
+) -> tuple[_Reals, npt.NDArray[np.bool_], float, bool]: ...
 def part_input_table() -> list[tuple[str, str, float, str]]: ...
 def part_output_table() -> list[tuple[str, str]]: ...
 def part_status_labels() -> list[str]: ...

@@ -8,7 +8,7 @@ from typing import Annotated, cast
 import typer
 
 from cyclosweep import __version__
-from cyclosweep.cli import challenge, diagnose, simulate, sweep, validate
+from cyclosweep.cli import challenge, diagnose, simulate, sweep, torque_twist, validate
 from cyclosweep.cli.output import fail
 from cyclosweep.errors import DesignError, InputError, SweepError
 
@@ -27,6 +27,7 @@ app.command()(validate.validate)
 app.command()(sweep.sweep)
 app.command()(sweep.shard)
 app.command()(simulate.simulate)
+app.command()(torque_twist.torque_twist)
 app.command()(diagnose.diagnose)
 app.command()(challenge.challenge)
 

@@ -27,15 +27,28 @@ def simulate(
     predict: Annotated[
         Literal["angle", "torque"], typer.Option(help="What to predict from the other.")
     ] = "angle",
+    law: Annotated[
+        Literal["published", "components"],
+        typer.Option(
+            "--model", help="Of a drive: the published model, or the component model's curve."
+        ),
+    ] = "published",
+    crank_deg: Annotated[
+        float,
+        typer.Option("--crank-deg", help="Crank's angle in the middle, component model only."),
+    ] = 0.0,
 ) -> None:
-    """Predict the twist of a load programme by the published or by a repaired model."""
+    """Predict the twist of a load programme by a drive's model or by a repaired one."""
     from cyclosweep.simulation.simulate import simulate as run
 
     if not program.is_file():
         raise InputError(f"{program}: no such file")
     _refuse_output(out, (program, _metadata(program), Path(model)))
     chosen = _model(model)
-    table = run(chosen, _programme(program, chosen), predict).to_frame()
+    programme = _programme(program, chosen)
+    if law == "components":
+        chosen = _of_components(chosen, model, programme.side, crank_deg)
+    table = run(chosen, programme, predict).to_frame()
     try:
         with unfinished(out) as file:
             table.write_csv(file)
@@ -63,6 +76,17 @@ def _model(name: str) -> Model | Drive:
     from cyclosweep.simulation.model import Model
 
     return Model.from_json(name) if name.endswith(".json") else Drive.load(name)
+
+
+def _of_components(
+    drive: Model | Drive, name: str, side: Literal["input", "output"], crank_deg: float
+) -> Model:
+    """Component model of a drive at the shaft of a programme, its contacts' friction included."""
+    from cyclosweep.simulation.model import Model
+
+    if isinstance(drive, Model):
+        raise InputError(f"--model: found {name}, a model already, expected a drive")
+    return Model.of_components(drive, side, crank_deg, friction=True)
 
 
 def _programme(path: Path, model: Model | Drive) -> Recording:

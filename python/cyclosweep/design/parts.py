@@ -11,7 +11,9 @@ from pydantic import Field, field_validator
 import cyclosweep._core as _core
 from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.loaded import LoadedState, loaded_state
+from cyclosweep.design.nominal_line import Side
 from cyclosweep.design.shaft import NonNegative, Positive
+from cyclosweep.design.torque_twist import Rig, TorqueTwist, torque_twist_curve
 
 __all__ = ["PART_DEFAULTS", "Engine", "PartInputs"]
 
@@ -162,13 +164,76 @@ class PartInputs(DriveInputs):
         True
         """
         torque = self.output_torque_nm if output_torque_nm is None else output_torque_nm
+        study, part_study = self.accepted(engine)
+        return loaded_state(study, part_study, torque, crank_rad, engine)
+
+    def torque_twist(
+        self,
+        side: Side = "input",
+        crank_deg: float = 0.0,
+        *,
+        to_load_tn: float = 4.5,
+        points: int = 200,
+    ) -> TorqueTwist:
+        """Torque over twist by the component model, through the free play, in both directions.
+
+        Parameters
+        ----------
+        side : {"input", "output"}
+            Shaft that is turned, the other one locked. At the input the crank travels while it
+            loads, as in the published rig, and the mesh with it.
+        crank_deg : float
+            Angle of the crank in the middle of its play [deg].
+        to_load_tn : float
+            Largest load, in T_N at the input and in rated torques at the output [1].
+        points : int
+            Equal steps of the turn in each direction; the end of the free play is a further point.
+
+        Returns
+        -------
+        TorqueTwist
+
+        Raises
+        ------
+        DesignError
+            When the drive cannot be built or has no component model.
+        InputError
+            For an argument that is no such number.
+
+        Notes
+        -----
+        Friction does not change the sharing: the loop lies by what all contacts' sliding takes on
+        either side of the frictionless curve. Its rounding where the motion turns back is left out.
+
+        Examples
+        --------
+        >>> import cyclosweep as cs
+        >>> drive = cs.Drive.reference_87().replace(
+        ...     ring_pin_radius_mm=2.0, disc_width_mm=12.0, hole_clearance_mm=0.1
+        ... )
+        >>> curve = drive.torque_twist("input", points=50)
+        >>> curve.reached, curve.table["load_tn"].max() > 4.4
+        (True, True)
+        """
+        study, parts = self.accepted("full")
+        nominal = self.nominal_torque_nm if side == "input" else self.output_torque_nm
+        return torque_twist_curve(study, parts, Rig(side, crank_deg, nominal, to_load_tn, points))
+
+    def accepted(self, engine: Engine) -> tuple[_core.Study, _core.PartStudy]:
+        """Return the core's studies of this drive alone.
+
+        Raises
+        ------
+        DesignError
+            When the drive cannot be built or has no component model.
+        """
         study = self.study()
         if (reason := study.explain(0)) is not None:
             raise _core.DesignError(f"{self.name}: {reason}")
         part_study = self.part_study(engine)
         if (reason := part_study.explain(study, 0)) is not None:
             raise _core.DesignError(f"{self.name}: {reason}")
-        return loaded_state(study, part_study, torque, crank_rad, engine)
+        return study, part_study
 
     def part_study(
         self,

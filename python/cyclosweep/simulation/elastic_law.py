@@ -44,10 +44,10 @@ def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
     Returns
     -------
     ElasticLaw or None
-        None where no effect of the model is elastic, so that the law is a line.
+        None where no effect of the model is elastic and it has no curve: the law is a line.
     """
     effects = [value for value in model.effects if value.effect.elastic]
-    if not effects:
+    if not effects and model.elastic_curve is None:
         return None
     reach = 3.0 * max(largest_torque_nm, 1e-9)
     half = reach * np.geomspace(1e-5, 1.0, LAW_POINTS)
@@ -56,7 +56,7 @@ def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
     history = History(
         applied_nm=torque,
         elastic_nm=torque,
-        angle_deg=side * model.free_play_deg + model.compliance_deg_per_nm * torque,
+        angle_deg=side * model.free_play_deg + model.elastic_twist(torque),
         side=side,
         run=np.zeros(len(torque), dtype=np.int64),
         restart=np.arange(len(torque)) == 0,
@@ -64,7 +64,7 @@ def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
         free_play_deg=model.free_play_deg,
         output_pin_count=model.output_pin_count,
     )
-    twist = model.compliance_deg_per_nm * torque + linear_twist(effects, history)
+    twist = model.elastic_twist(torque) + linear_twist(effects, history)
     least = 1e-3 * model.compliance_deg_per_nm
     upper = np.maximum.accumulate(np.r_[0.0, twist[LAW_POINTS:]] - least * np.r_[0.0, half])
     lower = np.maximum.accumulate(np.r_[0.0, -twist[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])

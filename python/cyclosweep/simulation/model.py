@@ -12,6 +12,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects import Effect, find
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.elastic_curve import ElasticCurve
 from cyclosweep.simulation.json_fields import (
     count_of,
     list_of,
@@ -22,6 +23,10 @@ from cyclosweep.simulation.json_fields import (
 )
 
 SCHEMA = "cyclosweep.model/1"
+
+PRESLIDING = 1e-3
+"""Presliding distance over the largest twist where the component model gives the friction: small,
+since that model knows none."""
 
 
 @dataclass(frozen=True)
@@ -147,6 +152,8 @@ class Model:
         Name of the drive.
     notes : tuple of str
         What a user of the model should know, one sentence each.
+    elastic_curve : ElasticCurve or None
+        Twist over torque beyond the free play, instead of the line.
     """
 
     compliance_deg_per_nm: float
@@ -158,6 +165,13 @@ class Model:
     drive: str = ""
     torque_zero_nm: float = 0.0
     notes: tuple[str, ...] = field(default=())
+    elastic_curve: ElasticCurve | None = None
+
+    def elastic_twist(self, torque_nm: Floats) -> Floats:
+        """Twist beyond the free play without effects [deg], by the curve or by the line."""
+        if self.elastic_curve is None:
+            return self.compliance_deg_per_nm * torque_nm
+        return self.elastic_curve.twist(torque_nm)
 
     @classmethod
     def of_drive(cls, drive: Drive, side: Literal["input", "output"] = "input") -> Self:
@@ -183,6 +197,74 @@ class Model:
             drive=drive.name,
         )
 
+    @classmethod
+    def of_components(
+        cls,
+        drive: Drive,
+        side: Literal["input", "output"] = "input",
+        crank_deg: float = 0.0,
+        *,
+        friction: bool = False,
+    ) -> Self:
+        """Component model of a drive at one of its shafts, free play and curve from its clearances.
+
+        Parameters
+        ----------
+        drive : Drive
+            A drive that has a component model.
+        side : {"input", "output"}
+            Shaft to which angles and torques belong, the other one locked.
+        crank_deg : float
+            Angle of the crank in the middle of its play [deg].
+        friction : bool
+            Whether the contacts' Coulomb friction is added, as ``load_dependent_friction`` of the
+            share that it has in the whole curve. At the output, where the component model knows no
+            sliding, there is none.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        DesignError
+            When the drive has no component model.
+        InputError
+            When the curve ends before 4.5 times the nominal torque.
+
+        Examples
+        --------
+        >>> import cyclosweep as cs
+        >>> drive = cs.Drive.reference_87().replace(
+        ...     ring_pin_radius_mm=2.0, disc_width_mm=12.0, hole_clearance_mm=0.1
+        ... )
+        >>> cs.Model.of_components(drive).free_play_deg < drive.free_play_deg
+        True
+        """
+        curve = drive.torque_twist(side, crank_deg)
+        if not (curve.reached and curve.table["converged"].all()):
+            raise InputError(
+                f"{drive.name}: the component model finds no equilibria up to 4.5 times "
+                f"{curve.nominal_torque_nm:.4g} N m at the {side}"
+            )
+        below, above = curve.free_play_deg
+        share = curve.friction_share() if friction else 0.0
+        farthest = float(curve.table["angle_deg"].to_numpy().max())
+        presliding = {"slip_deg": PRESLIDING * farthest, "scatter": 0.3}
+        return cls(
+            compliance_deg_per_nm=curve.line().compliance_deg_per_nm,
+            free_play_deg=0.5 * (above - below),
+            datum_deg=0.5 * (above + below),
+            side=side,
+            effects=(EffectValue("load_dependent_friction", presliding, (share,)),)
+            if share > 0
+            else (),
+            output_pin_count=int(drive.output_pin_count),
+            drive=drive.name,
+            notes=("Twist and free play are the component model's, not the published one's.",),
+            elastic_curve=ElasticCurve.of_curve(curve),
+        )
+
     def to_json(self) -> str:
         """Return the content of ``model.json``."""
         content = {
@@ -199,6 +281,8 @@ class Model:
             "effects": [value.as_dict() for value in self.effects],
             "notes": list(self.notes),
         }
+        if self.elastic_curve is not None:
+            content["elastic_curve"] = self.elastic_curve.as_dict()
         return json.dumps(content, indent=1)
 
     @classmethod
@@ -243,6 +327,7 @@ class Model:
             raise InputError(f"side: found {side!r}, expected 'input' or 'output'")
         entries = list_of(content, "effects")
         notes = list_of(content, "notes")
+        curve = object_of(content, "elastic_curve", {})
         return cls(
             compliance_deg_per_nm=compliance,
             free_play_deg=number_of(base, "free_play_deg"),
@@ -256,6 +341,7 @@ class Model:
             output_pin_count=count_of(content, "output_pin_count", 8),
             drive=text_of(content, "drive", ""),
             notes=tuple(text_of({"note": note}, "note") for note in notes),
+            elastic_curve=ElasticCurve.from_dict(curve) if curve else None,
         )
 
 

@@ -54,7 +54,7 @@ def history_of(recording: Recording, model: Model) -> History:
     if recording.history == "continuous":
         restart = np.arange(len(torque)) == 0
     side = _flanks(torque, restart)
-    twist = model.compliance_deg_per_nm * torque
+    twist = model.elastic_twist(torque)
     return History(
         applied_nm=torque,
         elastic_nm=torque,
@@ -227,7 +227,7 @@ def settle(
             history = _slide(model, history, sliding, added, law, known_side)
         else:
             base = model.datum_deg + history.side * model.free_play_deg
-            angle = base + model.compliance_deg_per_nm * history.applied_nm + added
+            angle = base + model.elastic_twist(history.applied_nm) + added
             if moving:
                 history = on_the_mesh(moving, history, angle - linear_twist(moving, history))
             else:

@@ -63,7 +63,33 @@ struct DiscTerms {
 struct Terms {
     discs: [DiscTerms; MAX_DISCS],
     flange_gradient: f64,
+    /// Stiffness (N/m) of what holds the flange.
+    held: f64,
     residual: f64,
+}
+
+/// What acts on the flange: a force that does not change, or a spring whose far end is held.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pull {
+    /// Force (N) at R_OP on a flange in its middle.
+    pub force: f64,
+    /// How much of it goes with the flange's motion (N/m); zero for a force that does not change.
+    pub stiffness: f64,
+    /// Force (N) against which forces out of balance are measured.
+    pub scale: f64,
+}
+
+impl Pull {
+    /// A constant force (N).
+    #[inline(always)]
+    #[must_use]
+    pub const fn of_force(force: f64) -> Self {
+        Self {
+            force,
+            stiffness: 0.0,
+            scale: force.abs(),
+        }
+    }
 }
 
 /// Spring of the eccentric's bearing: gradient and second derivatives xx, xy, yy.
@@ -169,9 +195,10 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
     }
 
     #[inline(always)]
-    fn terms(&self, motion: &Motion, force: f64) -> Terms {
+    fn terms(&self, motion: &Motion, pull: Pull) -> Terms {
         let mut terms = Terms {
-            flange_gradient: -force,
+            flange_gradient: pull.stiffness * motion.flange - pull.force,
+            held: pull.stiffness,
             ..Terms::default()
         };
         for disc in 0..self.mechanism.discs {
@@ -184,6 +211,12 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
         }
         terms.residual = terms.residual.max(terms.flange_gradient.abs());
         terms
+    }
+
+    /// Force (N) at R_OP that holds the flange in a motion.
+    #[must_use]
+    pub fn flange_force(&self, motion: &Motion) -> f64 {
+        self.terms(motion, Pull::default()).flange_gradient
     }
 
     /// The contacts' laws.
@@ -211,7 +244,7 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
     #[inline(always)]
     #[must_use]
     pub fn stiffness_at(&self, motion: &Motion) -> f64 {
-        self.newton_step(&self.terms(motion, 0.0)).1
+        self.newton_step(&self.terms(motion, Pull::default())).1
     }
 
     /// A motion to start from: every disc touches the ring and a pin, about as deep as the load
@@ -263,13 +296,22 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
     #[inline(always)]
     #[must_use]
     pub fn solve(&self, torque: f64, start: &Motion) -> Equilibrium {
+        self.settle(
+            Pull::of_force(torque / self.mechanism.pin_circle_radius),
+            start,
+        )
+    }
+
+    /// The equilibrium under a pull on the flange, from a motion near it.
+    #[inline(always)]
+    #[must_use]
+    pub fn settle(&self, pull: Pull, start: &Motion) -> Equilibrium {
         let mechanism = self.mechanism;
-        let force = torque / mechanism.pin_circle_radius;
-        let tolerance = self.tolerance * force.abs();
-        let accepted = tolerance.max(ACCEPTED * force.abs());
+        let tolerance = self.tolerance * pull.scale;
+        let accepted = tolerance.max(ACCEPTED * pull.scale);
         let cap = LONGEST_STEP * mechanism.eccentricity;
         let mut motion = *start;
-        let mut terms = self.terms(&motion, force);
+        let mut terms = self.terms(&motion, pull);
         let mut steps = 0;
         while terms.residual > tolerance && steps < MOST_STEPS {
             steps += 1;
@@ -287,7 +329,7 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
             let mut part = 1.0;
             for trial in 0..MOST_TRIALS {
                 let at_trial = moved(&motion, &step, part);
-                let terms_there = self.terms(&at_trial, force);
+                let terms_there = self.terms(&at_trial, pull);
                 let slope_there = self.slope(&terms_there, &step);
                 let enough = slope_there.abs() <= SLOPE_LEFT * slope.abs()
                     || terms_there.residual <= tolerance
@@ -340,7 +382,7 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
             above += block.transfer(of_disc.gradient);
         }
         let stiffness = below;
-        let flange = above / (below.max(0.0) + shift);
+        let flange = above / (below.max(0.0) + terms.held + shift);
         let mut step = Motion {
             flange,
             ..Motion::default()

@@ -7,6 +7,7 @@
 
 mod block;
 pub mod contact;
+pub mod curve;
 pub mod equilibrium;
 mod forces;
 #[cfg(test)]

@@ -105,11 +105,17 @@ impl PyPartStudy {
         Ok((status, any_refused, columns))
     }
 
-    fn parts(&self, study: &PyStudy, variant: u64) -> PyResult<Parts> {
+    /// Everything that the component model reads of a variant.
+    pub(crate) fn parts(&self, study: &PyStudy, variant: u64) -> PyResult<Parts> {
         study.check_indices(&[variant])?;
         self.study
             .parts_of(study.study(), variant)?
             .map_err(|error| refused(&error))
+    }
+
+    /// What of the parts no study varies.
+    pub(crate) const fn fixed(&self) -> &Fixed {
+        self.study.fixed()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Bindings for Python, and nothing else; everything Python can see is registered here.
 
 mod components;
+mod curve;
 mod formulas;
 mod hysteresis;
 mod study;
@@ -63,6 +64,7 @@ fn status_labels() -> Vec<&'static str> {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     hysteresis::register(module)?;
     components::register(module)?;
+    curve::register(module)?;
     module.add("DEBUG_BUILD", cfg!(debug_assertions))?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SEGMENT_FIELDS", SEGMENT_FIELDS)?;
