@@ -57,7 +57,7 @@ $(VENV)/.ready: $(SOURCES)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --group dev
-	. $(BIN)/activate && PIP_QUIET=1 maturin develop --release --locked --quiet --extras report,dask,challenge
+	. $(BIN)/activate && PIP_QUIET=1 maturin develop --release --locked --quiet --extras report,dask,challenge,formats
 	touch $@
 
 demo: env

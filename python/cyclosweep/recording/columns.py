@@ -7,11 +7,12 @@ import numpy as np
 import polars as pl
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording import table
-from cyclosweep.recording.csv_text import open_csv
-from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata
+from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata, conversion
+from cyclosweep.recording.opening import ENDINGS, open_table
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
+from cyclosweep.recording.units import find_unit, split_name
 
 __all__ = ["Columns", "canonical_columns", "file_columns", "load", "stem"]
 
@@ -29,7 +30,7 @@ def stem(path: Path) -> str:
     """
     name = path.name[:-3] if path.name.lower().endswith(".gz") else path.name
     main, dot, ending = name.rpartition(".")
-    if dot and ending.lower() in {"csv", "tsv", "txt", "dat", "parquet", "pq"}:
+    if dot and ending.lower() in ENDINGS:
         name = main
     return name or path.name
 
@@ -70,16 +71,56 @@ def load(
     InputError
         For a column that is missing, or a cell that is not of its kind.
     """
-    if parquet := table.is_parquet(path):
-        header = table.parquet_columns(path)
-    else:
-        text = open_csv(path)
-        header = text.header
-    _refuse_missing_columns(path, meta_path, meta, sources, header)
-    numbers, words = _needed(path, meta_path, meta, sources, header)
-    if parquet:
-        return table.read_parquet(path, sorted(numbers), sorted(words)), []
-    return table.read_csv(path, text, sorted(numbers), sorted(words)), list(text.notes)
+    wanted = {source.column for source in sources.values()}
+    table = open_table(path, meta.table, wanted)
+    _refuse_missing_columns(path, meta_path, meta, sources, table.header)
+    numbers, words = _needed(path, meta_path, meta, sources, table.header)
+    frame = table.read(sorted(numbers), sorted(words))
+    notes = list(table.notes)
+    _take_stated_units(path, table, sources, notes)
+    return frame, notes
+
+
+def _take_stated_units(
+    path: Path, table: FileTable, sources: dict[str, Column], notes: list[str]
+) -> None:
+    """Convert from the unit that the file states, where the metadata give neither unit nor scale.
+
+    Only a unit in brackets behind a name, or in a row or property of its own, counts as stated.
+
+    Parameters
+    ----------
+    path : Path
+        The recording's file, for messages.
+    table : FileTable
+        With the stated units.
+    sources : dict of str to Column
+        Changed in place.
+    notes : list of str
+        Each unit that is converted is added to it.
+
+    Raises
+    ------
+    InputError
+        For a unit of something else, or one that needs another number.
+    """
+    for name, source in sources.items():
+        if source.unit is not None or source.scale != 1.0 or source.column not in table.header:
+            continue
+        stated = table.units.get(source.column)
+        if stated is None:
+            _, written, in_brackets = split_name(source.column)
+            stated = written if in_brackets else None
+        if stated is None or name == "run" or find_unit(stated) is None:
+            continue
+        converted = source.model_copy(update={"unit": stated})
+        try:
+            factor, offset = conversion(name, converted)
+        except ValueError as error:
+            raise InputError(f"{path}, column {source.column}: {error}") from None
+        sources[name] = converted
+        if (factor, offset) != (1.0, source.offset):
+            notes.append(f"{source.column} is in {stated}: times {factor:.6g} to {name}.")
 
 
 def _refuse_missing_columns(
@@ -113,7 +154,7 @@ def _refuse_missing_columns(
     if sources["torque_nm"].column not in header:
         raise InputError(
             f"{path}: no column torque_nm, found {found}; name it under [columns] in "
-            f"{meta_path or stem(path) + '.toml'}"
+            f"{meta_path or stem(path) + '.toml'}, or let `cyclosweep inspect` propose that file"
         )
 
 
@@ -198,7 +239,8 @@ def canonical_columns(
         if source.column not in frame.columns:
             columns[name] = None
             continue
-        values = frame[source.column].to_numpy().astype(np.float64) * source.scale + source.offset
+        factor, offset = conversion(name, source)
+        values = frame[source.column].to_numpy().astype(np.float64) * factor + offset
         if source.modulo is not None:
             values, count = unwrap(values, source.modulo)
             notes.append(f"{name} is known modulo {source.modulo:g}: {count} wraps undone.")

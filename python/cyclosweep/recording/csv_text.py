@@ -2,20 +2,25 @@
 
 import csv
 import gzip
+import re
 import zlib
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.cells import is_number
+from cyclosweep.recording.file_table import spelling
 from cyclosweep.recording.messages import one_line, shown
+from cyclosweep.recording.metadata import TableOptions
+from cyclosweep.recording.text_table import SEPARATORS, TextTable, find_text_table
 
-__all__ = ["CsvText", "number_in", "open_csv", "read_bytes", "to_utf8"]
+__all__ = ["CsvText", "open_csv", "read_bytes", "to_utf8"]
 
 MAX_BYTES = 8 * 2**30
 """Largest uncompressed text that is read [byte]."""
 
 _CHUNK = 1 << 22
-_SEPARATORS = ",;\t|"
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,14 +33,20 @@ class CsvText:
         UTF-8 without a byte-order mark.
     separator : str
         Character between cells.
-    decimal_comma : bool
-        Whether numbers are written 1,5.
+    decimal : str
+        Decimal sign.
+    thousands : str
+        Sign between groups of three digits; empty: none.
     start : int
         Where the rows below the header begin [byte].
     line : int
         Line number of the header.
+    body_line : int
+        Number of the last line above the rows.
     header : list of str
         Column names without surrounding blanks.
+    units : dict of str to str
+        Units in a row of their own, by column.
     notes : list of str
         What was recognised.
     """
@@ -43,9 +54,12 @@ class CsvText:
     content: bytes
     start: int
     line: int
+    body_line: int
     separator: str
-    decimal_comma: bool
+    decimal: str
+    thousands: str
     header: list[str]
+    units: dict[str, str]
     notes: list[str]
 
 
@@ -107,7 +121,10 @@ def to_utf8(content: bytes, path: Path) -> bytes:
                 raise InputError(f"{path}: UTF-16 byte-order mark, but not UTF-16 text") from None
     content = content.removeprefix(b"\xef\xbb\xbf")
     if b"\0" in content[:_CHUNK]:
-        raise InputError(f"{path}: binary data, expected a CSV or Parquet file")
+        raise InputError(
+            f"{path}: binary data, expected text (CSV, LabVIEW, JSON), Parquet, Excel, MATLAB or "
+            "TDMS; export the table as CSV"
+        )
     head = content[:_CHUNK]
     try:
         head.decode()
@@ -117,20 +134,37 @@ def to_utf8(content: bytes, path: Path) -> bytes:
     return content
 
 
-def open_csv(path: Path) -> CsvText:
-    """Read a CSV file and find its header, separator and decimal sign.
+def open_csv(content: bytes, path: Path, options: TableOptions, wanted: Collection[str]) -> CsvText:
+    """Find header, separator and decimal sign of the text of a CSV file.
+
+    Parameters
+    ----------
+    content : bytes
+        The text in UTF-8, from `to_utf8`.
+    path : Path
+        The file.
+    options : TableOptions
+        What the metadata say about the table.
+    wanted : collection of str
+        Names of columns that the metadata give.
+
+    Returns
+    -------
+    CsvText
 
     Raises
     ------
     InputError
-        The file cannot be read, has no header row, or has one column.
+        It has no header row, or one column.
     """
-    content = to_utf8(read_bytes(path), path)
     if b"\n" not in content:
         content = content.replace(b"\r", b"\n")
     start, stop, line = _header_line(content, path)
     head = content[start:stop].decode("utf-8", "replace").strip("\r\n")
-    separator = max(_SEPARATORS, key=head.count)
+    separator = max(SEPARATORS, key=head.count)
+    place = find_text_table(content, options.header_row, wanted)
+    if place is not None and (place.line != line or place.body_line != line or place.blanks):
+        return _placed(content, place, options)
     if separator not in head and head.strip().strip('"') != "torque_nm":  # a programme's least
         raise InputError(
             f"{path}, line {line}: one column ({shown(head)}), expected at least torque_nm and "
@@ -142,14 +176,85 @@ def open_csv(path: Path) -> CsvText:
         raise InputError(
             f"{path}, line {line}: unreadable header ({one_line(str(error))})"
         ) from None
-    if all(_is_number(name) or not name for name in names):
+    if all(is_number(name) or not name for name in names):
         raise InputError(
             f"{path}, line {line}: found numbers ({shown(head)}), expected a header row with "
             "column names such as torque_nm,angle_deg"
         )
     decimal_comma = separator != "," and b"," in content[stop : stop + 10_000]
     notes = [f"Cells divided by '{separator}', decimal commas."] if decimal_comma else []
-    return CsvText(content, stop, line, separator, decimal_comma, names, notes)
+    decimal, thousands = ("," if decimal_comma else "."), ""
+    text = CsvText(content, stop, line, line, separator, decimal, thousands, names, {}, notes)
+    return _spelt(text, options)
+
+
+def _placed(content: bytes, place: TextTable, options: TableOptions) -> CsvText:
+    """Text whose table does not begin with its first line.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole text.
+    place : TextTable
+        Where the table stands.
+    options : TableOptions
+        What the metadata say about the table.
+
+    Returns
+    -------
+    CsvText
+    """
+    notes = []
+    if place.above:
+        notes.append(f"Names of the columns found in line {place.line}.")
+    if place.units:
+        notes.append(
+            "Row of units below the names: "
+            + ", ".join(f"{name} [{unit}]" for name, unit in place.units.items())
+            + "."
+        )
+    start, separator = place.start, place.separator
+    if place.blanks:
+        body = re.sub(
+            rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+(?=\r?$)", b"", content[start:])
+        )
+        content = content[:start] + body
+    text = CsvText(
+        content, start, place.line, place.body_line, separator, ".", "", place.names,
+        place.units, notes,
+    )  # fmt: skip
+    return _spelt(text, options)
+
+
+def _spelt(text: CsvText, options: TableOptions) -> CsvText:
+    """Find out how numbers are spelt, thousands divided included, unless the metadata say.
+
+    Parameters
+    ----------
+    text : CsvText
+        The text; its cells are looked at again.
+    options : TableOptions
+        What the metadata say about the table.
+
+    Returns
+    -------
+    CsvText
+        With decimal sign and thousands separator.
+    """
+    sample = text.content[text.start : text.start + 20_000].decode("utf-8", "replace")
+    cells = [
+        c for row in csv.reader(sample.splitlines()[:200], delimiter=text.separator) for c in row
+    ]
+    decimal, thousands = spelling(cells)
+    if text.decimal == "," and decimal == "." and not thousands:
+        decimal = ","
+    decimal, thousands = options.decimal or decimal, options.thousands or thousands
+    if thousands == decimal:
+        thousands = ""
+    notes = list(text.notes)
+    if decimal == "," and not any("decimal commas" in note for note in notes):
+        notes.append(f"Cells divided by '{text.separator}', decimal commas.")
+    return replace(text, decimal=decimal, thousands=thousands, notes=notes)
 
 
 def _header_line(content: bytes, path: Path) -> tuple[int, int, int]:
@@ -183,18 +288,3 @@ def _header_line(content: bytes, path: Path) -> tuple[int, int, int]:
             return start, stop, line
         start = stop
     raise InputError(f"{path}: only comments, expected a header row and samples")
-
-
-def number_in(cell: str) -> float | None:
-    """Value of a cell, None where it is not a number."""
-    if "_" in cell:
-        return None
-    try:
-        return float(cell)
-    except ValueError:
-        return None
-
-
-def _is_number(cell: str) -> bool:
-    """Whether a header cell is a number, also with a decimal comma."""
-    return number_in(cell.replace(",", ".")) is not None

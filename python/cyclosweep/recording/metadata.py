@@ -8,9 +8,19 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_
 
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
 from cyclosweep.errors import InputError
+from cyclosweep.recording.units import QUANTITIES, find_unit
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
 """Column names of a recording, each with its unit."""
+
+UNIT_EXAMPLES = {
+    "torque_nm": "'N m', 'lbf in', 'kN' with lever_arm_m, 'A' with nm_per_a",
+    "angle_deg": "'deg', 'mrad', 'arcmin', 'turns', 'counts' with counts_per_turn",
+    "time_s": "'s', 'ms', 'min'",
+    "crank_deg": "'deg', 'turns', 'counts' with counts_per_turn",
+    "temperature_c": "'degC', 'K', 'degF'",
+}
+"""Units for messages."""
 
 CanonicalName = Literal["torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c"]
 SelectValue = int | float | str
@@ -29,25 +39,57 @@ class Column(_Strict):
     ----------
     column : str
         Its name in the file.
+    unit : str or None
+        Unit of the file, for example "mrad" or "lbf in"; None: the one that the file states, and
+        where it states none the canonical one.
     scale : float
-        Factor from the file's unit to the canonical one.
+        Factor after the unit; without a unit, from the file's unit to the canonical one.
     offset : float
         Added after scaling [canonical unit].
     modulo : float or None
         The value is known only up to a multiple of this [canonical unit]; steps beyond half of it
         are taken as a wrap.
+    counts_per_turn : float or None
+        Counts of the encoder in one turn of the shaft at which the twist is wanted.
+    lever_arm_m : float or None
+        Lever arm at which a force was measured [m].
+    nm_per_a : float or None
+        Torque that one ampere makes at the shaft at which it is wanted [N m/A].
     """
 
     column: str
+    unit: str | None = None
     scale: float = 1.0
     offset: float = 0.0
     modulo: float | None = Field(default=None, gt=0)
+    counts_per_turn: float | None = Field(default=None, gt=0)
+    lever_arm_m: float | None = Field(default=None, gt=0)
+    nm_per_a: float | None = Field(default=None, gt=0)
 
     @model_validator(mode="after")
     def _scale_is_not_zero(self) -> Self:
         if self.scale == 0:
             raise ValueError("scale must not be 0")
         return self
+
+
+class TableOptions(_Strict):
+    """Where the table stands in its file and how numbers are spelt; found out where absent.
+
+    Attributes
+    ----------
+    sheet : str or None
+        Sheet of a workbook, group of a TDMS file, structure of a MATLAB, HDF5 or JSON file.
+    header_row : int or None
+        Line or row of the names, from 1.
+    decimal, thousands : str or None
+        Decimal sign, and sign between groups of three digits.
+    """
+
+    sheet: str | None = None
+    header_row: int | None = Field(default=None, ge=1)
+    decimal: Literal[".", ","] | None = None
+    thousands: Literal[".", ",", "'", " "] | None = None
 
 
 class Merge(_Strict):
@@ -57,9 +99,12 @@ class Merge(_Strict):
     ----------
     same_time : bool
         Average consecutive rows of one run that share a clock tick.
+    neighbours : int
+        Average so many consecutive rows of one run, after `same_time`; 1: none.
     """
 
     same_time: bool = False
+    neighbours: int = Field(default=1, ge=1)
 
 
 class Score(_Strict):
@@ -73,6 +118,53 @@ class Score(_Strict):
     """
 
     abs_max: dict[str, float] = Field(default_factory=dict)
+
+
+def conversion(name: str, source: Column) -> tuple[float, float]:
+    """Way from the file's unit to the canonical one.
+
+    Parameters
+    ----------
+    name : str
+        Canonical column.
+    source : Column
+        Its unit and what goes with it.
+
+    Returns
+    -------
+    factor, offset : float
+        Canonical value = factor * value + offset.
+
+    Raises
+    ------
+    ValueError
+        For a unit of something else, or one that needs another number.
+    """
+    given = {
+        "counts": ("counts_per_turn", source.counts_per_turn),
+        "force": ("lever_arm_m", source.lever_arm_m),
+        "current": ("nm_per_a", source.nm_per_a),
+    }
+    unit = None
+    if source.unit is not None:
+        unit = find_unit(source.unit, name)
+        if unit is None:
+            examples = UNIT_EXAMPLES.get(name)
+            expected = f"a unit such as {examples}" if examples else "no unit"
+            raise ValueError(f"unit: found {source.unit!r}, expected {expected}")
+    kind = None if unit is None else unit.kind
+    factor, offset = (1.0, 0.0) if unit is None else (unit.factor, unit.offset)
+    for needed_by, (key, value) in given.items():
+        allowed = kind == needed_by or (unit is None and needed_by in QUANTITIES[name])
+        if value is not None and not allowed:
+            raise ValueError(f"{key} belongs to a unit of {needed_by}")
+        if kind == needed_by and value is None:
+            raise ValueError(
+                f"unit {source.unit!r} is a unit of {needed_by}: {key} must be given, too"
+            )
+        if value is not None:
+            factor *= 360.0 / value if needed_by == "counts" else value
+    return factor * source.scale, offset * source.scale + source.offset
 
 
 def _named_column(value: object) -> object:
@@ -99,8 +191,10 @@ class Metadata(_Strict):
         The rig was reset, so that the datum cannot remember earlier runs either.
     conditioning_runs, holdout_runs : list of int
         Runs that are simulated only, and runs that are kept for the verdict.
+    table : TableOptions
+        Where the table stands in its file, and how numbers are spelt.
     columns : dict
-        File column, scale and modulo of each canonical column that differs.
+        File column, unit, scale and modulo of each canonical column that differs.
     select : dict
         Values to keep, by column; `abs_max` limits magnitudes.
     score : Score
@@ -117,12 +211,22 @@ class Metadata(_Strict):
     reset_between_runs: bool = False
     conditioning_runs: list[int] = Field(default_factory=list)
     holdout_runs: list[int] = Field(default_factory=list)
+    table: TableOptions = Field(default_factory=TableOptions)
     columns: dict[CanonicalName, Annotated[Column, BeforeValidator(_named_column)]] = Field(
         default_factory=dict
     )
     select: dict[str, list[SelectValue] | dict[str, float]] = Field(default_factory=dict)
     score: Score = Field(default_factory=Score)
     merge: Merge = Field(default_factory=Merge)
+
+    @model_validator(mode="after")
+    def _units_fit_their_columns(self) -> Self:
+        for name, source in self.columns.items():
+            try:
+                conversion(name, source)
+            except ValueError as error:
+                raise ValueError(f"columns.{name}: {error}") from None
+        return self
 
     @model_validator(mode="after")
     def _select_is_lists_and_limits(self) -> Self:

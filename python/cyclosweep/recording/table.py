@@ -8,11 +8,9 @@ from pathlib import Path
 import polars as pl
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording.csv_text import CsvText, number_in
+from cyclosweep.recording.cells import MISSING, clock_seconds, is_clock, is_number, spelt_number
+from cyclosweep.recording.csv_text import CsvText
 from cyclosweep.recording.messages import one_line, shown
-
-MISSING = ["", "NA", "N/A", "na", "n/a", "null", "None", "-", "--", "#N/A"]
-"""Cell contents that stand for a value that is not there."""
 
 
 def is_parquet(path: Path) -> bool:
@@ -53,12 +51,101 @@ def read_csv(
         if text.header.count(name) > 1:
             raise InputError(f"{path}, line {text.line}: column {name} appears more than once")
     _refuse_long_rows(path, text)
+    clocks = _clocks(path, text, [name for name, kind in kinds.items() if kind == pl.Float64])
+    kinds |= dict.fromkeys(clocks, pl.String())
+    return _clocks_read(path, text, _frame(path, text, kinds), clocks)
+
+
+def _frame(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
+    """Parse cells fast, and where that fails row by row.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    text : CsvText
+        What `open_csv` returned.
+    kinds : mapping of str to polars.DataType
+        Type of each column wanted.
+
+    Returns
+    -------
+    polars.DataFrame
+    """
     try:
+        if text.thousands:
+            raise pl.exceptions.ComputeError("groups of digits")
         return _parse(text, kinds)
     except pl.exceptions.NoDataError:
-        return pl.DataFrame(schema=kinds)
+        return pl.DataFrame(schema=dict(kinds))
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException):
         return _parse_slowly(path, text, kinds)
+
+
+def _clocks(path: Path, text: CsvText, names: Iterable[str]) -> list[str]:
+    """Find the columns of numbers whose first value is a date or a time of day.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    text : CsvText
+        What `open_csv` returned.
+    names : iterable of str
+        Columns to look at.
+
+    Returns
+    -------
+    list of str
+    """
+    clocks, left = [], {name: text.header.index(name) for name in names}
+    for count, (_, cells) in enumerate(_rows(path, text)):
+        for name, place in list(left.items()):
+            cell = cells[place].strip() if place < len(cells) else ""
+            if cell not in MISSING:
+                del left[name]
+                if is_clock(cell) and not is_number(cell):
+                    clocks.append(name)
+        if not left or count > 100:
+            break
+    return clocks
+
+
+def _clocks_read(
+    path: Path, text: CsvText, frame: pl.DataFrame, clocks: Iterable[str]
+) -> pl.DataFrame:
+    """Turn columns of dates or times into seconds since the first.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    text : CsvText
+        What `open_csv` returned; a note is added to its notes.
+    frame : polars.DataFrame
+        What was read, times as text.
+    clocks : iterable of str
+        Columns of times.
+
+    Returns
+    -------
+    polars.DataFrame
+
+    Raises
+    ------
+    InputError
+        For a cell that is no time.
+    """
+    for name in clocks:
+        seconds, bad = clock_seconds(frame[name].to_list())
+        if bad is not None:
+            raise InputError(
+                f"{path}, data row {bad + 1}, column {name}: found {shown(frame[name][bad])}, "
+                "expected a time as in the rows above"
+            )
+        text.notes.append(f"{name} holds dates or times of day: seconds since the first are taken.")
+        frame = frame.with_columns(pl.Series(name, seconds))
+    return frame
 
 
 def _parse(text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
@@ -80,7 +167,7 @@ def _parse(text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
     frame = pl.read_csv(
         io.BytesIO(header + text.content[text.start :]),
         separator=text.separator,
-        decimal_comma=text.decimal_comma,
+        decimal_comma=text.decimal == ",",
         comment_prefix="#",
         columns=list(places.values()),
         schema_overrides={place: kinds[name] for name, place in places.items()},
@@ -125,7 +212,7 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
             elif kinds[name] == pl.String:
                 columns[name].append(cell)
             else:
-                number = number_in(cell.replace(",", ".") if text.decimal_comma else cell)
+                number = _number(cell, text)
                 if number is None:
                     raise InputError(
                         f"{path}, line {line}, column {name}: found {shown(cell)}, "
@@ -134,6 +221,26 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
                 columns[name].append(number)
     frame = pl.DataFrame(columns, schema=dict(kinds))
     return frame.filter(~pl.all_horizontal(pl.all().is_null()))
+
+
+def _number(cell: str, text: CsvText) -> float | None:
+    """Value of a cell as the file spells numbers; without thousands also with a decimal point.
+
+    Parameters
+    ----------
+    cell : str
+        The cell.
+    text : CsvText
+        What `open_csv` returned.
+
+    Returns
+    -------
+    float or None
+        None where it is no number.
+    """
+    if not text.thousands and "." in cell and "," not in cell:
+        return spelt_number(cell, ".", "")
+    return spelt_number(cell, text.decimal, text.thousands)
 
 
 def _refuse_long_rows(path: Path, text: CsvText) -> None:
@@ -184,7 +291,7 @@ def _rows(path: Path, text: CsvText) -> Iterator[tuple[int, list[str]]]:
         Where the text cannot be divided into cells.
     """
     stream = io.TextIOWrapper(io.BytesIO(text.content), encoding="utf-8", errors="replace")
-    for _ in range(text.line):
+    for _ in range(text.body_line):
         next(stream)
     reader = csv.reader(
         (line if not line.startswith("#") else "\n" for line in stream), delimiter=text.separator
@@ -192,9 +299,9 @@ def _rows(path: Path, text: CsvText) -> Iterator[tuple[int, list[str]]]:
     try:
         for cells in reader:
             if cells:
-                yield text.line + reader.line_num, cells
+                yield text.body_line + reader.line_num, cells
     except csv.Error as error:
-        line = text.line + reader.line_num
+        line = text.body_line + reader.line_num
         raise InputError(f"{path}, line {line}: unreadable ({one_line(str(error))})") from None
 
 
@@ -224,12 +331,25 @@ def read_parquet(path: Path, numbers: Iterable[str], words: Iterable[str]) -> pl
         raise InputError(f"{path}: not a readable Parquet file ({_first_line(error)})") from None
     for name in numbers:
         kind = frame.schema[name]
+        if kind.is_temporal():
+            frame = frame.with_columns(_seconds(frame[name]))
+            continue
         if not (kind.is_numeric() or kind == pl.Null):
             raise InputError(f"{path}, column {name}: found type {kind}, expected numbers")
     return frame.with_columns(
         *(pl.col(name).cast(pl.Float64) for name in numbers),
         *(pl.col(name).cast(pl.String) for name in words),
     )
+
+
+def _seconds(times: pl.Series) -> pl.Series:
+    """Seconds since the first of dates, times or durations."""
+    if times.dtype == pl.Duration:
+        return times.dt.total_nanoseconds() * 1e-9
+    if times.dtype == pl.Time:
+        return times.cast(pl.Int64) * 1e-9
+    instants = times.cast(pl.Datetime("ns")).cast(pl.Int64)
+    return (instants - instants.drop_nulls()[:1].sum()) * 1e-9
 
 
 def parquet_columns(path: Path) -> list[str]:

@@ -1,0 +1,1 @@
+"""Files of other programs, each as a table of named columns."""

@@ -1,0 +1,139 @@
+"""Which format a file has, told by its first bytes, and the table in it."""
+
+import zipfile
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import polars as pl
+
+from cyclosweep.errors import InputError
+from cyclosweep.recording import table
+from cyclosweep.recording.csv_text import CsvText, open_csv, read_bytes, to_utf8
+from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.formats.excel import read_excel
+from cyclosweep.recording.formats.json_text import read_json
+from cyclosweep.recording.formats.labview import read_lvm
+from cyclosweep.recording.formats.matlab import read_hdf5, read_mat5
+from cyclosweep.recording.formats.tdms import read_tdms
+from cyclosweep.recording.metadata import TableOptions
+
+__all__ = ["ENDINGS", "open_table"]
+
+_WORKBOOKS = {"xlsx", "xlsm", "xlsb", "xls", "ods"}
+ENDINGS = frozenset(
+    {"csv", "tsv", "txt", "dat", "asc", "parquet", "pq", "lvm", "tdms", "mat", "h5", "hdf5",
+     "json", "jsonl"} | _WORKBOOKS
+)  # fmt: skip
+"""Endings of names that say the format and are not part of a recording's name."""
+
+
+@dataclass(slots=True)
+class _CsvTable:
+    """Table of a text; see `FileTable`."""
+
+    path: Path
+    text: CsvText
+
+    @property
+    def header(self) -> list[str]:
+        """Names of the columns."""
+        return self.text.header
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units in a row of their own."""
+        return self.text.units
+
+    @property
+    def notes(self) -> list[str]:
+        """What was recognised."""
+        return self.text.notes
+
+    def read(self, numbers: Iterable[str], words: Iterable[str]) -> pl.DataFrame:
+        """Return the named columns as Float64 and String."""
+        return table.read_csv(self.path, self.text, numbers, words)
+
+
+@dataclass(slots=True)
+class _ParquetTable:
+    """Table of a Parquet file; see `FileTable`."""
+
+    path: Path
+    header: list[str]
+    units: dict[str, str]
+    notes: list[str]
+
+    def read(self, numbers: Iterable[str], words: Iterable[str]) -> pl.DataFrame:
+        """Return the named columns as Float64 and String."""
+        return table.read_parquet(self.path, list(numbers), list(words))
+
+
+def open_table(path: Path, options: TableOptions, wanted: Collection[str]) -> FileTable:
+    """Find the format of a file and the table in it.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    options : TableOptions
+        What the metadata say about the table.
+    wanted : collection of str
+        Names of columns that the metadata give.
+
+    Returns
+    -------
+    FileTable
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or has no table.
+    """
+    ending = path.suffix.lower().removeprefix(".")
+    try:
+        with path.open("rb") as file:
+            head = file.read(64)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    if table.is_parquet(path):
+        return _ParquetTable(path, table.parquet_columns(path), {}, [])
+    if head.startswith((b"\x89HDF\r\n\x1a\n", b"MATLAB 7.3")):
+        return read_hdf5(path, options)
+    if head.startswith(b"MATLAB 5.0") or ending == "mat":
+        return read_mat5(path, options)
+    if head.startswith(b"TDSm") or ending == "tdms":
+        return read_tdms(path, options)
+    zipped = head.startswith(b"PK\x03\x04") and zipfile.is_zipfile(path)
+    if ending in _WORKBOOKS or zipped or head.startswith(b"\xd0\xcf\x11\xe0"):
+        return read_excel(path, options, wanted)
+    if not head:
+        read_bytes(path)  # says that the file is empty
+    return _text_table(path, ending, options, wanted)
+
+
+def _text_table(
+    path: Path, ending: str, options: TableOptions, wanted: Collection[str]
+) -> FileTable:
+    """Open a text, compressed or not.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    ending : str
+        Of its name, without the dot.
+    options, wanted
+        As for `open_table`.
+
+    Returns
+    -------
+    FileTable
+    """
+    content = to_utf8(read_bytes(path), path)
+    start = content[:64].lstrip()
+    if start.startswith(b"LabVIEW Measurement"):
+        return read_lvm(path, content)
+    if ending in {"json", "jsonl"} or (start[:1] in b"{[" and start[1:].lstrip()[:1] in b'"{['):
+        return read_json(path, content, options)
+    return _CsvTable(path, open_csv(content, path, options, wanted))

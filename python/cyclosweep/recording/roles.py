@@ -1,0 +1,142 @@
+"""Which column of a file is torque, angle, clock, run: told by its name and unit."""
+
+import re
+from dataclasses import dataclass
+
+from cyclosweep.recording.units import QUANTITIES, find_unit, split_name
+
+__all__ = ["COMMAND", "Named", "describe", "is_known_name"]
+
+_WORDS: dict[str, tuple[str, ...]] = {
+    "torque_nm": ("torque", "moment", "drehmoment", "tq", "trq", "md", "mt", "couple", "torsion"),
+    "angle_deg": ("angle", "position", "twist", "rotation", "winkel", "drehwinkel", "verdrehung",
+                  "verdrehwinkel", "theta", "phi", "pos", "encoder", "angolo", "deflection",
+                  "displacement", "resolver"),
+    "time_s": ("time", "zeit", "t", "clock", "timestamp", "elapsed", "temps", "x_value",
+               "datetime", "uhrzeit", "zeitstempel"),
+    "run": ("run", "test_nr", "test", "trial", "versuch", "lauf", "cycle", "zyklus", "run_nr",
+            "repetition", "segment"),
+    "crank_deg": ("crank", "mesh", "kurbel", "locking", "lock"),
+    "temperature_c": ("temperature", "temp", "temperatur", "toil", "oil"),
+}  # fmt: skip
+_SYMBOLS = {
+    "torque_nm": {"m", "T", "M", "Mt", "Md"},
+    "angle_deg": {"φ", "ϕ", "θ", "phi"},
+    "time_s": {"t"},
+}
+COMMAND = frozenset(
+    ("command", "commanded", "cmd", "control", "setpoint", "set", "soll", "sollwert", "target",
+     "demand", "desired", "reference", "ref", "limit", "error", "err", "sp")
+)  # fmt: skip
+"""Words that mark what was asked for, not what was measured."""
+_FORCE_WORDS = ("force", "kraft", "load", "last", "loadcell")
+_CURRENT_WORDS = ("current", "strom", "iq", "amps", "ampere")
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """What the name and the unit of a column say.
+
+    Attributes
+    ----------
+    column : str
+        Its name in the file.
+    role : str or None
+        Canonical column it is likely to be.
+    unit : str or None
+        Unit as written; None where the file says none.
+    kind : str or None
+        What the unit measures; where only the name speaks of a force or current, that.
+    is_command : bool
+        The name says that it was asked for, not measured.
+    is_canonical : bool
+        It is a canonical name, which carries its unit.
+    """
+
+    column: str
+    role: str | None
+    unit: str | None
+    kind: str | None
+    is_command: bool
+    is_canonical: bool
+
+
+def describe(column: str, unit: str | None = None) -> Named:
+    """Tell from name and unit what a column is.
+
+    Parameters
+    ----------
+    column : str
+        Name in the file.
+    unit : str, optional
+        Unit that the file gives elsewhere, as in a row of units.
+
+    Returns
+    -------
+    Named
+
+    Examples
+    --------
+    >>> describe("Drehmoment [lb in]").role
+    'torque_nm'
+    >>> describe("CONTROL_TORQUE").is_command
+    True
+    """
+    if column in QUANTITIES:
+        own = {"torque_nm": "N m", "angle_deg": "deg", "time_s": "s", "crank_deg": "deg"}
+        return Named(column, column, unit or own.get(column), None, False, True)
+    bare, written, _ = split_name(column)
+    unit = unit if unit is not None and find_unit(unit) else written
+    words = _words_of(bare)
+    role = _role_of(bare.strip(), words)
+    known = None if unit is None else find_unit(unit, role) or find_unit(unit)
+    kind = known.kind if known else None
+    if kind is None and any(word in _CURRENT_WORDS for word in words):
+        kind = "current"
+    if kind is None and role is None and any(word in _FORCE_WORDS for word in words):
+        kind = "force"
+    if role is None and kind in ("torque", "force", "current"):
+        role = "torque_nm"
+    elif role is None and kind in ("angle", "counts"):
+        role = "angle_deg"
+    elif role is None and kind in ("time", "temperature") and len(words) <= 2:
+        role = "time_s" if kind == "time" else "temperature_c"
+    if role is not None and unit is not None and find_unit(unit, role) is None:
+        role = None  # "torque error [%]", "position [mm]": the unit is of something else
+    return Named(column, role, unit, kind, any(word in COMMAND for word in words), False)
+
+
+def is_known_name(cell: str) -> bool:
+    """Whether a cell reads like the name of a column of a torsion test."""
+    return describe(cell.strip()).role is not None
+
+
+def _words_of(name: str) -> list[str]:
+    """Words of a name in lower case, also of camelCase and with numbers split off."""
+    spaced = re.sub(r"(?<=[a-zäöü])(?=[A-Z])", " ", name)
+    return [word for word in re.split(r"[^a-zäöüßφθϕ]+", spaced.casefold()) if word]
+
+
+def _role_of(name: str, words: list[str]) -> str | None:
+    """Canonical column that a name stands for.
+
+    Parameters
+    ----------
+    name : str
+        Without its unit.
+    words : list of str
+        Its words in lower case.
+
+    Returns
+    -------
+    str or None
+    """
+    for role, symbols in _SYMBOLS.items():
+        if name in symbols:
+            return role
+    if name.casefold() in ("x_value", "test_nr", "run_nr"):
+        return "time_s" if name.casefold() == "x_value" else "run"
+    for role in ("temperature_c", "crank_deg", "torque_nm", "angle_deg", "run", "time_s"):
+        if any(word in _WORDS[role] for word in words):
+            return role
+    return None

@@ -1,0 +1,207 @@
+"""Units that rigs write: what they measure, and their factor to the canonical unit."""
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["QUANTITIES", "Kind", "Unit", "find_unit", "split_name"]
+
+Kind = Literal["torque", "force", "current", "angle", "counts", "time", "temperature"]
+
+INCH_M = 0.0254
+"""One inch [m], by definition."""
+POUND_FORCE_N = 4.4482216152605
+"""One pound-force [N]: 0.45359237 kg times standard gravity of 9.80665 m/s2, by definition."""
+KILOPOND_N = 9.80665
+"""One kilogram-force [N], by definition."""
+
+QUANTITIES: dict[str, tuple[Kind, ...]] = {
+    "torque_nm": ("torque", "force", "current"),
+    "angle_deg": ("angle", "counts"),
+    "time_s": ("time",),
+    "run": (),
+    "crank_deg": ("angle", "counts"),
+    "temperature_c": ("temperature",),
+}
+"""What each canonical column may be computed from, first what it is itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit and its way to the canonical one.
+
+    Attributes
+    ----------
+    kind : str
+        What it measures.
+    factor : float
+        Canonical units in one of it: N m, N, A, deg, counts, s or degC.
+    offset : float
+        Added after multiplying, as for degF [degC].
+    """
+
+    kind: Kind
+    factor: float
+    offset: float = 0.0
+
+
+_TORQUE = {
+    "n m": 1.0,
+    "nm": 1.0,
+    "newton meter": 1.0,
+    "newton metre": 1.0,
+    "n cm": 1e-2,
+    "ncm": 1e-2,
+    "n mm": 1e-3,
+    "nmm": 1e-3,
+    "mn m": 1e-3,
+    "mnm": 1e-3,
+    "cn m": 1e-2,
+    "cnm": 1e-2,
+    "kn m": 1e3,
+    "knm": 1e3,
+    "kn mm": 1.0,
+    "knmm": 1.0,
+    **dict.fromkeys(
+        ("lb in", "lbf in", "in lb", "in lbf", "lbin", "inlb", "lbs in", "in lbs", "inlbs",
+         "lbfin", "inlbf", "pound inch", "inch pound"),
+        POUND_FORCE_N * INCH_M,
+    ),
+    **dict.fromkeys(
+        ("lb ft", "lbf ft", "ft lb", "ft lbf", "lbft", "ftlb", "lbs ft", "ft lbs", "ftlbs",
+         "lbfft", "ftlbf", "pound foot", "foot pound"),
+        POUND_FORCE_N * 12 * INCH_M,
+    ),
+    **dict.fromkeys(
+        ("oz in", "ozf in", "in oz", "in ozf", "ozin", "inoz"), POUND_FORCE_N * INCH_M / 16
+    ),
+    **dict.fromkeys(("kgf m", "kp m", "kgfm", "kpm"), KILOPOND_N),
+    **dict.fromkeys(("kgf cm", "kp cm", "kgfcm", "kg cm"), KILOPOND_N / 100),
+}  # fmt: skip
+_FORCE = {
+    "n": 1.0,
+    "newton": 1.0,
+    "kn": 1e3,
+    "mn": 1e-3,
+    **dict.fromkeys(("lbf", "lb", "lbs"), POUND_FORCE_N),
+    **dict.fromkeys(("kgf", "kp"), KILOPOND_N),
+}
+_CURRENT = {"a": 1.0, "amp": 1.0, "amps": 1.0, "ampere": 1.0, "ma": 1e-3}
+_ANGLE = {
+    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°", "grad"), 1.0),
+    "mdeg": 1e-3,
+    **dict.fromkeys(("rad", "radian", "radians"), math.degrees(1.0)),
+    "mrad": math.degrees(1e-3),
+    **dict.fromkeys(("urad", "µrad", "μrad"), math.degrees(1e-6)),
+    **dict.fromkeys(("arcmin", "arc min", "'", "′"), 1 / 60),
+    **dict.fromkeys(("arcsec", "arc sec", '"', "″"), 1 / 3600),
+    **dict.fromkeys(
+        ("rev", "revs", "revolution", "revolutions", "turn", "turns", "rot", "u", "umdr"), 360.0
+    ),
+    "gon": 0.9,
+}
+_COUNTS = dict.fromkeys(
+    ("count", "counts", "cts", "tick", "ticks", "inc", "incs", "increments", "inkremente", "qc"),
+    1.0,
+)
+_TIME = {
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
+    **dict.fromkeys(("us", "µs", "μs", "usec"), 1e-6),
+    "ns": 1e-9,
+    **dict.fromkeys(("min", "mins", "minute", "minutes"), 60.0),
+    **dict.fromkeys(("h", "hr", "hour", "hours"), 3600.0),
+}
+_TEMPERATURE: dict[str, tuple[float, float]] = {
+    **dict.fromkeys(("c", "degc", "deg c", "°c", "° c", "℃", "celsius"), (1.0, 0.0)),
+    **dict.fromkeys(("k", "kelvin"), (1.0, -273.15)),
+    **dict.fromkeys(("f", "degf", "deg f", "°f", "° f", "fahrenheit"), (5 / 9, -160 / 9)),
+}
+_SIMPLE: dict[Kind, dict[str, float]] = {
+    "torque": _TORQUE,
+    "force": _FORCE,
+    "current": _CURRENT,
+    "angle": _ANGLE,
+    "counts": _COUNTS,
+    "time": _TIME,
+}
+
+_IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[({<](?P<unit>[^\[\](){}<>]*)[\])}>]\s*$")
+_AFTER_SIGN = re.compile(r"^(?P<name>.*?)(?:\s*/\s*|,\s*|\s+in\s+)(?P<unit>[^/,]+)$")
+_LAST_WORDS = re.compile(r"^(?P<name>.*?[^_\s])[_\s]+(?P<unit>[^_\s]+(?:[_\s][^_\s]+)?)$")
+
+
+def find_unit(text: str, column: str | None = None) -> Unit | None:
+    """Recognise a unit; blanks, dots, dashes and case between its parts do not matter.
+
+    Parameters
+    ----------
+    text : str
+        As written, for example ``"lb-in"`` or ``"[mrad]"``.
+    column : str, optional
+        Canonical column it belongs to; without it every kind is tried, torque first.
+
+    Returns
+    -------
+    Unit or None
+        None where it is no unit of such a column.
+
+    Examples
+    --------
+    >>> find_unit("kN·m")
+    Unit(kind='torque', factor=1000.0, offset=0.0)
+    >>> find_unit("lbf", "angle_deg") is None
+    True
+    """
+    plain = text.strip().strip("[](){}<>").strip()
+    tidy = " ".join(re.sub(r"[·⋅∙•*.\-_×]", " ", plain).split())
+    kinds = QUANTITIES[column] if column else (*_SIMPLE, "temperature")
+    for kind in kinds:
+        for spelt in (tidy.casefold(), plain.casefold()):
+            if kind == "temperature":
+                if spelt in _TEMPERATURE:
+                    return Unit(kind, *_TEMPERATURE[spelt])
+            elif spelt in _SIMPLE[kind]:
+                return Unit(kind, _SIMPLE[kind][spelt])
+    return None
+
+
+def split_name(header: str) -> tuple[str, str | None, bool]:
+    """Divide a header such as ``Torque [lb in]`` into its name and its unit.
+
+    Parameters
+    ----------
+    header : str
+        Name of a column as the file has it.
+
+    Returns
+    -------
+    name : str
+        Without the unit.
+    unit : str or None
+        As written; None where none is recognised.
+    explicit : bool
+        Whether it stands in brackets, which nothing but a unit does.
+
+    Examples
+    --------
+    >>> split_name("Torque [lb in]")
+    ('Torque', 'lb in', True)
+    >>> split_name("twist_mrad")
+    ('twist', 'mrad', False)
+    """
+    if (match := _IN_BRACKETS.match(header)) and find_unit(match["unit"]):
+        return match["name"], match["unit"].strip(), True
+    if (match := _AFTER_SIGN.match(header)) and find_unit(match["unit"]):
+        return match["name"], match["unit"].strip(), False
+    if match := _LAST_WORDS.match(header):
+        words = re.split(r"[_\s]+", header)
+        for count in (2, 1):
+            unit = " ".join(words[-count:])
+            if len(words) > count and (known := find_unit(unit)):
+                # A bare letter after a name is more often an index or an axis than a unit.
+                if len(unit) == 1 and known.kind != "time":
+                    break
+                return " ".join(words[:-count]), unit, False
+    return header, None, False
