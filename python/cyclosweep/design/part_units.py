@@ -64,6 +64,10 @@ PART_INPUTS: dict[str, Quantity] = {
     "friction_bearing": Quantity(
         "", "1", "coefficient of the eccentric's bearing at the disc's bore"
     ),
+    "contact_yield_strength_mpa": Quantity(
+        "", "MPa", "yield strength of the softer body of every contact"
+    ),
+    "pin_yield_strength_mpa": Quantity("", "MPa", "yield strength of the output pins"),
 }
 
 PART_LISTS: dict[str, Quantity] = {
@@ -143,6 +147,43 @@ PART_OUTPUTS: dict[str, Quantity] = {
     "disc_inertia_kg_m2": Quantity("", "kg m^2", "one disc about its own centre"),
     "drive_volume_mm3": Quantity(
         "", "mm^3", "cylinder around the ring pins, from the flange to the last disc's end"
+    ),
+    "tangent_stiffness_100pct_without_clearance_nm_per_arcmin": Quantity(
+        "",
+        "N m/arcmin",
+        "slope at 100 % of the same drive without any gap, profile modification or bearing play",
+    ),
+    "ring_contact_pressure_max_pin": Quantity(
+        "", "1", "ring pin, counted from 0, at which ring_contact_pressure_max_mpa occurs"
+    ),
+    "ring_contact_pressure_max_crank_deg": Quantity(
+        "", "deg", "angle of the crank at which it does"
+    ),
+    "output_contact_pressure_max_pin": Quantity(
+        "", "1", "output pin, counted from 0, at which output_contact_pressure_max_mpa occurs"
+    ),
+    "output_contact_pressure_max_crank_deg": Quantity(
+        "", "deg", "angle of the crank at which it does"
+    ),
+    "ring_pin_force_peak_min_n": Quantity(
+        "", "N", "smallest over the crank of the largest force of a ring pin on a disc"
+    ),
+    "output_pin_force_peak_min_n": Quantity(
+        "", "N", "smallest over the crank of the largest force of a hole on a pin"
+    ),
+    "eccentric_bearing_force_min_n": Quantity(
+        "", "N", "smallest force of a disc on its bearing over the crank"
+    ),
+    "pin_root_stress_max_mpa": Quantity(
+        "", "MPa", "largest bending stress at an output pin's root by the contacts' forces"
+    ),
+    "contact_yield_ratio_max": Quantity(
+        "",
+        "1",
+        "twice the largest shear stress below a contact over its yield strength; above 1 it yields",
+    ),
+    "pin_yield_ratio_max": Quantity(
+        "", "1", "pin_root_stress_max_mpa over the pins' yield strength; above 1 it yields"
     ),
     "solver_status": Quantity(
         "", "1", "engine of the equilibria at rated torque: quadratic, full, or failed"

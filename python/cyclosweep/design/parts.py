@@ -59,6 +59,8 @@ class PartInputs(DriveInputs):
     friction_ring: NonNegative | None = None
     friction_output: NonNegative | None = None
     friction_bearing: NonNegative | None = None
+    contact_yield_strength_mpa: Positive | None = None
+    pin_yield_strength_mpa: Positive | None = None
     contact_law: Literal["palmgren", "johnson"] | None = None
     pin_root_compliance: tuple[NonNegative, Finite, NonNegative] | None = None
     ring_gap_errors_mm: tuple[Finite, ...] | None = None

@@ -6,10 +6,10 @@
 
 use crate::components::contact::PowerLaws;
 use crate::components::equilibrium::{Loaded, Motion, Pull};
-use crate::components::forces::active;
 use crate::components::inputs::PartInput;
 use crate::components::mechanism::{Circles, Mechanism, Position};
 use crate::components::parts::{Fixed, Parts};
+use crate::components::sharing::Sharing;
 use crate::model::inputs::Input;
 
 /// Shaft that is turned; the other one is locked.
@@ -245,18 +245,17 @@ impl<'a> Rig<'a> {
             let sum: f64 = pins.iter().sum();
             friction += parts.value(PartInput::FrictionOutput) * mechanism.eccentricity * sum;
         }
-        let (active_pins, effective_pins, pin_force) = active(&pins);
-        let (active_ring, _, ring_force) = active(&ring);
+        let (of_pins, of_ring) = (Sharing::of(&pins), Sharing::of(&ring));
         CurvePoint {
             turn,
             output_torque: torque,
             input_torque: loaded.input_torque(torque, motion, &mut self.memory),
             friction_torque: friction,
-            active_pins,
-            effective_pins,
-            pin_force,
-            active_ring,
-            ring_force,
+            active_pins: of_pins.active,
+            effective_pins: of_pins.effective,
+            pin_force: of_pins.largest,
+            active_ring: of_ring.active,
+            ring_force: of_ring.largest,
             converged,
         }
     }

@@ -51,8 +51,8 @@ pub struct RatedForces {
     losses: [f64; 3],
 }
 
-/// Contacts above [`ACTIVE_SHARE`] of the largest force, `(sum F)^2 / sum F^2`, and the largest force.
-pub(crate) fn active(forces: &[f64]) -> (f64, f64, f64) {
+/// Mean and extremes of the sharing at one position.
+fn active(forces: &[f64]) -> (f64, f64, f64) {
     let largest = forces.iter().fold(0.0_f64, |a, b| a.max(*b));
     let threshold = ACTIVE_SHARE * largest;
     let count = forces.iter().filter(|force| **force > threshold).count();

@@ -33,10 +33,12 @@ pub enum PartInput {
     FrictionRing,
     FrictionOutput,
     FrictionBearing,
+    ContactYieldStrength,
+    PinYieldStrength,
 }
 
 /// Number of the component model's inputs.
-pub const PART_INPUTS: usize = 22;
+pub const PART_INPUTS: usize = 24;
 /// Place of the first of them among all inputs, far behind the shaft's.
 pub const PARTS_AT: usize = 1 << 16;
 
@@ -81,6 +83,8 @@ impl PartInput {
         PartInput::FrictionRing,
         PartInput::FrictionOutput,
         PartInput::FrictionBearing,
+        PartInput::ContactYieldStrength,
+        PartInput::PinYieldStrength,
     ];
 
     /// Name and unit as in a drive file, what turns a value into SI, and the default.
@@ -110,6 +114,8 @@ impl PartInput {
             Self::FrictionRing => ("friction_ring", 1.0, Number(0.05)),
             Self::FrictionOutput => ("friction_output", 1.0, Number(0.05)),
             Self::FrictionBearing => ("friction_bearing", 1.0, Number(0.003)),
+            Self::ContactYieldStrength => ("contact_yield_strength_mpa", 1e6, Number(1700.0)),
+            Self::PinYieldStrength => ("pin_yield_strength_mpa", 1e6, Number(750.0)),
         }
     }
 

@@ -8,6 +8,7 @@
 mod block;
 pub mod contact;
 pub mod curve;
+pub mod details;
 pub mod equilibrium;
 mod forces;
 #[cfg(test)]
@@ -22,5 +23,6 @@ pub mod pins;
 pub mod profile;
 pub mod quadratic;
 pub mod ring;
+pub mod sharing;
 pub mod study;
 pub mod turn;

@@ -42,11 +42,22 @@ pub enum PartOutput {
     DiscMass,
     DiscInertia,
     DriveVolume,
+    StiffnessWithoutClearance,
+    RingPressurePin,
+    RingPressureCrank,
+    OutputPressurePin,
+    OutputPressureCrank,
+    RingPinForcePeakMin,
+    OutputPinForcePeakMin,
+    BearingForceMin,
+    PinRootStress,
+    ContactYieldRatio,
+    PinYieldRatio,
     Solver,
 }
 
 /// Number of result columns.
-pub const PART_OUTPUTS: usize = 35;
+pub const PART_OUTPUTS: usize = 46;
 
 impl PartOutput {
     /// Every column, in order.
@@ -85,6 +96,17 @@ impl PartOutput {
         Self::DiscMass,
         Self::DiscInertia,
         Self::DriveVolume,
+        Self::StiffnessWithoutClearance,
+        Self::RingPressurePin,
+        Self::RingPressureCrank,
+        Self::OutputPressurePin,
+        Self::OutputPressureCrank,
+        Self::RingPinForcePeakMin,
+        Self::OutputPinForcePeakMin,
+        Self::BearingForceMin,
+        Self::PinRootStress,
+        Self::ContactYieldRatio,
+        Self::PinYieldRatio,
         Self::Solver,
     ];
 
@@ -126,6 +148,19 @@ impl PartOutput {
             Self::DiscMass => "disc_mass_kg",
             Self::DiscInertia => "disc_inertia_kg_m2",
             Self::DriveVolume => "drive_volume_mm3",
+            Self::StiffnessWithoutClearance => {
+                "tangent_stiffness_100pct_without_clearance_nm_per_arcmin"
+            }
+            Self::RingPressurePin => "ring_contact_pressure_max_pin",
+            Self::RingPressureCrank => "ring_contact_pressure_max_crank_deg",
+            Self::OutputPressurePin => "output_contact_pressure_max_pin",
+            Self::OutputPressureCrank => "output_contact_pressure_max_crank_deg",
+            Self::RingPinForcePeakMin => "ring_pin_force_peak_min_n",
+            Self::OutputPinForcePeakMin => "output_pin_force_peak_min_n",
+            Self::BearingForceMin => "eccentric_bearing_force_min_n",
+            Self::PinRootStress => "pin_root_stress_max_mpa",
+            Self::ContactYieldRatio => "contact_yield_ratio_max",
+            Self::PinYieldRatio => "pin_yield_ratio_max",
             Self::Solver => "solver_status",
         }
     }
@@ -158,6 +193,10 @@ pub struct Wanted {
     pub fine: bool,
     /// Areas and moments of the discs.
     pub mass: bool,
+    /// Worst contacts, extremes over the crank and what comes near yield, at rated torque.
+    pub details: bool,
+    /// Rated torque without clearances.
+    pub without_clearance: bool,
 }
 
 impl Wanted {
@@ -179,6 +218,17 @@ impl Wanted {
                     wanted.fine = true;
                 }
                 PartOutput::DiscMass | PartOutput::DiscInertia => wanted.mass = true,
+                PartOutput::StiffnessWithoutClearance => wanted.without_clearance = true,
+                PartOutput::RingPressurePin
+                | PartOutput::RingPressureCrank
+                | PartOutput::OutputPressurePin
+                | PartOutput::OutputPressureCrank
+                | PartOutput::RingPinForcePeakMin
+                | PartOutput::OutputPinForcePeakMin
+                | PartOutput::BearingForceMin
+                | PartOutput::PinRootStress
+                | PartOutput::ContactYieldRatio
+                | PartOutput::PinYieldRatio => wanted.details = true,
                 PartOutput::CurvatureRadiusMin | PartOutput::DriveVolume => {}
                 _ => (wanted.rated, wanted.forces) = (true, true),
             }

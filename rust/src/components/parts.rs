@@ -185,6 +185,7 @@ impl Parts {
         if 2.0 * radius >= pitch {
             return Err(PartError::RingPinsOverlap { radius, pitch });
         }
+        check_gaps(&scalar, &values, &profile)?;
         let bend = profile.path_radius_min();
         if bend <= radius {
             return Err(PartError::Undercut { radius, bend });
@@ -340,6 +341,49 @@ impl Parts {
     }
 }
 
+/// Refuses gaps with which the parts would not be the ones of a drive: holes that meet or are no wider
+/// than their pins, and lobes that pass the ring pins.
+fn check_gaps(
+    scalar: &impl Fn(Input) -> f64,
+    values: &[f64; PART_INPUTS],
+    profile: &Profile,
+) -> Result<(), PartError> {
+    let eccentricity = profile.eccentricity;
+    let refused = |input: PartInput, expected| {
+        let (name, unit, _) = input.row();
+        let value = values[input as usize] / unit;
+        Err(PartError::OutOfRange {
+            name,
+            value,
+            expected,
+        })
+    };
+    let clearance = values[PartInput::HoleClearance as usize];
+    if clearance <= -eccentricity {
+        return refused(
+            PartInput::HoleClearance,
+            "above minus the eccentricity, so that holes are wider than their pins",
+        );
+    }
+    let bush = 0.5 * scalar(Input::OutputPinDiameter) + scalar(Input::BushWall);
+    let half_turn = std::f64::consts::PI / scalar(Input::OutputPinCount);
+    let half_pitch = scalar(Input::OutputPinCircleRadius) * half_turn.sin();
+    if bush + eccentricity + clearance >= half_pitch {
+        return refused(
+            PartInput::HoleClearance,
+            "small enough that holes do not meet",
+        );
+    }
+    let gap = values[PartInput::RingClearance as usize] + values[PartInput::ProfileOffset as usize];
+    if gap >= eccentricity {
+        return refused(
+            PartInput::RingClearance,
+            "with profile_offset_mm below the eccentricity, so that lobes do not pass the ring pins",
+        );
+    }
+    Ok(())
+}
+
 /// Radius of a ring pin's seat over the pin's, for Johnson's law alone.
 const SEAT: f64 = 1.01;
 
@@ -363,7 +407,9 @@ const fn range(input: PartInput) -> Range {
         | PartInput::Reach4
         | PartInput::RingYoungsModulus
         | PartInput::DiscYoungsModulus
-        | PartInput::DiscDensity => Range::Positive,
+        | PartInput::DiscDensity
+        | PartInput::ContactYieldStrength
+        | PartInput::PinYieldStrength => Range::Positive,
         PartInput::BearingClearance
         | PartInput::FrictionRing
         | PartInput::FrictionOutput

@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use crate::components::details::put_details;
 use crate::components::inputs::{PART_INPUTS, PARTS_AT, PartInput};
 use crate::components::outputs::{PART_OUTPUTS, PartOutput, Wanted};
 use crate::components::parts::{Fixed, PartError, Parts};
@@ -173,6 +174,9 @@ impl PartStudy {
             engine: self.engine,
             wanted,
             scratch,
+        });
+        put_details(&parts, &self.fixed, wanted, &mut |output, value| {
+            found[output as usize] = value;
         });
         let broken = self.limits.iter().find(|limit| {
             let value = found[limit.output as usize];

@@ -44,7 +44,10 @@ pub fn part_input_table() -> Vec<(&'static str, &'static str, f64, &'static str)
 #[pyfunction]
 pub fn part_output_table() -> Vec<(&'static str, &'static str)> {
     let kind = |output| match output {
-        PartOutput::ActiveOutputPinsMin | PartOutput::ActiveOutputPinsMax => "count",
+        PartOutput::ActiveOutputPinsMin
+        | PartOutput::ActiveOutputPinsMax
+        | PartOutput::RingPressurePin
+        | PartOutput::OutputPressurePin => "count",
         PartOutput::Solver => "solver",
         _ => "real",
     };
