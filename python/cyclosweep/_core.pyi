@@ -139,6 +139,36 @@ def torque_twist(
     torque: float,
     steps: int,
 ) -> tuple[_Reals, npt.NDArray[np.bool_], float, bool]: ...
+class Train:
+    def __new__(
+        cls,
+        inertias: Sequence[float],
+        springs: Sequence[
+            tuple[
+                int,
+                int | None,
+                Sequence[float],
+                Sequence[float],
+                float,
+                Sequence[tuple[float, float, float]],
+            ]
+        ],
+        damping_s: float,
+    ) -> Train: ...
+    def modes(
+        self, stiffnesses: Sequence[float]
+    ) -> tuple[list[float], list[list[float]], list[list[float]]]: ...
+    def static_twists(self, torques: Sequence[float]) -> list[tuple[float, list[float]]]: ...
+    def transient(
+        self,
+        angles: Sequence[float],
+        speeds: Sequence[float],
+        anchors: Sequence[Sequence[float]],
+        knot_times: _Reals,
+        knot_torques: _Reals,
+        samples: _Reals,
+    ) -> dict[str, Any]: ...
+
 def part_input_table() -> list[tuple[str, str, float, str]]: ...
 def part_output_table() -> list[tuple[str, str]]: ...
 def part_status_labels() -> list[str]: ...

@@ -93,6 +93,7 @@
 #![doc = include_str!("../katex-header.html")]
 
 pub mod components;
+pub mod dynamics;
 mod kernel;
 pub mod model;
 #[cfg(feature = "python")]

@@ -2,6 +2,7 @@
 
 mod components;
 mod curve;
+mod dynamics;
 mod formulas;
 mod hysteresis;
 mod study;
@@ -65,6 +66,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     hysteresis::register(module)?;
     components::register(module)?;
     curve::register(module)?;
+    dynamics::register(module)?;
     module.add("DEBUG_BUILD", cfg!(debug_assertions))?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SEGMENT_FIELDS", SEGMENT_FIELDS)?;

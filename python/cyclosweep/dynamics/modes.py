@@ -1,0 +1,119 @@
+"""Natural frequencies of a train, their shapes, and what moves them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+import polars as pl
+
+if TYPE_CHECKING:
+    from cyclosweep.dynamics.train import Train
+
+__all__ = ["Modes"]
+
+Reals = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural frequencies and shapes of a train, the slowest first.
+
+    Attributes
+    ----------
+    train : Train
+        What they are modes of.
+    stiffnesses_nm_per_rad : ndarray, shape (springs,)
+        Stiffness that each spring has, on its own shaft [N m/rad].
+    frequencies_hz : ndarray, shape (modes,)
+        Natural frequencies [Hz]; exactly zero for a part of the train that nothing holds.
+    shapes : ndarray, shape (modes, nodes)
+        Angle of each node on its own shaft, the largest of a mode referred to the first shaft
+        being one [1].
+    """
+
+    train: Train
+    stiffnesses_nm_per_rad: Reals
+    frequencies_hz: Reals
+    shapes: Reals
+    _kinetic: Reals
+    _potential: Reals
+
+    @property
+    def energy_shares(self) -> pl.DataFrame:
+        """Who holds the energy of each mode.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``mode`` (from 1), ``frequency_hz``, ``component``, ``kind`` (``inertia`` or
+            ``spring``), ``share``: of the kinetic energy for inertias, of the elastic energy for
+            springs (0 in a mode of frequency zero) [1].
+        """
+        rows = []
+        for mode, frequency in enumerate(self.frequencies_hz):
+            parts = (
+                ("inertia", self.train.names, self._kinetic[mode]),
+                ("spring", self.train.spring_names, self._potential[mode]),
+            )
+            for kind, names, shares in parts:
+                for name, share in zip(names, shares, strict=True):
+                    rows.append((mode + 1, float(frequency), name, kind, float(share)))
+        schema = {
+            "mode": pl.Int64,
+            "frequency_hz": pl.Float64,
+            "component": pl.String,
+            "kind": pl.String,
+            "share": pl.Float64,
+        }
+        return pl.DataFrame(rows, schema=schema, orient="row")
+
+    @property
+    def sensitivities(self) -> pl.DataFrame:
+        """What each frequency does when an inertia or a stiffness grows.
+
+        By Rayleigh's quotient a frequency grows by half of the spring's share of the elastic
+        energy when the stiffness grows by one percent, and falls by half of the inertia's share of
+        the kinetic energy.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``mode``, ``frequency_hz``, ``component``, ``kind``, ``percent_per_percent`` [1] and
+            ``hz_per_unit`` [Hz/(N m/rad)] or [Hz/(kg m^2)].
+        """
+        shares = self.energy_shares
+        values = {
+            **dict(zip(self.train.names, self.train.inertias_kg_m2, strict=True)),
+            **dict(zip(self.train.spring_names, self.stiffnesses_nm_per_rad, strict=True)),
+        }
+        sign = pl.when(pl.col("kind") == "spring").then(0.5).otherwise(-0.5)
+        moving = pl.col("frequency_hz") > 0
+        elasticity = pl.when(moving).then(sign * pl.col("share")).otherwise(0.0)
+        value = pl.col("component").replace_strict(values, return_dtype=pl.Float64)
+        return shares.with_columns(percent_per_percent=elasticity).select(
+            "mode",
+            "frequency_hz",
+            "component",
+            "kind",
+            "percent_per_percent",
+            hz_per_unit=pl.col("percent_per_percent") * pl.col("frequency_hz") / value,
+        )
+
+    def table(self) -> pl.DataFrame:
+        """Frequencies with the shape of each mode.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``mode``, ``frequency_hz``, and for each node its angle ``<name>``.
+        """
+        columns: dict[str, object] = {
+            "mode": np.arange(1, len(self.frequencies_hz) + 1),
+            "frequency_hz": self.frequencies_hz,
+        }
+        for name, shape in zip(self.train.names, self.shapes.T, strict=True):
+            columns[name] = shape
+        return pl.DataFrame(columns)
