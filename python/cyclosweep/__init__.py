@@ -8,6 +8,7 @@ from typing import Any as _Any
 import cyclosweep._core as _core
 import cyclosweep._moved as _moved
 from cyclosweep.design.drive import Cylinder, Drive, Frustum, Keyway
+from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.sweep.dataset import scan_dataset
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
@@ -55,6 +56,7 @@ __all__ = [
     "Space",
     "Study",
     "SweepError",
+    "Train",
     "__version__",
     "diagnose",
     "kernel_evaluations",

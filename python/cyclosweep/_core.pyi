@@ -1,7 +1,7 @@
 """Types of the compiled core."""
 
 from collections.abc import Sequence
-from typing import Final, TypedDict, final
+from typing import Any, Final, TypedDict, final
 
 import numpy as np
 import numpy.typing as npt

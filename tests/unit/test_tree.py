@@ -15,7 +15,7 @@ FILES = sorted(ROOT.rglob("*.py"))
 LONGEST = 400
 
 BASE = {"errors", "atomic"}
-DESIGN = BASE | {"design"}
+DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
 REFERENCE = DIAGNOSIS | {"sweep", "reference"}
@@ -25,7 +25,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
     "_moved": set(),
-    "design": BASE,
+    "dynamics": BASE,
+    "design": BASE | {"dynamics"},
     "sweep": DESIGN,
     "recording": DESIGN,
     "simulation": DESIGN | {"recording"},

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import math
 import re
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-import numpy as np
-import numpy.typing as npt
-import polars as pl
 import tomli_w
 from pydantic import ValidationError
 
-import cyclosweep._core as _core
 from cyclosweep.atomic import write_text
-from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion, count_active_pins
-from cyclosweep.design.nominal_line import NominalLine, Side
-from cyclosweep.design.numbers import checked_loads
-from cyclosweep.design.parts import PartInputs
+from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion
+from cyclosweep.design.drive_train import CalibratedModel, TrainParts, train_of
+from cyclosweep.design.nominal_line import NominalLine
+from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
 from cyclosweep.design.toml_files import one_line, read_toml
+from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import InputError
 
 __all__ = [
@@ -39,7 +35,7 @@ __all__ = [
 _BUILT_IN = {"reference-87": "reference_87.toml"}
 
 
-class Drive(PartInputs):
+class Drive(PublishedDrive):
     """A single-stage cycloidal drive, frozen and checked.
 
     Every attribute is a key of a drive file, an axis of a study and a column of a sweep; its
@@ -210,165 +206,51 @@ class Drive(PartInputs):
             }
         return self._from_table(table, self.name)
 
-    def explain(self) -> str | None:
-        """Why this drive cannot be built, with the numbers that show it; None when it can."""
-        return self.study().explain(0)
-
-    def evaluate(self, loads_tn: tuple[float, ...] = (1, 2, 3, 4, 4.5)) -> dict[str, float | None]:
-        """Evaluate the published compliance model for this drive.
+    def train(
+        self,
+        model: Literal["published", "components"] | CalibratedModel = "published",
+        *,
+        with_efficiency: bool = True,
+        **parts: float | None,
+    ) -> Train:
+        """Torsional train of this drive: input, discs and output with their springs and play.
 
         Parameters
         ----------
-        loads_tn : tuple of float
-            Loads [T_N] at which twists are computed; a negative one acts in the other direction
-            and gives the negative of the twist. At zero it is the end of the free play.
+        model : {"published", "components"} or Model
+            Where the springs come from: dead zone and compliance of Eq. (13); mesh and output pins
+            by the component model, point by point up to 4.5 times the rated torque; or a
+            calibrated model such as ``found.model`` with its stiffening, play, friction and drag.
+        with_efficiency : bool
+            Whether the published compliance carries the torque transfer efficiency. Without it
+            every low frequency falls by the root of the efficiency.
+        **parts
+            What the drive's file does not hold: the fields of
+            :class:`cyclosweep.design.drive_train.TrainParts`. Without ``load_inertia_kg_m2`` the
+            output is locked.
 
         Returns
         -------
-        dict
-            Every result column of a sweep; None where it does not apply.
+        Train
+            Every shaft in its own terms, joined by the ratio.
 
         Raises
         ------
+        InputError
+            For an unknown part, a number out of range, or a drive without inertia at its input.
         DesignError
             When the drive cannot be built.
-        InputError
-            For a load that is no finite number.
 
         Examples
         --------
-        >>> results = Drive.reference_87().evaluate()
-        >>> round(results["twist_1tn_deg"], 1)
-        47.8
+        >>> train = Drive.reference_87().train(load_inertia_kg_m2=5.0)
+        >>> train.names
+        ('input', 'load')
+        >>> bool(train.modes().frequencies_hz[1] > 25)
+        True
         """
-        loads = checked_loads(loads_tn, allow_zero=True)
-        study = self.study(loads)
-        if (reason := study.explain(0)) is not None:
-            raise _core.DesignError(f"{self.name}: {reason}")
-        names = [name for name, _ in _core.output_table(list(loads))]
-        _, _, columns = study.evaluate_range(0, 1, names)
-        values = (float(column[0]) for column in columns)
-        return {
-            name: None if math.isnan(value) else value
-            for name, value in zip(names, values, strict=True)
-        }
-
-    def nominal_line(self, side: Side = "input") -> NominalLine:
-        """Dead zone and slope that the published model gives this drive.
-
-        Parameters
-        ----------
-        side : {"input", "output"}
-            Shaft at which torque and angle are meant, the other one locked.
-
-        Returns
-        -------
-        NominalLine
-
-        Raises
-        ------
-        DesignError
-            When the drive cannot be built and gives no stiffness of its own, or when its criterion
-            is ``statics`` and it has more than two discs.
-
-        Examples
-        --------
-        >>> line = Drive.reference_87().nominal_line("input")
-        >>> line.free_play_deg
-        28.0
-        """
-        if self.output_stiffness_nm_per_arcmin is not None:
-            at_output = 1.0 / (60.0 * self.output_stiffness_nm_per_arcmin)
-            at_input = at_output * self.ratio**2
-        else:
-            twist = self.evaluate((1.0,))["twist_1tn_deg"]
-            if twist is None:
-                raise _core.DesignError(
-                    f"{self.name}: statics hold for one or two discs, found {self.disc_count}"
-                )
-            at_input = (twist - self.free_play_deg) / self.nominal_torque_nm
-        return NominalLine(self.free_play_deg, at_input).at(side, self.ratio)
-
-    def active_pins(self, criterion: Criterion | None = None) -> ActivePins:
-        """Active hole-pin contacts over one turn of the mesh zone.
-
-        Parameters
-        ----------
-        criterion : {"published-map", "inside", "statics"}, optional
-            The rule; this drive's own by default.
-
-        Returns
-        -------
-        ActivePins
-
-        Raises
-        ------
-        DesignError
-            When no hole ever crosses the pins' pitch circle.
-
-        Notes
-        -----
-        ``inside``: the hole's centre lies inside the pitch circle, ``cos(theta (1 + 1/i) - phi)
-        < -e / (2 R_OP)``. ``statics``: the hole pushes its pin in the sense of the torque.
-        ``published-map`` is *a reconstruction that matches the published map*, not the authors'
-        rule: hole angles are reduced to (-180, 180] deg, and a hole at or below zero belongs to
-        the left half. A left hole's window is ``[phi + 90 + delta, phi + 270 - delta] i / (i + 1)``
-        with ``delta = asin(e / (2 R_OP))``; its start is clipped at 0, its end at 180 deg except
-        for the hole of that half nearest ring pin 0, which at a low ratio opens a second time
-        before the turn ends. The right half follows the same rule on its own holes and is then
-        mirrored. One disc's count is multiplied by the number of discs.
-
-        Examples
-        --------
-        >>> Drive.reference_87().active_pins().minimum
-        4
-        """
-        half_sine = self.eccentricity_mm / (2 * self.output_pin_circle_radius_mm)
-        if half_sine >= 1:
-            raise _core.DesignError(f"{self.name}: {self.explain()}")
-        return count_active_pins(
-            criterion or self.criterion,
-            ratio=self.ratio,
-            disc_count=self.disc_count,
-            output_pin_count=self.output_pin_count,
-            half_sine=half_sine,
-            clocking_deg=self.hole_clocking_deg,
-        )
-
-    def hole_locus(self, theta_deg: npt.ArrayLike, hole: int = 0) -> pl.DataFrame:
-        """Path of a hole's centre, a hypotrochoid that crosses the pins' pitch circle.
-
-        Parameters
-        ----------
-        theta_deg : array_like
-            Positions of the mesh zone [deg], clockwise from ring pin 0.
-        hole : int
-            Which hole of disc 1, from 0.
-
-        Returns
-        -------
-        polars.DataFrame
-            ``theta_deg``, ``x_mm``, ``y_mm``, ``radius_mm``.
-
-        Examples
-        --------
-        >>> Drive.reference_87().hole_locus([0.0, 90.0]).height
-        2
-        """
-        theta = np.atleast_1d(np.asarray(theta_deg, dtype=np.float64))
-        angle = math.radians(self.hole_clocking_deg + (hole + 0.5) * 360 / self.output_pin_count)
-        centres = _core.hole_locus(
-            self.eccentricity_mm,
-            self.output_pin_circle_radius_mm,
-            self.ratio,
-            angle,
-            np.radians(theta),
-        )
-        return pl.DataFrame(
-            {
-                "theta_deg": theta,
-                "x_mm": centres[:, 0],
-                "y_mm": centres[:, 1],
-                "radius_mm": np.hypot(centres[:, 0], centres[:, 1]),
-            }
-        )
+        unknown = [name for name in parts if name not in TrainParts.__dataclass_fields__]
+        if unknown:
+            known = ", ".join(TrainParts.__dataclass_fields__)
+            raise InputError(f"{unknown[0]}: no such part of a train, expected one of {known}")
+        return train_of(self, model, TrainParts(**parts), with_efficiency)  # type: ignore[arg-type]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 import polars as pl
 
-if TYPE_CHECKING:
-    from cyclosweep.dynamics.train import Train
+from cyclosweep.dynamics.chain import Chain
 
 __all__ = ["Modes"]
 
@@ -23,7 +21,7 @@ class Modes:
 
     Attributes
     ----------
-    train : Train
+    train : Chain
         What they are modes of.
     stiffnesses_nm_per_rad : ndarray, shape (springs,)
         Stiffness that each spring has, on its own shaft [N m/rad].
@@ -34,7 +32,7 @@ class Modes:
         being one [1].
     """
 
-    train: Train
+    train: Chain
     stiffnesses_nm_per_rad: Reals
     frequencies_hz: Reals
     shapes: Reals

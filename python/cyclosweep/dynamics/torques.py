@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from cyclosweep.dynamics.chain import Chain
 from cyclosweep.errors import InputError
-
-if TYPE_CHECKING:
-    from cyclosweep.dynamics.train import Train
 
 __all__ = ["History", "Torques", "knots"]
 
@@ -23,12 +20,12 @@ Torques = Mapping[str | int, float | History] | Mapping[str, float | History]
 """Torque on each node by its name or number: constant, or a history."""
 
 
-def knots(train: Train, torques: Torques, duration_s: float) -> tuple[Reals, Reals]:
+def knots(train: Chain, torques: Torques, duration_s: float) -> tuple[Reals, Reals]:
     """Knots between which every torque is a straight line.
 
     Parameters
     ----------
-    train : Train
+    train : Chain
         The nodes.
     torques : mapping
         As for :meth:`cyclosweep.dynamics.Train.transient`.

@@ -4,36 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import polars as pl
 
-from cyclosweep.dynamics.spring import SlipElement
+from cyclosweep.dynamics.chain import Chain
+from cyclosweep.dynamics.referred import Brake, referred
 from cyclosweep.errors import InputError
 
-if TYPE_CHECKING:
-    from cyclosweep.dynamics.train import Train
-
-__all__ = ["Brake", "Transient", "follow"]
+__all__ = ["Transient", "follow"]
 
 Reals = npt.NDArray[np.float64]
-
-
-class Brake(NamedTuple):
-    """Friction between a node and the ground.
-
-    Attributes
-    ----------
-    node : int
-        Number of the node, from 0.
-    element : SlipElement
-        Its torque and how stiffly it holds, on the node's own shaft.
-    """
-
-    node: int
-    element: SlipElement
 
 
 @dataclass(frozen=True)
@@ -42,7 +24,7 @@ class Transient:
 
     Attributes
     ----------
-    train : Train
+    train : Chain
         The train.
     table : polars.DataFrame
         Samples: ``time_s``, ``angle_<node>_rad``, ``speed_<node>_rad_per_s``,
@@ -63,7 +45,7 @@ class Transient:
         Energy that friction has taken in each spring [J].
     """
 
-    train: Train
+    train: Chain
     table: pl.DataFrame
     events: pl.DataFrame
     peak_torques_nm: dict[str, float]
@@ -100,7 +82,7 @@ class Transient:
 
 
 def follow(
-    train: Train,
+    train: Chain,
     times: Reals,
     torques: Reals,
     samples: int,
@@ -112,7 +94,7 @@ def follow(
 
     Parameters
     ----------
-    train : Train
+    train : Chain
         The train.
     times : ndarray, shape (knots,)
         Times of the knots [s].
@@ -132,7 +114,7 @@ def follow(
     Transient
     """
     nodes, springs = train.node_ratios, train.spring_ratios
-    core = train.core(brake)
+    core = referred(train, brake)
     preload = train.carried(before / nodes)
     extra = [] if brake is None else [0.0]
     start = core.static_twists([*preload, *extra])
@@ -175,7 +157,7 @@ def follow(
 
 
 def _table(
-    train: Train, names: list[str], ratios: Reals, at: Reals, found: dict[str, Reals]
+    train: Chain, names: list[str], ratios: Reals, at: Reals, found: dict[str, Reals]
 ) -> pl.DataFrame:
     nodes = train.node_ratios
     angles = found["angles"].reshape(len(at), -1) / nodes

@@ -1,14 +1,50 @@
 """Twist over elastic torque of a model whose effects bend the straight line."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
+from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.model import Model, linear_twist
+from cyclosweep.simulation.elastic_curve import ElasticCurve
 
 LAW_POINTS = 128
 """Points of an elastic law on each side of zero."""
+
+
+class CalibratedLine(Protocol):
+    """A line with effects, as a model holds it."""
+
+    @property
+    def compliance_deg_per_nm(self) -> float:
+        """Slope of the line [deg/(N m)]."""
+        ...
+
+    @property
+    def free_play_deg(self) -> float:
+        """Half width of the dead zone [deg]."""
+        ...
+
+    @property
+    def elastic_curve(self) -> ElasticCurve | None:
+        """Twist over torque beyond the free play, instead of the line."""
+        ...
+
+    def elastic_twist(self, torque_nm: Floats) -> Floats:
+        """Twist beyond the free play without effects [deg]."""
+        ...
+
+    @property
+    def effects(self) -> Sequence[EffectValue]:
+        """Effects beside the line."""
+        ...
+
+    @property
+    def output_pin_count(self) -> int:
+        """Number of output pins."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +63,7 @@ class ElasticLaw:
     twist_deg: Floats
 
 
-def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
+def elastic_law(model: CalibratedLine, largest_torque_nm: float) -> ElasticLaw | None:
     """Elastic law of the compliance and all effects that belong to it.
 
     The points lie closer towards zero; beyond three times the largest torque the law goes on
@@ -36,8 +72,8 @@ def elastic_law(model: Model, largest_torque_nm: float) -> ElasticLaw | None:
 
     Parameters
     ----------
-    model : Model
-        Line and effects.
+    model : CalibratedLine
+        Line and effects, such as a Model.
     largest_torque_nm : float
         Largest torque of the programme [N m].
 

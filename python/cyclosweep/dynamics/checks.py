@@ -1,0 +1,42 @@
+"""Checks of the lists from which a train is made."""
+
+from __future__ import annotations
+
+from cyclosweep.dynamics.spring import TrainSpring
+from cyclosweep.errors import InputError
+
+__all__ = ["numbered", "same_length", "spring_of"]
+
+
+def numbered(word: str, count: int) -> tuple[str, ...]:
+    """Names such as ``node_1``, one for each of ``count``."""
+    return tuple(f"{word}_{k}" for k in range(1, count + 1))
+
+
+def spring_of(number: int, stiffness_nm_per_rad: float, gap_rad: float) -> TrainSpring:
+    """Return a spring by stiffness [N m/rad] and half play [rad], or say which one is wrong."""
+    try:
+        return TrainSpring.linear(float(stiffness_nm_per_rad), float(gap_rad))
+    except InputError as error:
+        raise InputError(f"spring {number}: {error}") from None
+
+
+def same_length(what: str, found: int, expected: int, where: str = "") -> None:
+    """Require that a list has the length that it must have.
+
+    Parameters
+    ----------
+    what : str
+        Name of the list.
+    found, expected : int
+        Lengths.
+    where : str
+        What the message ends with.
+
+    Raises
+    ------
+    InputError
+        When it has another.
+    """
+    if found != expected:
+        raise InputError(f"{what}: found {found}, expected {expected}{where}")

@@ -1,0 +1,136 @@
+"""An effect with values: an entry of a model, and the twist that it adds."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from cyclosweep.errors import InputError
+from cyclosweep.simulation.effects import Effect, find
+from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.json_fields import number_of, object_of, text_of
+
+__all__ = ["EffectValue", "linear_twist"]
+
+
+@dataclass(frozen=True)
+class EffectValue:
+    """An effect with its shape and the values of its amplitudes.
+
+    Attributes
+    ----------
+    name : str
+        Name of a registered effect.
+    shape : mapping
+        Shape parameters by name, each in the unit that the effect states.
+    amplitudes : tuple of float
+        In the order of ``effect.amplitudes(shape)``, each in the unit stated there.
+    """
+
+    name: str
+    shape: Mapping[str, float]
+    amplitudes: tuple[float, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The registered effect of this name."""
+        return find(self.name)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Entry of ``model.json``."""
+        parameters = self.effect.amplitudes(self.shape)
+        return {
+            "name": self.name,
+            "shape": dict(self.shape),
+            "amplitudes": {
+                parameter.name: float(value)
+                for parameter, value in zip(parameters, self.amplitudes, strict=False)
+            },
+        }
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> Self:
+        """Read an entry of ``model.json``; amplitudes are told apart by name.
+
+        Parameters
+        ----------
+        content : mapping
+            Decoded entry with ``name``, ``shape`` and ``amplitudes``.
+
+        Returns
+        -------
+        EffectValue
+
+        Raises
+        ------
+        InputError
+            The effect, a shape parameter or an amplitude is unknown, missing or no finite number.
+        """
+        try:
+            effect = find(text_of(content, "name"))
+        except ValueError as error:
+            raise InputError(str(error)) from error
+        try:
+            given = object_of(content, "shape", {})
+            shape = effect.known_shape({key: number_of(given, key) for key in given})
+            return cls(effect.name, shape, _amplitudes(effect, shape, content))
+        except InputError as error:
+            raise InputError(f"{effect.name}: {error}") from error
+
+
+def _amplitudes(
+    effect: Effect, shape: Mapping[str, float], content: Mapping[str, Any]
+) -> tuple[float, ...]:
+    """Amplitudes of an entry in the order of the effect.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    shape : mapping of str to float
+        Its shape.
+    content : mapping
+        Entry of ``model.json``.
+
+    Returns
+    -------
+    tuple of float
+        Each in its own unit.
+
+    Raises
+    ------
+    InputError
+        An amplitude is unknown, missing or no number.
+    """
+    given = object_of(content, "amplitudes")
+    names = [parameter.name for parameter in effect.amplitudes(shape)]
+    for name in given:
+        if name not in names:
+            raise InputError(f"amplitude {name!r}: unknown, expected {', '.join(names)}")
+    count = len(names) if not effect.fewer_amplitudes(shape) else max(len(given), 1)
+    return tuple(number_of(given, name) for name in names[:count])
+
+
+def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
+    """Twist that effects other than friction add.
+
+    Parameters
+    ----------
+    effects : sequence of EffectValue
+        Effects with their amplitudes; those that act through slip elements are passed over.
+    history : History
+        Load history of n samples with the state of the model along it.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Twist [deg].
+    """
+    total = np.zeros(len(history))
+    for value in effects:
+        if not value.effect.slips:
+            columns = value.effect.columns(history, value.shape)
+            width = min(columns.shape[1], len(value.amplitudes))
+            total += columns[:, :width] @ np.array(value.amplitudes[:width])
+    return total
