@@ -8,7 +8,15 @@ from typing import Annotated, cast
 import typer
 
 from cyclosweep import __version__
-from cyclosweep.cli import challenge, diagnose, simulate, sweep, torque_twist, validate
+from cyclosweep.cli import (
+    challenge,
+    diagnose,
+    dynamics,
+    simulate,
+    sweep,
+    torque_twist,
+    validate,
+)
 from cyclosweep.cli.output import fail
 from cyclosweep.errors import DesignError, InputError, SweepError
 
@@ -29,6 +37,8 @@ app.command()(sweep.shard)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)
 app.command()(diagnose.diagnose)
+app.command()(dynamics.modes)
+app.command()(dynamics.shock)
 app.command()(challenge.challenge)
 
 

@@ -100,6 +100,29 @@ class Modes:
             hz_per_unit=pl.col("percent_per_percent") * pl.col("frequency_hz") / value,
         )
 
+    def summary(self, least: float = 0.01) -> pl.DataFrame:
+        """Who holds each mode's energy, the greatest share first.
+
+        Parameters
+        ----------
+        least : float
+            Shares below it are left out [1].
+
+        Returns
+        -------
+        polars.DataFrame
+            ``mode``, ``frequency_hz``, ``component``, ``kind``, ``energy_share``,
+            ``percent_per_percent``; modes of frequency zero left out.
+        """
+        keys = ("mode", "component", "kind")
+        moved = self.sensitivities.select(*keys, "percent_per_percent")
+        shares = self.energy_shares.rename({"share": "energy_share"})
+        return (
+            shares.join(moved, on=keys, maintain_order="left")
+            .filter((pl.col("energy_share") >= least) & (pl.col("frequency_hz") > 0))
+            .sort("mode", "energy_share", descending=[False, True])
+        )
+
     def table(self) -> pl.DataFrame:
         """Frequencies with the shape of each mode.
 

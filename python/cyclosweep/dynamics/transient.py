@@ -71,6 +71,31 @@ class Transient:
         """Events in which play closes, with the speed at which it does."""
         return self.events.filter(pl.col("event") == "contact")
 
+    def summary(self) -> pl.DataFrame:
+        """Peaks of every spring.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``spring``, ``peak_nm``, ``at_s``, ``static_nm``, ``shock_factor``, ``impacts``,
+            ``friction_loss_j``.
+        """
+        factors = self.shock_factors
+        counts = dict(self.impacts["spring"].value_counts().iter_rows())
+        names = list(self.peak_torques_nm)
+        return pl.DataFrame(
+            {
+                "spring": names,
+                "peak_nm": [self.peak_torques_nm[name] for name in names],
+                "at_s": [self.peak_times_s[name] for name in names],
+                "static_nm": [self.static_torques_nm[name] for name in names],
+                "shock_factor": [factors[name] for name in names],
+                "impacts": [counts.get(name, 0) for name in names],
+                "friction_loss_j": [self.friction_losses_j[name] for name in names],
+            },
+            schema_overrides={"shock_factor": pl.Float64},
+        )
+
     def __repr__(self) -> str:
         peaks = ", ".join(f"{name} {peak:.4g}" for name, peak in self.peak_torques_nm.items())
         factor = "none" if self.shock_factor is None else f"{self.shock_factor:.4g}"

@@ -1,0 +1,44 @@
+"""Frames as tables of a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import polars as pl
+    from rich.table import Table
+
+__all__ = ["titled"]
+
+
+def titled(title: str, frame: pl.DataFrame) -> Table:
+    """Table of a frame, numbers to five digits.
+
+    Parameters
+    ----------
+    title : str
+        What stands above it.
+    frame : polars.DataFrame
+        Rows and columns.
+
+    Returns
+    -------
+    rich.table.Table
+    """
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=box.SIMPLE)
+    for name, dtype in frame.schema.items():
+        table.add_column(name, justify="right" if dtype.is_numeric() else "left", overflow="fold")
+    for row in frame.iter_rows():
+        table.add_row(*(_text(value) for value in row))
+    return table
+
+
+def _text(value: object) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.5g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,250 @@
+"""Pictures of a train: mode shapes, Campbell diagram, transient, shock factor over the play."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from cyclosweep.atomic import unfinished
+from cyclosweep.dynamics.formulas import reversal_shock_factor
+from cyclosweep.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from cyclosweep.dynamics.modes import Modes
+    from cyclosweep.dynamics.transient import Transient
+
+__all__ = [
+    "campbell_figure",
+    "mode_shapes_figure",
+    "save_transient",
+    "shock_map_figure",
+    "transient_figure",
+]
+
+
+def _figure(width: float, height: float) -> Figure:
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise InputError("pictures need matplotlib: pip install 'cyclosweep[report]'") from None
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def mode_shapes_figure(modes: Modes, most: int = 6) -> Figure:
+    """Angle along the train, referred to the first shaft, one panel a mode.
+
+    Parameters
+    ----------
+    modes : Modes
+        The modes.
+    most : int
+        Modes drawn, the slowest first.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        Without matplotlib.
+    """
+    count = min(most, len(modes.frequencies_hz))
+    names = list(modes.train.names)
+    if modes.train.grounded:
+        names.append("ground")
+    figure = _figure(1.6 + 1.1 * len(names), 1.0 + 1.4 * count)
+    panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    for k, panel in enumerate(panels):
+        referred = modes.shapes[k] * modes.train.node_ratios
+        referred = referred / np.abs(referred).max()
+        if modes.train.grounded:
+            referred = np.r_[referred, 0.0]
+        panel.axhline(0.0, color="0.7", linewidth=0.8)
+        panel.plot(range(len(names)), referred, marker="o", color="C0")
+        panel.set_ylim(-1.15, 1.15)
+        panel.set_title(f"mode {k + 1}: {modes.frequencies_hz[k]:.4g} Hz", fontsize="medium")
+    panels[-1].set_xticks(range(len(names)), names)
+    figure.supylabel("angle referred to the first shaft, largest = 1")
+    return figure
+
+
+def campbell_figure(modes: Modes, orders: pl.DataFrame, largest_speed_rpm: float) -> Figure:
+    """Frequencies of modes and of what excites them over the input speed.
+
+    Parameters
+    ----------
+    modes : Modes
+        Natural frequencies.
+    orders : polars.DataFrame
+        ``source``, ``order`` and ``adds_up``, as
+        :func:`cyclosweep.design.excitation.excitation_orders` gives them.
+    largest_speed_rpm : float
+        End of the axis [rpm].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        Without matplotlib.
+    """
+    figure = _figure(8.0, 5.0)
+    panel = figure.subplots()
+    speeds = np.geomspace(largest_speed_rpm / 1000, largest_speed_rpm, 200)
+    moving = [float(f) for f in modes.frequencies_hz if f > 0]
+    for frequency in moving:
+        panel.axhline(frequency, color="black", linewidth=1.2)
+        panel.annotate(
+            f"{frequency:.4g} Hz", (speeds[0], frequency), xytext=(3, 3),
+            textcoords="offset points", fontsize="small",
+        )  # fmt: skip
+    for k, (source, order, adds_up) in enumerate(
+        orders.select("source", "order", "adds_up").iter_rows()
+    ):
+        style = "-" if adds_up else ":"
+        label = f"{source}, order {order:.5g}{'' if adds_up else ' (discs cancel)'}"
+        panel.plot(speeds, order * speeds / 60, style, color=f"C{k}", label=label)
+        at = [60 * f / order for f in moving if speeds[0] <= 60 * f / order <= largest_speed_rpm]
+        if adds_up and at:
+            panel.plot(at, [order * s / 60 for s in at], "o", color=f"C{k}")
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_xlim(speeds[0], largest_speed_rpm)
+    panel.set_xlabel("input speed [rpm]")
+    panel.set_ylabel("frequency [Hz]")
+    panel.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.01, 1.0))
+    return figure
+
+
+def transient_figure(run: Transient) -> Figure:
+    """Torques of all springs over time, with every impact marked, and the energies.
+
+    Parameters
+    ----------
+    run : Transient
+        A transient.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        Without matplotlib.
+    """
+    names = list(run.peak_torques_nm)
+    figure = _figure(9.0, 1.6 + 1.8 * (len(names) + 1))
+    panels = figure.subplots(len(names) + 1, 1, sharex=True)
+    time = run.table["time_s"].to_numpy()
+    for k, (name, panel) in enumerate(zip(names, panels[:-1], strict=True)):
+        panel.plot(time, run.table[f"torque_{name}_nm"].to_numpy(), color=f"C{k}", linewidth=1.0)
+        at = run.impacts.filter(pl.col("spring") == name)["time_s"].to_numpy()
+        if len(at):
+            panel.plot(
+                at, np.zeros(len(at)), "k^", markersize=4,
+                label=f"{len(at)} impact{'s' if len(at) > 1 else ''}",
+            )  # fmt: skip
+        peak = run.peak_torques_nm[name]
+        panel.plot(run.peak_times_s[name], peak, "o", color="C3", label=f"peak {peak:.4g} N m")
+        static = run.static_torques_nm[name]
+        if static:
+            panel.axhline(static, color="0.5", linestyle="--", label=f"static {static:.4g} N m")
+        panel.set_ylabel(f"{name}\n[N m]")
+        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    energies = (
+        ("kinetic", "kinetic_energy_j"),
+        ("elastic", "elastic_energy_j"),
+        ("taken by friction", "friction_loss_j"),
+    )
+    for label, column in energies:
+        panels[-1].plot(time, run.table[column].to_numpy(), label=label, linewidth=1.0)
+    panels[-1].set_ylabel("energy [J]")
+    panels[-1].set_xlabel("time [s]")
+    panels[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    return figure
+
+
+def shock_map_figure(
+    torque_nm: float,
+    stiffnesses_nm_per_rad: tuple[float, float],
+    gaps_deg: tuple[float, float],
+    mark: tuple[float, float] | None = None,
+) -> Figure:
+    """Shock factor of a reversal over play and stiffness.
+
+    Parameters
+    ----------
+    torque_nm : float
+        Torque that is reversed [N m].
+    stiffnesses_nm_per_rad : tuple of float
+        Least and greatest stiffness [N m/rad].
+    gaps_deg : tuple of float
+        Least and greatest half play [deg].
+    mark : tuple of float, optional
+        Stiffness and half play of a drive to be marked.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        Without matplotlib.
+    """
+    figure = _figure(7.0, 5.0)
+    panel = figure.subplots()
+    gaps = np.linspace(*gaps_deg, 81)
+    stiffnesses = np.geomspace(*stiffnesses_nm_per_rad, 81)
+    factors = [
+        [
+            reversal_shock_factor(torque_nm, stiffness_nm_per_rad=k, gap_rad=math.radians(g))
+            for k in stiffnesses
+        ]
+        for g in gaps
+    ]
+    filled = panel.contourf(stiffnesses, gaps, factors, levels=16, cmap="viridis")
+    lines = panel.contour(stiffnesses, gaps, factors, levels=8, colors="white", linewidths=0.6)
+    panel.clabel(lines, fontsize="small")
+    figure.colorbar(filled, ax=panel, label="shock factor of a reversal")
+    if mark is not None:
+        panel.plot(*mark, "o", color="C3", markersize=8)
+    panel.set_xscale("log")
+    panel.set_xlabel("stiffness at the input [N m/rad]")
+    panel.set_ylabel("half of the play at the input [deg]")
+    panel.set_title(f"{torque_nm:.4g} N m reversed")
+    return figure
+
+
+def save_transient(run: Transient, path: Path) -> bool:
+    """Save the picture of a transient where matplotlib is installed.
+
+    Parameters
+    ----------
+    run : Transient
+        A transient.
+    path : Path
+        PNG file.
+
+    Returns
+    -------
+    bool
+        Whether it was saved.
+    """
+    try:
+        figure = transient_figure(run)
+    except InputError:
+        return False
+    with unfinished(path) as part, part.open("wb") as file:
+        figure.savefig(file, format="png", dpi=130)
+    return True
