@@ -16,7 +16,11 @@ __all__ = ["History", "Torques", "knots"]
 Reals = npt.NDArray[np.float64]
 History = tuple[Sequence[float] | Reals, Sequence[float] | Reals]
 """Times [s] and torques [N m], joined by straight lines."""
-Torques = Mapping[str | int, float | History] | Mapping[str, float | History]
+Torques = (
+    Mapping[str | int, float | History]
+    | Mapping[str, float | History]
+    | Mapping[int, float | History]
+)
 """Torque on each node by its name or number: constant, or a history."""
 
 

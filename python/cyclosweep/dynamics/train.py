@@ -189,7 +189,7 @@ class Train(Chain):
             Rows of the table, evenly spaced; events and peaks do not depend on them.
         preload_nm : mapping, optional
             Torques that have acted for long before, in numbers: the train starts in their
-            equilibrium, accelerating as one where they are not in balance. None by default.
+            equilibrium. None by default.
         speeds_rad_per_s : float or sequence of float
             Speed of the first shaft, which all others follow, or of each node on its own shaft
             [rad/s].
@@ -203,8 +203,8 @@ class Train(Chain):
         Raises
         ------
         InputError
-            For torques on nodes that the train does not have, times that fall, or numbers that
-            are none.
+            For torques on nodes that the train does not have, times that fall, numbers that are
+            none, or a preload out of balance on a train that nothing holds.
 
         Notes
         -----
@@ -227,7 +227,18 @@ class Train(Chain):
             if not isinstance(torque, (int, float)):
                 raise InputError(f"preload_nm of {name}: expected a number")
             before[self.node(name)] = torque
+        self._balanced(before)
         return follow(self, times, values, samples, before, self._speeds(speeds_rad_per_s), brake)
+
+    def _balanced(self, before: Reals) -> None:
+        """Require that torques before the start leave a free train at rest."""
+        referred_nm = before / self.node_ratios
+        rest, largest = abs(float(referred_nm.sum())), float(np.abs(referred_nm).max())
+        if not self.grounded and rest > 1e-9 * largest:
+            raise InputError(
+                f"preload_nm: found {rest:g} N m left over at the first shaft of a train that "
+                "nothing holds, expected torques in balance or a grounded train"
+            )
 
     def _speeds(self, given: Sequence[float] | float) -> Reals:
         if isinstance(given, (int, float)):

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from cyclosweep.dynamics.spring import TrainSpring
+from cyclosweep.dynamics.train import Train
 from cyclosweep.reference.model import Model, Results, assembled
 
 if TYPE_CHECKING:
@@ -113,6 +116,46 @@ def _degrees_for_arcminutes(_: Drive, results: Results) -> Results:
     return {**results, "output_stiffness_nm_per_arcmin": 60 * stiffness}
 
 
+def _play_taken_for_its_half(train: Train) -> Train:
+    springs = [
+        TrainSpring.linear(spring.slopes_nm_per_rad[-1], 2 * spring.gap_rad, spring.friction)
+        for spring in train.springs
+    ]
+    return _with_springs(train, springs, train.ratios)
+
+
+def _springs_in_series_with_themselves(train: Train) -> Train:
+    springs = [
+        TrainSpring(
+            spring.knees_rad,
+            tuple(slope / 2 for slope in spring.slopes_nm_per_rad),
+            spring.unloaded_rad,
+            spring.friction,
+        )
+        for spring in train.springs
+    ]
+    return _with_springs(train, springs, train.ratios)
+
+
+def _ends_not_held(train: Train) -> Train:
+    if not train.grounded:
+        return train
+    names = (*train.names, "far_end")
+    inertias = (*train.inertias_kg_m2, train.inertias_kg_m2[-1])
+    return Train(inertias, springs=train.springs, ratios=train.ratios, names=names)
+
+
+def _with_springs(train: Train, springs: Sequence[TrainSpring], ratios: Sequence[float]) -> Train:
+    return Train(
+        train.inertias_kg_m2,
+        grounded=train.grounded,
+        springs=springs,
+        ratios=ratios,
+        names=train.names,
+        spring_names=train.spring_names,
+    )
+
+
 BROKEN_MODELS: tuple[Model, ...] = (
     Model(
         "E halved",
@@ -200,6 +243,21 @@ BROKEN_MODELS: tuple[Model, ...] = (
         "degrees for arc minutes",
         "the stiffness in N m/deg where N m/arcmin is meant",
         change_results=_degrees_for_arcminutes,
+    ),
+    Model(
+        "play taken for its half",
+        "the whole play of a train's spring to each side, instead of half of it",
+        change_train=_play_taken_for_its_half,
+    ),
+    Model(
+        "train too soft",
+        "every spring of a train with half of its stiffness",
+        change_train=_springs_in_series_with_themselves,
+    ),
+    Model(
+        "end not held",
+        "a locked output of a train as an inertia that swings",
+        change_train=_ends_not_held,
     ),
 )
 """Each must break at least one counted row that the package itself meets."""

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import cyclosweep._core as _core
 from cyclosweep.design.drive import CRITERIA, Criterion, Drive
+from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import InputError
 
 __all__ = ["Model", "PinMap", "Results", "assembled"]
@@ -54,12 +55,15 @@ class Model:
         What is done to every drive before it is computed.
     change_results : callable
         What is done to a drive's results; takes the drive that was computed and its results.
+    change_train : callable
+        What is done to every torsional train before it is computed.
     """
 
     name: str = "intact"
     meaning: str = ""
     change_drive: Callable[[Drive], Drive] = lambda drive: drive
     change_results: Callable[[Drive, Results], Results] = lambda _, results: results
+    change_train: Callable[[Train], Train] = lambda train: train
 
     @property
     def broken(self) -> bool:

@@ -10,6 +10,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.reference import (
     contacts,
     criteria,
+    dynamics,
     identities,
     independent,
     paper_87,
@@ -95,6 +96,7 @@ def _facts(model: Model, drive: Drive) -> list[Fact]:
         *solved_problems.facts(model),
         *independent.facts(model),
         *contacts.facts(model),
+        *dynamics.facts(model),
         *criteria.mciver(model),
         *criteria.facts(model, drive),
     ]

@@ -2,6 +2,10 @@
 
 use crate::dynamics::train::{SlipElement, Spring, Train};
 
+/// Twist (rad, or part of it) by which an element that has stopped is short of sliding again, so
+/// that rounding does not make it slide on the spot.
+const SLACK: f64 = 1e-14;
+
 /// Whether a slip element holds or slides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Slip {
@@ -204,7 +208,8 @@ impl SpringState {
                     if let Slip::Slides(sign) = *slip {
                         let (constant, growth) = limit_line(element, law, side);
                         let torque = sign * (constant + growth * twist);
-                        *slip = Slip::Holds(twist - torque / element.stiffness);
+                        let slack = sign * SLACK * (1.0 + twist.abs());
+                        *slip = Slip::Holds(twist - torque / element.stiffness + slack);
                     }
                 }
                 EventKind::Stick

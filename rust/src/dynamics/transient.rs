@@ -489,7 +489,7 @@ impl<'a> Path<'a> {
         (from, here): (f64, (f64, f64)),
         (to, there): (f64, (f64, f64)),
     ) -> Option<(f64, Cause)> {
-        if here.1 * there.1 < 0.0 {
+        if here.1 != 0.0 && here.1 * there.1 <= 0.0 {
             let turn = root(from, to, here.1 < 0.0, |t| {
                 let (_, speed) = self.twist(spring, t);
                 (speed, f64::NAN)
