@@ -139,6 +139,7 @@ def torque_twist(
     torque: float,
     steps: int,
 ) -> tuple[_Reals, npt.NDArray[np.bool_], float, bool]: ...
+
 class Train:
     def __new__(
         cls,

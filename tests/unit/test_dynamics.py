@@ -14,7 +14,7 @@ import cyclosweep as cs
 from cyclosweep.design.events import Event, transient
 from cyclosweep.design.excitation import campbell, excitation_orders
 from cyclosweep.dynamics import SlipElement, TrainSpring, backbone_frequency_hz
-from cyclosweep.simulation.model import EffectValue, Model
+from cyclosweep.simulation.effect_value import EffectValue
 from tests.unit.dynamics_oracle import Oracle
 
 TRAINS = 50
@@ -134,10 +134,10 @@ def test_frequency_follows_the_backbone_through_the_play() -> None:
     assert slow < fast < math.sqrt(21.0 / 0.0035) / math.tau
 
 
-def _friction_model() -> Model:
+def _friction_model() -> cs.Model:
     shape = {"slip_deg": 1.5, "scatter": 0.8, "skew": 0.0, "slack": 0.0}
     friction = EffectValue("friction_hysteresis", shape, (0.6,))
-    return Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(friction,))
+    return cs.Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(friction,))
 
 
 def test_friction_of_a_model_takes_the_area_of_its_static_loop() -> None:
@@ -168,12 +168,12 @@ def test_a_repaired_model_keeps_its_play_its_curve_and_its_drag() -> None:
     model = _friction_model()
     drag = EffectValue("viscous_drag", {"power": 1.0, "lag_s": 0.01}, (0.1,))
     train = cs.Drive.reference_87().train(
-        Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(*model.effects, drag))
+        cs.Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(*model.effects, drag))
     )
     assert train.damping_s == 0.01
     assert train.springs[0].gap_rad == pytest.approx(GAP)
     assert sum(e.limit_nm for e in train.springs[0].friction) == pytest.approx(0.6)
-    at_output = Model(compliance_deg_per_nm=2.7 / 87**2, free_play_deg=28 / 87, side="output")
+    at_output = cs.Model(compliance_deg_per_nm=2.7 / 87**2, free_play_deg=28 / 87, side="output")
     spring = cs.Drive.reference_87().train(at_output).springs[0]
     assert spring.gap_rad == pytest.approx(GAP)
     assert spring.slopes_nm_per_rad[0] == pytest.approx(1 / math.radians(2.7))

@@ -11,6 +11,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.dynamics.holzer import holzer_table
 from cyclosweep.dynamics.train import Train
 from cyclosweep.dynamics.transient import Transient
+from cyclosweep.errors import InputError
 from cyclosweep.reference.facts import Fact, Kind, Mark
 from cyclosweep.reference.model import Model
 
@@ -154,7 +155,11 @@ def _play(model: Model) -> Iterator[Fact]:
 
 
 def _peak(train: Train, before: float, after: float) -> float:
-    return _largest(train.transient({0: after}, 1.0, 2, preload_nm={0: before}))
+    """Largest torque of a reversal [N m]; NaN where an error put in leaves nothing that holds."""
+    try:
+        return _largest(train.transient({0: after}, 1.0, 2, preload_nm={0: before}))
+    except InputError:
+        return math.nan
 
 
 def _largest(run: Transient) -> float:
