@@ -13,6 +13,7 @@ from cyclosweep.recording.opening import ENDINGS, open_table
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
 from cyclosweep.recording.units import find_unit, split_name
+from cyclosweep.recording.wrapping import unwrap_with_torque
 
 __all__ = ["Columns", "canonical_columns", "file_columns", "load", "stem"]
 
@@ -241,7 +242,7 @@ def canonical_columns(
             continue
         factor, offset = conversion(name, source)
         values = frame[source.column].to_numpy().astype(np.float64) * factor + offset
-        if source.modulo is not None:
+        if source.modulo is not None and name != "angle_deg":
             values, count = unwrap(values, source.modulo)
             notes.append(f"{name} is known modulo {source.modulo:g}: {count} wraps undone.")
         columns[name] = values
@@ -255,7 +256,32 @@ def canonical_columns(
                 f"{path}, data row {wrong[0] + 1}, column {sources['run'].column}: found "
                 f"{run[wrong[0]]:g}, expected an integer"
             )
+    _unwrap_angle(columns, sources["angle_deg"].modulo, notes)
     return columns
+
+
+def _unwrap_angle(columns: Columns, modulo: float | None, notes: list[str]) -> None:
+    """Put together an angle that is known modulo a period only.
+
+    Parameters
+    ----------
+    columns : dict of str to ndarray of float, shape (rows,), or None
+        Canonical columns; the angle is changed in place.
+    modulo : float or None
+        The period [deg].
+    notes : list of str
+        What was done is added to it.
+    """
+    angle, torque, run = columns["angle_deg"], columns["torque_nm"], columns["run"]
+    if modulo is None or angle is None or torque is None or run is None:
+        return
+    columns["angle_deg"], wraps, by_torque = unwrap_with_torque(angle, torque, run, modulo)
+    notes.append(f"angle_deg is known modulo {modulo:g}: {wraps} wraps undone.")
+    if by_torque:
+        notes.append(
+            f"{by_torque} steps through zero torque are longer than half the modulo: taken in the "
+            "direction of the torque."
+        )
 
 
 def _listed(header: Iterable[str]) -> str:

@@ -100,7 +100,8 @@ class Merge(_Strict):
     same_time : bool
         Average consecutive rows of one run that share a clock tick.
     neighbours : int
-        Average so many consecutive rows of one run, after `same_time`; 1: none.
+        Average so many consecutive rows of one run, after `same_time`; 1: none. A mean never
+        reaches over a reversal of the torque.
     """
 
     same_time: bool = False

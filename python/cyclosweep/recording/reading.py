@@ -16,6 +16,7 @@ from cyclosweep.recording.cleaning import (
     put_angle_right,
 )
 from cyclosweep.recording.columns import Columns, canonical_columns, file_columns, load, stem
+from cyclosweep.recording.decimation import merge_neighbours
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.signals import angle_lattice
@@ -74,6 +75,7 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
         "drive": _drive(meta, meta_path),
         "torque_from": meta.torque_from,
         "angle_resolution_deg": resolution,
+        "angle_modulo_deg": _modulo(meta),
         "history": meta.history,
         "reset_between_runs": meta.reset_between_runs,
         "conditioning_runs": tuple(meta.conditioning_runs),
@@ -124,6 +126,8 @@ def _clean_columns(
         columns = drop_repeated(columns, notes)
     columns, faults = drop_missing(columns, notes)
     columns["angle_deg"] = put_angle_right(columns, meta, notes)
+    if meta.merge.neighbours > 1:
+        columns = merge_neighbours(columns, meta.merge.neighbours, notes)
     return columns, faults
 
 
@@ -151,6 +155,12 @@ def _resolution(meta: Metadata, columns: Columns, notes: list[str]) -> float:
     if resolution:
         notes.append(f"Angles lie on steps of {resolution:g} deg: taken as the resolution.")
     return resolution
+
+
+def _modulo(meta: Metadata) -> float | None:
+    """Period of the angle [deg] that the metadata give."""
+    source = meta.columns.get("angle_deg")
+    return None if source is None else source.modulo
 
 
 def _drive(meta: Metadata, meta_path: Path | None) -> str | None:

@@ -9,7 +9,8 @@ from typing import Any, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cyclosweep.errors import InputError
+from cyclosweep.design.drive import Drive
+from cyclosweep.errors import DesignError, InputError
 from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.cleaning import drop_missing
 from cyclosweep.recording.faults import Fault
@@ -17,6 +18,7 @@ from cyclosweep.recording.messages import printable
 from cyclosweep.recording.reading import read
 from cyclosweep.recording.samples import COLUMNS, Floats, Ints, Samples
 from cyclosweep.recording.structure import Structure, find_structure
+from cyclosweep.recording.wrapping import modulo_fault
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -50,6 +52,8 @@ class Recording(Samples):
         Whether torque was measured, or computed from the current of a motor.
     angle_resolution_deg : float
         Step of the angle reading [deg]; 0 where it is continuous.
+    angle_modulo_deg : float or None
+        The angle was known up to a multiple of this [deg], and is put together again.
     history : {"per-run", "continuous"}
         Whether play, slip and creep start afresh with every run.
     reset_between_runs : bool
@@ -74,6 +78,7 @@ class Recording(Samples):
     drive: str | None = None
     torque_from: Literal["sensor", "motor-current"] = "sensor"
     angle_resolution_deg: float = 0.0
+    angle_modulo_deg: float | None = None
     history: Literal["per-run", "continuous"] = "per-run"
     reset_between_runs: bool = False
     conditioning_runs: tuple[int, ...] = ()
@@ -89,7 +94,8 @@ class Recording(Samples):
         Parameters
         ----------
         path : path
-            CSV (also gzip, byte-order mark, ``;`` with decimal commas) or Parquet.
+            CSV (also gzip, byte-order mark, ``;`` with decimal commas), LabVIEW text or JSON;
+            Parquet, Excel, MATLAB, HDF5 or TDMS.
         meta : path, optional
             TOML file that says how to read it; default: the file of the same stem beside it,
             where there is one.
@@ -176,7 +182,23 @@ class Recording(Samples):
         found = find_faults(
             self, conditioning_runs=self.conditioning_runs, holdout_runs=self.holdout_runs
         )
+        if self.angle_modulo_deg is not None and self.angle_deg is not None:
+            fault = modulo_fault(
+                self.angle_deg, self.torque_nm, self.run, self.angle_modulo_deg, self._play_deg()
+            )
+            found = (*found, fault) if fault is not None else found
         return replace(self, faults=(*self.faults, *found))
+
+    def _play_deg(self) -> float | None:
+        """Whole free play at the measured shaft [deg], where the metadata name a drive."""
+        if self.drive is None:
+            return None
+        try:
+            drive = Drive.load(self.drive)
+        except (DesignError, InputError):
+            return None  # a diagnosis says what is wrong with the drive
+        play = 2.0 * drive.free_play_deg
+        return play if self.side == "input" else play / drive.ratio
 
     @property
     def counts(self) -> NDArray[np.bool_]:
