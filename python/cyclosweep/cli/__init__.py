@@ -12,6 +12,7 @@ from cyclosweep.cli import (
     challenge,
     diagnose,
     dynamics,
+    inspect,
     simulate,
     sweep,
     torque_twist,
@@ -36,6 +37,7 @@ app.command()(sweep.sweep)
 app.command()(sweep.shard)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)
+app.command()(inspect.inspect)
 app.command()(diagnose.diagnose)
 app.command()(dynamics.modes)
 app.command()(dynamics.shock)

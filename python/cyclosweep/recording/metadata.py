@@ -8,19 +8,10 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_
 
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
 from cyclosweep.errors import InputError
-from cyclosweep.recording.units import QUANTITIES, find_unit
+from cyclosweep.recording.units import QUANTITIES, UNIT_EXAMPLES, find_unit
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
 """Column names of a recording, each with its unit."""
-
-UNIT_EXAMPLES = {
-    "torque_nm": "'N m', 'lbf in', 'kN' with lever_arm_m, 'A' with nm_per_a",
-    "angle_deg": "'deg', 'mrad', 'arcmin', 'turns', 'counts' with counts_per_turn",
-    "time_s": "'s', 'ms', 'min'",
-    "crank_deg": "'deg', 'turns', 'counts' with counts_per_turn",
-    "temperature_c": "'degC', 'K', 'degF'",
-}
-"""Units for messages."""
 
 CanonicalName = Literal["torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c"]
 SelectValue = int | float | str

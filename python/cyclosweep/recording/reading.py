@@ -25,7 +25,7 @@ __all__ = ["read", "stem"]
 
 
 @np.errstate(all="ignore")
-def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
+def read(path: Path, meta_path: Path | None, meta: Metadata | None = None) -> dict[str, Any]:
     """Read what a recording is made of.
 
     Parameters
@@ -35,6 +35,8 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     meta_path : Path or None
         TOML file that says how to read it; None: the file of the same stem beside it, where
         there is one.
+    meta : Metadata, optional
+        What that file is to say; it is not read then.
 
     Returns
     -------
@@ -51,7 +53,8 @@ def read(path: Path, meta_path: Path | None) -> dict[str, Any]:
     beside = path.with_name(f"{stem(path)}.toml")
     if meta_path is None and beside.is_file() and beside != path:
         meta_path = beside
-    meta = Metadata() if meta_path is None else Metadata.read(meta_path)
+    if meta is None:
+        meta = Metadata() if meta_path is None else Metadata.read(meta_path)
     notes: list[str] = []
     columns, faults = _clean_columns(path, meta_path, meta, notes)
     run, beyond = columns.pop("run"), columns.pop("unscored")

@@ -15,6 +15,7 @@ from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.cleaning import drop_missing
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.messages import printable
+from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.reading import read
 from cyclosweep.recording.samples import COLUMNS, Floats, Ints, Samples
 from cyclosweep.recording.structure import Structure, find_structure
@@ -110,8 +111,36 @@ class Recording(Samples):
         InputError
             The file cannot be read as a recording; one line says why.
         """
+        return cls._read(Path(path), None if meta is None else Path(meta), None)
+
+    @classmethod
+    def read_as(cls, path: Path, meta: Metadata, meta_path: Path) -> Self:
+        """Read a recording as a metadata file would say that is not written yet.
+
+        Parameters
+        ----------
+        path : Path
+            The recording's file.
+        meta : Metadata
+            What the file would say.
+        meta_path : Path
+            Where it would stand.
+
+        Returns
+        -------
+        Recording
+
+        Raises
+        ------
+        InputError
+            The file cannot be read as a recording; one line says why.
+        """
+        return cls._read(path, meta_path, meta)
+
+    @classmethod
+    def _read(cls, path: Path, meta_path: Path | None, meta: Metadata | None) -> Self:
         try:
-            parts = read(Path(path), None if meta is None else Path(meta))
+            parts = read(path, meta_path, meta)
         except InputError as error:  # names in the file may hold line breaks
             raise InputError(printable(str(error))) from None
         return cls(**parts)._checked()

@@ -1,11 +1,12 @@
 """Which column of a file is torque, angle, clock, run: told by its name and unit."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from cyclosweep.recording.units import QUANTITIES, find_unit, split_name
+from cyclosweep.errors import InputError
+from cyclosweep.recording.units import QUANTITIES, UNIT_EXAMPLES, find_unit, split_name
 
-__all__ = ["COMMAND", "Named", "describe", "is_known_name"]
+__all__ = ["COMMAND", "Named", "describe", "is_known_name", "with_unit"]
 
 _WORDS: dict[str, tuple[str, ...]] = {
     "torque_nm": ("torque", "moment", "drehmoment", "tq", "trq", "md", "mt", "couple", "torsion"),
@@ -104,6 +105,34 @@ def describe(column: str, unit: str | None = None) -> Named:
     if role is not None and unit is not None and find_unit(unit, role) is None:
         role = None  # "torque error [%]", "position [mm]": the unit is of something else
     return Named(column, role, unit, kind, any(word in COMMAND for word in words), False)
+
+
+def with_unit(named: Named, role: str, unit: str) -> Named:
+    """Return what a name says with a unit that the user gives.
+
+    Parameters
+    ----------
+    named : Named
+        What name and unit say.
+    role : str
+        Canonical column.
+    unit : str
+        The unit.
+
+    Returns
+    -------
+    Named
+
+    Raises
+    ------
+    InputError
+        For a unit of something else.
+    """
+    known = find_unit(unit, role)
+    if known is None:
+        flag = "--torque-unit" if role == "torque_nm" else "--angle-unit"
+        raise InputError(f"{flag}: found {unit!r}, expected a unit such as {UNIT_EXAMPLES[role]}")
+    return replace(named, unit=unit, kind=known.kind, is_canonical=False)
 
 
 def is_known_name(cell: str) -> bool:

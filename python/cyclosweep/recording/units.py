@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["QUANTITIES", "Kind", "Unit", "find_unit", "split_name"]
+__all__ = ["QUANTITIES", "UNIT_EXAMPLES", "Kind", "Unit", "find_unit", "split_name"]
 
 Kind = Literal["torque", "force", "current", "angle", "counts", "time", "temperature"]
 
@@ -25,6 +25,15 @@ QUANTITIES: dict[str, tuple[Kind, ...]] = {
     "temperature_c": ("temperature",),
 }
 """What each canonical column may be computed from, first what it is itself."""
+
+UNIT_EXAMPLES = {
+    "torque_nm": "'N m', 'lbf in', 'kN' with lever_arm_m, 'A' with nm_per_a",
+    "angle_deg": "'deg', 'mrad', 'arcmin', 'turns', 'counts' with counts_per_turn",
+    "time_s": "'s', 'ms', 'min'",
+    "crank_deg": "'deg', 'turns', 'counts' with counts_per_turn",
+    "temperature_c": "'degC', 'K', 'degF'",
+}
+"""Units for messages."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,235 @@
+"""Which columns of a file are torque, angle, clock and run, and which could be, too."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cyclosweep.errors import InputError
+from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.metadata import CANONICAL_COLUMNS
+from cyclosweep.recording.roles import Named, describe
+from cyclosweep.recording.samples import Floats
+
+__all__ = ["Choice", "choose", "numbers_of"]
+
+SAME_SIGNAL = 0.999999
+"""Correlation beyond which two columns are one signal in two units."""
+
+FOLLOWS = 0.995
+"""Correlation beyond which a torque is computed from a current, not measured by itself."""
+
+_RANK = {"torque": 0, "angle": 0, None: 1, "counts": 2, "force": 2, "current": 3}
+_FLAGS = {"torque_nm": "--torque", "angle_deg": "--angle"}
+
+
+@dataclass(slots=True)
+class Choice:
+    """Columns that were chosen, and what stays open.
+
+    Attributes
+    ----------
+    roles : dict of str to Named
+        Column of each canonical one.
+    assumed : list of str
+        What the file does not say.
+    open : list of str
+        What must be said before the file can be read.
+    commands : list of str
+        Columns that were asked for, not measured.
+    current : str or None
+        Column of a current from which the torque is computed.
+    """
+
+    roles: dict[str, Named] = field(default_factory=dict)
+    assumed: list[str] = field(default_factory=list)
+    open: list[str] = field(default_factory=list)
+    commands: list[str] = field(default_factory=list)
+    current: str | None = None
+
+
+def numbers_of(table: FileTable) -> dict[str, Floats]:
+    """Read every column that holds numbers or times, each of shape (rows,)."""
+    names = [name for name in dict.fromkeys(table.header) if table.header.count(name) == 1 and name]
+    count = len(table.notes)
+    try:
+        frame = table.read(names, [])
+        return {name: frame[name].to_numpy().astype(np.float64) for name in names}
+    except InputError:
+        del table.notes[count:]
+    # One of them is text. Reading all of them with it as text keeps the rows in step.
+    numeric = []
+    for name in names:
+        try:
+            table.read([name], [])
+            numeric.append(name)
+        except InputError:
+            continue
+    del table.notes[count:]
+    frame = table.read(numeric, [name for name in names if name not in numeric])
+    return {name: frame[name].to_numpy().astype(np.float64) for name in numeric}
+
+
+def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | None]) -> Choice:
+    """Choose a column for each canonical one by name and unit; guess nothing.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Its columns of numbers.
+    given : dict of str to str or None
+        Columns that the user names, by canonical column.
+
+    Returns
+    -------
+    Choice
+
+    Raises
+    ------
+    InputError
+        For a column that the user names and that is not there or holds text.
+    """
+    choice = Choice()
+    named = {name: describe(name, table.units.get(name)) for name in numbers}
+    for role, column in given.items():
+        if column is None:
+            continue
+        if column not in numbers:
+            found = ", ".join(numbers) or "none"
+            flag = _FLAGS.get(role, role)
+            raise InputError(f"{flag}: found {column!r}, expected one of the columns {found}")
+        choice.roles[role] = named[column]
+    choice.commands = [n.column for n in named.values() if n.role == "torque_nm" and n.is_command]
+    for role in CANONICAL_COLUMNS:
+        if role in choice.roles:
+            continue
+        taken = {other.column for other in choice.roles.values()}
+        candidates = [
+            n for n in named.values()
+            if n.role == role and not n.is_command and n.column not in taken
+            and _can_be(role, numbers[n.column])
+        ]  # fmt: skip
+        _choose_one(role, candidates, numbers, choice)
+    _note_current(named, numbers, choice)
+    return choice
+
+
+def _choose_one(
+    role: str, candidates: list[Named], numbers: dict[str, Floats], choice: Choice
+) -> None:
+    """Take the one candidate whose name or unit speaks best, or ask.
+
+    Parameters
+    ----------
+    role : str
+        Canonical column.
+    candidates : list of Named
+        Columns that could be it.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Columns of the file.
+    choice : Choice
+        The result is added to it.
+    """
+    canonical = [n for n in candidates if n.is_canonical]
+    ranks = [_RANK.get(n.kind, 1) for n in candidates]
+    best = canonical or [n for n, r in zip(candidates, ranks, strict=True) if r == min(ranks)]
+    needed = role in _FLAGS
+    if not best:
+        if role == "torque_nm":
+            extra = f"; {', '.join(choice.commands)} is a command" if choice.commands else ""
+            choice.open.append(f"No column is recognised as the torque{extra}. Say --torque NAME.")
+        elif role == "angle_deg":
+            choice.assumed.append(
+                "No column is recognised as the angle: a load programme (--angle NAME)."
+            )
+        return
+    first = best[0]
+    apart = [n for n in best[1:] if not _same(numbers[first.column], numbers[n.column])]
+    if not apart:
+        choice.roles[role] = first
+        return
+    names = ", ".join([first.column, *(n.column for n in apart)])
+    if needed:
+        what = "torque" if role == "torque_nm" else "angle"
+        choice.open.append(f"These columns could be the {what}: {names}. Say {_FLAGS[role]} NAME.")
+    else:
+        choice.assumed.append(f"{first.column} taken as {role}; {names} could be, too.")
+        choice.roles[role] = first
+
+
+def _can_be(role: str, values: Floats) -> bool:
+    """Whether values can be those of a canonical column.
+
+    Parameters
+    ----------
+    role : str
+        Canonical column.
+    values : ndarray of float, shape (rows,)
+        Numbers of a column.
+
+    Returns
+    -------
+    bool
+    """
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return False
+    if role == "run":
+        whole = bool((known == np.rint(known)).all())
+        blocks = 1 + int(np.count_nonzero(np.diff(known)))
+        enough = blocks <= max(len(known) / 3, 1)
+        return whole and blocks == len(np.unique(known)) and enough
+    if role == "time_s":
+        return len(known) < 2 or float(np.mean(np.diff(known) < 0)) < 0.1
+    return True
+
+
+def _same(a: Floats, b: Floats) -> bool:
+    """Whether two columns are one signal in two units.
+
+    Parameters
+    ----------
+    a, b : ndarray of float, shape (rows,)
+        The columns.
+
+    Returns
+    -------
+    bool
+    """
+    known = np.isfinite(a) & np.isfinite(b)
+    if known.sum() < 3 or not np.ptp(a[known]) or not np.ptp(b[known]):
+        return False
+    return abs(float(np.corrcoef(a[known], b[known])[0, 1])) > SAME_SIGNAL
+
+
+def _note_current(named: dict[str, Named], numbers: dict[str, Floats], choice: Choice) -> None:
+    """Find a current that the torque follows, which is then no sensor of its own.
+
+    Parameters
+    ----------
+    named : dict of str to Named
+        Columns by name.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Their values.
+    choice : Choice
+        The result is added to it.
+    """
+    torque = choice.roles.get("torque_nm")
+    if torque is None:
+        return
+    if torque.kind == "current":
+        choice.current = torque.column
+        return
+    for other in named.values():
+        a, b = numbers[torque.column], numbers[other.column]
+        known = np.isfinite(a) & np.isfinite(b)
+        if other.kind != "current" or known.sum() < 10 or not np.ptp(b[known]):
+            continue
+        if np.ptp(a[known]) and np.corrcoef(a[known], b[known])[0, 1] > FOLLOWS:
+            choice.current = other.column
+            choice.assumed.append(
+                f"{torque.column} follows {other.column}: computed from the motor's current, no "
+                "sensor of its own."
+            )
+            return

@@ -1,0 +1,215 @@
+"""The metadata file that a recording needs, proposed from its names, units, numbers and drive."""
+
+from typing import Any
+
+import numpy as np
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.recording.choosing import Choice
+from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.nominal import explain, slope_of, unit_by_steps
+from cyclosweep.recording.proposed import Known, Proposal, values_of
+from cyclosweep.recording.roles import Named, with_unit
+from cyclosweep.recording.run_proposal import propose_limit, propose_runs, propose_ticks
+from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.signals import unwrap
+
+__all__ = ["propose"]
+
+
+def propose(table: FileTable, numbers: dict[str, Floats], choice: Choice, known: Known) -> Proposal:
+    """Propose the metadata of a recording.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Its columns of numbers.
+    choice : Choice
+        Which of them is what.
+    known : Known
+        What the user says.
+
+    Returns
+    -------
+    Proposal
+    """
+    made = Proposal(assumed=list(choice.assumed), open=list(choice.open))
+    for role, unit in (("torque_nm", known.torque_unit), ("angle_deg", known.angle_unit)):
+        if unit is not None and role in choice.roles:
+            choice.roles[role] = with_unit(choice.roles[role], role, unit)
+    columns = {role: _column(role, n, known, made) for role, n in choice.roles.items()}
+    options = {k: v for k, v in known.table.model_dump().items() if v is not None}
+    if options:
+        made.meta["table"] = options
+    torque = choice.roles.get("torque_nm")
+    angle = choice.roles.get("angle_deg")
+    if torque is not None and angle is not None and not made.open:
+        _fit_to_drive(numbers, columns, angle, known, made)
+    if known.side is not None:
+        made.meta["side"] = known.side
+    if known.drive_name is not None:
+        made.meta["drive"] = known.drive_name
+    elif angle is not None:
+        made.assumed.append("No drive named: give --drive, here or to diagnose.")
+    if "side" not in made.meta and angle is not None:
+        made.meta["side"] = "input"
+        made.assumed.append("Side not given: taken as the input shaft (--side).")
+    if choice.current is not None:
+        made.meta["torque_from"] = "motor-current"
+    for role, column in columns.items():
+        named = choice.roles[role]
+        if column != {"column": role} or not named.is_canonical:
+            short = column["column"] if len(column) == 1 else column
+            made.meta.setdefault("columns", {})[role] = short
+    if torque is not None and not made.open:
+        propose_runs(numbers, choice, columns, made)
+        propose_ticks(numbers, choice, made)
+        propose_limit(numbers, choice, made)
+    return made
+
+
+def _column(role: str, named: Named, known: Known, made: Proposal) -> dict[str, Any]:
+    """Column, unit and what the unit needs.
+
+    Parameters
+    ----------
+    role : str
+        Canonical column.
+    named : Named
+        What name and unit say.
+    known : Known
+        What the user says.
+    made : Proposal
+        What is assumed or open is added to it.
+
+    Returns
+    -------
+    dict
+    """
+    column: dict[str, Any] = {"column": named.column}
+    if named.is_canonical or role == "run":
+        return column
+    if named.unit is not None:
+        column["unit"] = named.unit
+    elif role in ("time_s", "temperature_c", "torque_nm") and named.kind != "current":
+        unit = {"time_s": "seconds", "temperature_c": "deg C", "torque_nm": "N m"}[role]
+        made.assumed.append(f"Unit of {named.column} not stated: {unit} assumed.")
+    needs = {
+        "force": ("lever_arm_m", known.lever_arm_m, "--lever-arm M"),
+        "current": ("nm_per_a", known.nm_per_a, "--nm-per-a K"),
+        "counts": ("counts_per_turn", known.counts_per_turn, "--counts-per-turn N"),
+    }
+    if named.kind in needs:
+        key, value, flag = needs[named.kind]
+        if value is None:
+            made.open.append(f"{named.column} is a unit of {named.kind}: say {flag}.")
+        else:
+            column[key] = value
+    return column
+
+
+def _fit_to_drive(
+    numbers: dict[str, Floats],
+    columns: dict[str, dict[str, Any]],
+    angle: Named,
+    known: Known,
+    made: Proposal,
+) -> None:
+    """Tell unit of the angle, side and modulo by the drive where the file does not.
+
+    Parameters
+    ----------
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Columns of the file.
+    columns : dict
+        Proposed columns; the angle's is completed.
+    angle : Named
+        What name and unit of the angle say.
+    known : Known
+        What the user says.
+    made : Proposal
+        Side, assumptions and questions are added to it.
+    """
+    torque, turned = (
+        values_of("torque_nm", columns, numbers),
+        values_of("angle_deg", columns, numbers),
+    )
+    stated = angle.unit is not None or angle.is_canonical
+    by_steps = None if stated else unit_by_steps(turned)
+    if by_steps is not None:
+        if by_steps != "deg":
+            columns["angle_deg"]["unit"] = by_steps
+        turned = values_of("angle_deg", columns, numbers)
+        made.assumed.append(
+            f"Unit of {angle.column} not stated: {by_steps}, by its steps, of which a power of two "
+            "make a turn."
+        )
+        stated = True
+    slope = slope_of(torque, turned)
+    guess = None
+    if known.drive is not None and slope is not None:
+        guess = explain(slope, known.drive, "deg" if stated else None, known.side)
+    if not stated and guess is None:
+        made.assumed.append(f"Unit of {angle.column} not stated: degrees assumed (--angle-unit).")
+    if guess is not None and not guess.clear:
+        text = (
+            f"the compliance is {guess.factor:.3g} times the drive's at the {guess.side} shaft, "
+            "the nearest of all"
+        )
+        if stated:
+            made.assumed.append(f"In these units {text}: check units, side and drive.")
+        else:
+            made.open.append(
+                f"{angle.column} states no unit, and none fits the drive: in {guess.unit} {text}. "
+                "Say --angle-unit UNIT."
+            )
+        if known.side is None:
+            made.meta["side"] = guess.side
+            made.assumed.append(f"Side not given: {guess.side} shaft, the nearer of the two.")
+    if guess is not None and guess.clear:
+        reason = f"the compliance is then {guess.factor:.2f} times the drive's"
+        if not stated and guess.unit != "deg":
+            columns["angle_deg"]["unit"] = guess.unit
+        if not stated:
+            made.assumed.append(f"Unit of {angle.column} not stated: {guess.unit}, {reason}.")
+        if known.side is None:
+            made.meta["side"] = guess.side
+            made.assumed.append(f"Side not given: {guess.side} shaft, {reason}.")
+    period = _period(values_of("angle_deg", columns, numbers), torque, known.drive)
+    if period is not None:
+        columns["angle_deg"]["modulo"] = period
+        made.assumed.append(f"{angle.column} jumps by {period:g} deg: known modulo that.")
+
+
+def _period(angle_deg: Floats, torque_nm: Floats, drive: Drive | None) -> float | None:
+    """Period of an angle that wraps, of those that encoders have.
+
+    Parameters
+    ----------
+    angle_deg : ndarray of float, shape (n,)
+        Angle [deg].
+    torque_nm : ndarray of float, shape (n,)
+        Torque [N m].
+    drive : Drive or None
+        With the ratio of a geared encoder.
+
+    Returns
+    -------
+    float or None
+        The period [deg]; None where it does not wrap, or by a dial's 360 deg, which reading undoes.
+    """
+    known = np.isfinite(angle_deg) & np.isfinite(torque_nm)
+    angle, torque = angle_deg[known], torque_nm[known]
+    if len(angle) < 3 or not np.ptp(torque):
+        return None
+    span = float(np.ptp(angle))
+    for period in [360.0 / drive.ratio] if drive is not None else []:
+        jumps = np.count_nonzero(np.abs(np.diff(angle)) > 0.5 * period)
+        if not jumps or not 0.8 * period < span <= 1.001 * period:
+            continue
+        whole, _ = unwrap(angle, period)
+        if abs(np.corrcoef(whole, torque)[0, 1]) > abs(np.corrcoef(angle, torque)[0, 1]):
+            return float(f"{period:.7g}")
+    return None
