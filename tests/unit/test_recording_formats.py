@@ -212,6 +212,14 @@ def write_german(path: Path) -> None:
     path.write_text(text(";", ",", "."))
 
 
+def write_german_late(path: Path) -> None:
+    """Divide thousands first far below the rows that are looked at to find the table."""
+    lines = text(";", ",", "", units=False).splitlines()
+    angles = [line.split(";")[2] for line in lines[1:]]
+    far = [f"1.{k:03d},500000;0,000000;{angles[-1]}" for k in range(600)]
+    path.write_text("\n".join(lines + far) + "\n")
+
+
 def write_swiss(path: Path) -> None:
     path.write_text("Datum;11.07.2024\nPruefer;Meyer\n\n" + text(";", ".", "'"))
 
@@ -404,6 +412,14 @@ def test_temperature_in_fahrenheit_and_kelvin(tmp_path: Path) -> None:
     for column in ('"T [°F]"', '{ column = "K", unit = "K" }'):
         recording = read(path, f"[columns]\ntemperature_c = {column}\n")
         np.testing.assert_allclose(present(recording.temperature_c), [0, 100], atol=1e-9)
+
+
+def test_thousands_divided_only_far_below(tmp_path: Path) -> None:
+    write_german_late(tmp_path / "loop.csv")
+    recording = read(tmp_path / "loop.csv")
+    time = present(recording.time_s)
+    np.testing.assert_allclose(time[:40], TIME)
+    np.testing.assert_allclose(time[40:], np.arange(600) + 1000.5)
 
 
 def test_a_bad_row_below_names_is_not_passed_over(tmp_path: Path) -> None:

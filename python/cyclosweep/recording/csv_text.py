@@ -15,7 +15,14 @@ from cyclosweep.recording.messages import one_line, shown
 from cyclosweep.recording.metadata import TableOptions
 from cyclosweep.recording.text_table import SEPARATORS, TextTable, find_text_table
 
-__all__ = ["CsvText", "open_csv", "read_bytes", "to_utf8"]
+__all__ = [
+    "CsvText",
+    "open_csv",
+    "read_bytes",
+    "thousands_in",
+    "to_utf8",
+    "without_thousands",
+]
 
 MAX_BYTES = 8 * 2**30
 """Largest uncompressed text that is read [byte]."""
@@ -288,3 +295,27 @@ def _header_line(content: bytes, path: Path) -> tuple[int, int, int]:
             return start, stop, line
         start = stop
     raise InputError(f"{path}: only comments, expected a header row and samples")
+
+
+def thousands_in(text: CsvText) -> str:
+    """Sign between groups of three digits anywhere in a text; empty where there is none.
+
+    Only numbers that have a decimal sign, too, or two groups, are proof of one.
+    """
+    for sign in ".,' ":
+        if sign == text.decimal or sign == text.separator:
+            continue
+        group, point = re.escape(sign.encode()), re.escape(text.decimal.encode())
+        pattern = (
+            rb"(?<![\d.,])\d{1,3}" + group + rb"\d{3}(?:" + group + rb"\d{3}|" + point + rb"\d)"
+        )
+        if re.search(pattern, text.content[text.start :]):
+            return sign
+    return ""
+
+
+def without_thousands(text: CsvText) -> CsvText:
+    """Return a text of numbers without the signs between groups of three digits."""
+    group = re.escape(text.thousands.encode())
+    body = re.sub(rb"(?<=\d)" + group + rb"(?=\d{3}(?!\d))", b"", text.content[text.start :])
+    return replace(text, content=text.content[: text.start] + body, thousands="")

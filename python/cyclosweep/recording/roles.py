@@ -104,7 +104,8 @@ def describe(column: str, unit: str | None = None) -> Named:
         role = "time_s" if kind == "time" else "temperature_c"
     if role is not None and unit is not None and find_unit(unit, role) is None:
         role = None  # "torque error [%]", "position [mm]": the unit is of something else
-    return Named(column, role, unit, kind, any(word in COMMAND for word in words), False)
+    is_command = any(word in COMMAND or word.startswith("soll") for word in words)
+    return Named(column, role, unit, kind, is_command, False)
 
 
 def with_unit(named: Named, role: str, unit: str) -> Named:
@@ -167,5 +168,8 @@ def _role_of(name: str, words: list[str]) -> str | None:
         return "time_s" if name.casefold() == "x_value" else "run"
     for role in ("temperature_c", "crank_deg", "torque_nm", "angle_deg", "run", "time_s"):
         if any(word in _WORDS[role] for word in words):
+            return role
+    for role, ending in (("torque_nm", "moment"), ("angle_deg", "winkel"), ("time_s", "zeit")):
+        if any(word.endswith(ending) for word in words):  # German compounds
             return role
     return None

@@ -3,13 +3,14 @@
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
 
 from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import MISSING, clock_seconds, is_clock, is_number, spelt_number
-from cyclosweep.recording.csv_text import CsvText
+from cyclosweep.recording.csv_text import CsvText, thousands_in, without_thousands
 from cyclosweep.recording.messages import one_line, shown
 
 
@@ -72,14 +73,18 @@ def _frame(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.Da
     -------
     polars.DataFrame
     """
+    words = any(kind == pl.String for kind in kinds.values())
     try:
-        if text.thousands:
-            raise pl.exceptions.ComputeError("groups of digits")
-        return _parse(text, kinds)
+        if not text.thousands:
+            return _parse(text, kinds)
+        if not words:  # a time may hold the same signs
+            return _parse(without_thousands(text), kinds)
     except pl.exceptions.NoDataError:
         return pl.DataFrame(schema=dict(kinds))
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException):
-        return _parse_slowly(path, text, kinds)
+        if not text.thousands and (sign := thousands_in(text)):
+            return _frame(path, replace(text, thousands=sign), kinds)
+    return _parse_slowly(path, text, kinds)
 
 
 def _clocks(path: Path, text: CsvText, names: Iterable[str]) -> list[str]:
