@@ -18,10 +18,10 @@ pub trait ContactLaws: Copy {
 /// `F = k p^(10/9)` at the ring; `p = F / k_pin + (F / k_hole)^0.9` at the output pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PowerLaws {
-    ring: f64,
-    hole: f64,
+    pub(crate) ring: f64,
+    pub(crate) hole: f64,
     /// Hole's stiffness over the pin's.
-    ratio: [f64; MAX_DISCS],
+    pub(crate) ratio: [f64; MAX_DISCS],
 }
 
 impl PowerLaws {

@@ -39,7 +39,7 @@ pub(crate) const TOLERANCE: f64 = 1e-10;
 /// it is below [`ACCEPTED`] times the force at the pin circle.
 const ROUNDING: f64 = 1e-14;
 /// Largest force out of balance that is accepted at last, over the force at the pin circle.
-const ACCEPTED: f64 = 1e-8;
+pub(crate) const ACCEPTED: f64 = 1e-8;
 const MOST_STEPS: u32 = 200;
 /// Points looked at along one step.
 const MOST_TRIALS: usize = 20;
@@ -244,7 +244,12 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
     #[inline(always)]
     #[must_use]
     pub fn stiffness_at(&self, motion: &Motion) -> f64 {
-        self.newton_step(&self.terms(motion, Pull::default())).1
+        // What is out of balance shortens steps; it has no part in the stiffness.
+        let terms = Terms {
+            residual: 0.0,
+            ..self.terms(motion, Pull::default())
+        };
+        self.newton_step(&terms).1
     }
 
     /// A motion to start from: every disc touches the ring and a pin, about as deep as the load

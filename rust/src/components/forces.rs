@@ -1,11 +1,9 @@
 //! Forces, pressures, losses and shares of the twist at rated torque, gathered over the positions of
 //! the crank.
 
-use crate::components::contact::PowerLaws;
-use crate::components::equilibrium::{Loaded, Motion};
 use crate::components::inputs::PartInput;
 use crate::components::laws::hertz;
-use crate::components::mechanism::Mechanism;
+use crate::components::mechanism::MAX_DISCS;
 use crate::components::outputs::PartOutput;
 use crate::components::parts::Parts;
 use crate::components::turn::{ARCMIN, POSITIONS};
@@ -31,11 +29,99 @@ pub struct Budget {
     pub clearance: f64,
 }
 
-/// What is gathered.
+/// What comes of the forces at one position of the crank, or one list of each for several.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct AtPosition<T> {
+    /// Twist times torque (N m), as in [`Budget`].
+    pub ring: T,
+    pub output: T,
+    pub bending: T,
+    pub root: T,
+    pub bearing: T,
+    pub clearance: T,
+    /// Force at R_OP (N).
+    pub torque: T,
+    pub active_pins: T,
+    pub effective_pins: T,
+    pub active_ring: T,
+    /// Largest forces (N).
+    pub ring_force: T,
+    pub pin_force: T,
+    /// Largest share of a disc.
+    pub share: T,
+    pub bearing_force: T,
+    /// Largest force times curvature at the ring (N/m).
+    pub ring_pressure: T,
+    /// Sum of the ring's forces times the distances of contact and pitch point (N m).
+    pub ring_sliding: T,
+    /// Sums of the forces (N) on output pins and bearings.
+    pub pin_forces: T,
+    pub bearing_forces: T,
+}
+
+impl AtPosition<&[f64]> {
+    /// That of one position.
+    pub(crate) fn at(&self, position: usize) -> AtPosition<f64> {
+        AtPosition {
+            ring: self.ring[position],
+            output: self.output[position],
+            bending: self.bending[position],
+            root: self.root[position],
+            bearing: self.bearing[position],
+            clearance: self.clearance[position],
+            torque: self.torque[position],
+            active_pins: self.active_pins[position],
+            effective_pins: self.effective_pins[position],
+            active_ring: self.active_ring[position],
+            ring_force: self.ring_force[position],
+            pin_force: self.pin_force[position],
+            share: self.share[position],
+            bearing_force: self.bearing_force[position],
+            ring_pressure: self.ring_pressure[position],
+            ring_sliding: self.ring_sliding[position],
+            pin_forces: self.pin_forces[position],
+            bearing_forces: self.bearing_forces[position],
+        }
+    }
+}
+
+/// What the sums over contacts need of a drive besides its mechanism.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Factors {
+    /// Flexibilities (m/N) of the output pins and their roots under the force of each disc.
+    pub bending: [f64; MAX_DISCS],
+    pub root: [f64; MAX_DISCS],
+    pub pin_radius: f64,
+    pub pin_curvature: f64,
+    pub ring_radius: f64,
+    pub eccentricity: f64,
+    /// Bend of the path of a pin's centre times the cube of `l`, the distance from the pitch point
+    /// over R: `bend + bend_of_square l^2` (1/m).
+    pub bend: f64,
+    pub bend_of_square: f64,
+}
+
+impl Factors {
+    pub(crate) fn of(parts: &Parts) -> Self {
+        let profile = &parts.profile;
+        let pins = profile.lobes as f64 + 1.0;
+        let width = profile.eccentricity * pins / profile.ring_radius;
+        Self {
+            bending: parts.pins.map(|pin| pin.bending),
+            root: parts.pins.map(|pin| pin.root),
+            pin_radius: profile.pin_radius,
+            pin_curvature: 1.0 / profile.pin_radius,
+            ring_radius: profile.ring_radius,
+            eccentricity: profile.eccentricity,
+            bend: 0.5 * (1.0 - pins) * (1.0 - width * width) / profile.ring_radius,
+            bend_of_square: 0.5 * (1.0 + pins) / profile.ring_radius,
+        }
+    }
+}
+
+/// What is gathered over the positions.
 #[derive(Debug, Clone, Default)]
 pub struct RatedForces {
-    ring: Vec<f64>,
-    pins: Vec<f64>,
     budget: Budget,
     /// Sum of the forces at R_OP (N).
     torque: f64,
@@ -68,101 +154,43 @@ fn active(forces: &[f64]) -> (f64, f64, f64) {
 }
 
 impl RatedForces {
-    /// Forgets everything, and keeps the memory.
-    pub fn clear(&mut self) {
-        let (ring, pins) = (
-            std::mem::take(&mut self.ring),
-            std::mem::take(&mut self.pins),
-        );
-        *self = Self {
-            ring,
-            pins,
-            ..Self::default()
-        };
-    }
-
     /// Adds one position of the crank.
-    #[inline(always)]
-    pub fn add(
-        &mut self,
-        parts: &Parts,
-        mechanism: &Mechanism,
-        loaded: &Loaded<'_, PowerLaws>,
-        motion: &Motion,
-    ) {
-        self.ring.clear();
-        self.pins.clear();
-        let [_, discs, count] = parts.counts;
-        let lobes = mechanism.lobes as f64;
+    pub(crate) fn add(&mut self, parts: &Parts, at: &AtPosition<f64>) {
+        let lobes = parts.counts[0] as f64;
         // Speeds for a crank that turns by one radian a second.
-        let (spin, slip) = (1.0 / lobes, mechanism.eccentricity * (lobes + 1.0) / lobes);
-        let bore = parts.scalar(Input::DiscBoreRadius);
-        let [friction_ring, friction_output, friction_bearing] = [
+        let (spin, slip) = (
+            1.0 / lobes,
+            parts.profile.eccentricity * (lobes + 1.0) / lobes,
+        );
+        let friction = [
             PartInput::FrictionRing,
             PartInput::FrictionOutput,
             PartInput::FrictionBearing,
         ]
         .map(|input| parts.value(input));
-        let mut torques = 0.0_f64;
-        let mut largest_torque = 0.0_f64;
-        for disc in 0..discs {
-            let profile = &parts.profile;
-            let from = self.ring.len();
-            loaded.ring_forces(disc, motion, &mut self.ring);
-            for contact in loaded.ring_contacts(disc, motion, &self.ring[from..]) {
-                if contact.force > 0.0 {
-                    self.budget.ring += contact.force * contact.depth;
-                    self.budget.clearance += contact.force * contact.gap;
-                    let curvature = profile.contact_curvature(contact.cosine);
-                    self.ring_pressure = self.ring_pressure.max(contact.force * curvature);
-                    let lever = contact.to_pitch - profile.pin_radius;
-                    self.losses[0] += friction_ring * contact.force * spin * lever.abs();
-                }
-            }
-            let from = self.pins.len();
-            let mut torque = 0.0;
-            loaded.pin_forces(disc, motion, &mut self.pins);
-            for contact in loaded.pin_contacts(disc, motion, &self.pins[from..]) {
-                let force = contact.force;
-                if force > 0.0 {
-                    let flexibility = parts.pins[disc];
-                    let bending = force * flexibility.bending;
-                    let root = force * flexibility.root;
-                    self.budget.bending += force * bending;
-                    self.budget.root += force * root;
-                    self.budget.output += force * (contact.depth - bending - root);
-                    self.budget.clearance += force * contact.taken_up;
-                    torque -= force * contact.along;
-                }
-            }
-            let sum: f64 = self.pins[from..].iter().sum();
-            self.losses[1] += friction_output * sum * slip;
-            let [x, y] = loaded.bearing_force(disc, motion);
-            let force = x.hypot(y);
-            self.bearing = self.bearing.max(force);
-            self.losses[2] += friction_bearing * force * bore * (1.0 + spin);
-            let [_, dx, dy] = motion.discs[disc];
-            let taken_up = parts.value(PartInput::BearingClearance) * force;
-            self.budget.bearing += x * dx + y * dy - taken_up;
-            self.budget.clearance += taken_up;
-            torques += torque;
-            self.torque += torque;
-            largest_torque = largest_torque.max(torque);
-        }
-        if torques > 0.0 {
-            self.share = self.share.max(largest_torque / torques);
-        }
-        let (pins, effective, largest) = active(&self.pins);
+        let bore = parts.scalar(Input::DiscBoreRadius);
+        self.losses[0] += friction[0] * at.ring_sliding * spin;
+        self.losses[1] += friction[1] * at.pin_forces * slip;
+        self.losses[2] += friction[2] * at.bearing_forces * bore * (1.0 + spin);
+        self.budget.ring += at.ring;
+        self.budget.output += at.output;
+        self.budget.bending += at.bending;
+        self.budget.root += at.root;
+        self.budget.bearing += at.bearing;
+        self.budget.clearance += at.clearance;
+        self.torque += at.torque;
         let [sum, least, most] = &mut self.active_pins;
+        let pins = at.active_pins;
         *least = if *sum > 0.0 { least.min(pins) } else { pins };
         *most = most.max(pins);
         *sum += pins;
-        self.effective += effective;
-        self.largest[1] = self.largest[1].max(largest);
-        let (ring, _, largest) = active(&self.ring);
-        self.active_ring += ring;
-        self.largest[0] = self.largest[0].max(largest);
-        debug_assert_eq!(self.pins.len(), discs * count);
+        self.effective += at.effective_pins;
+        self.active_ring += at.active_ring;
+        self.largest[0] = self.largest[0].max(at.ring_force);
+        self.largest[1] = self.largest[1].max(at.pin_force);
+        self.share = self.share.max(at.share);
+        self.bearing = self.bearing.max(at.bearing_force);
+        self.ring_pressure = self.ring_pressure.max(at.ring_pressure);
     }
 
     /// Twist times torque of each kind of part, summed over the positions.

@@ -20,6 +20,7 @@ pub mod outputs;
 pub mod parts;
 pub mod pin_root;
 pub mod pins;
+mod positions;
 pub mod profile;
 pub mod quadratic;
 pub mod ring;

@@ -1,6 +1,7 @@
 //! The disc's profile: radius of curvature, undercut, area and moment of inertia.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::LazyLock;
 
 /// A cycloidal disc's profile, the offset of a trochoid inwards by the ring pins' radius. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +18,17 @@ pub struct Profile {
 
 /// Points of one lobe for areas and moments: the integrals of a smooth period converge at once.
 const POINTS: usize = 96;
+
+/// Sine and cosine at the points of half a lobe, its ends included.
+fn half_turn() -> &'static [[f64; 2]; POINTS / 2 + 1] {
+    static HALF: LazyLock<[[f64; 2]; POINTS / 2 + 1]> = LazyLock::new(|| {
+        std::array::from_fn(|point| {
+            let (sin, cos) = (TAU * point as f64 / POINTS as f64).sin_cos();
+            [sin, cos]
+        })
+    });
+    &HALF
+}
 
 impl Profile {
     /// Ring pins.
@@ -68,25 +80,25 @@ impl Profile {
     #[must_use]
     pub fn area_and_moment(&self) -> (f64, f64) {
         let (z, r, e) = (self.pins(), self.ring_radius, self.eccentricity);
-        let lobes = self.lobes as f64;
         let (mut area, mut moment) = (0.0, 0.0);
-        for point in 0..POINTS {
-            let t = TAU / lobes * point as f64 / POINTS as f64;
-            let (s1, c1) = t.sin_cos();
-            let (sz, cz) = (z * t).sin_cos();
+        // Seen along the circle's radius through the pin, every drive passes through the same angles,
+        // and the two halves of a lobe are alike.
+        for (point, [s, c]) in half_turn().iter().enumerate() {
             // The path, its derivative, and the derivative of its direction.
-            let (px, py) = (r * c1 - e * cz, r * s1 - e * sz);
-            let (dx, dy) = (-r * s1 + e * z * sz, r * c1 - e * z * cz);
-            let (ax, ay) = (-r * c1 + e * z * z * cz, -r * s1 + e * z * z * sz);
-            let speed = dx.hypot(dy);
-            let turning = (dx * ay - dy * ax) / (speed * speed);
+            let (px, py) = (r - e * c, -e * s);
+            let (dx, dy) = (e * z * s, r - e * z * c);
+            let (ax, ay) = (-r + e * z * z * c, e * z * z * s);
+            let square = dx * dx + dy * dy;
+            let speed = square.sqrt();
+            let turning = (dx * ay - dy * ax) / square;
             // The point of the profile lies towards the inside by the pin's radius.
             let (tx, ty) = (dx / speed, dy / speed);
             let (x, y) = (px - self.pin_radius * ty, py + self.pin_radius * tx);
             let along = speed - self.pin_radius * turning;
             let swept = (x * ty - y * tx) * along;
-            area += 0.5 * swept;
-            moment += 0.25 * (x * x + y * y) * swept;
+            let weight = if point % (POINTS / 2) == 0 { 0.5 } else { 1.0 };
+            area += weight * swept;
+            moment += weight * 0.5 * (x * x + y * y) * swept;
         }
         let step = TAU / POINTS as f64;
         (area * step, moment * step)

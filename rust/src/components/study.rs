@@ -8,7 +8,6 @@ use crate::components::inputs::{PART_INPUTS, PARTS_AT, PartInput};
 use crate::components::outputs::{PART_OUTPUTS, PartOutput, Wanted};
 use crate::components::parts::{Fixed, PartError, Parts};
 use crate::components::turn::{Engine, Row, Scratch, Turn};
-use crate::kernel::lanes::with_widest;
 use crate::kernel::{Output, Study, StudyError};
 use crate::model::error::Status;
 use crate::model::inputs::{Input, SCALARS};
@@ -168,13 +167,14 @@ impl PartStudy {
             Ok(parts) => parts,
             Err(error) => return (PART_STATUS + error.code()) as u8,
         };
-        *found = with_widest(Turn {
+        *found = Turn {
             parts: &parts,
             fixed: &self.fixed,
             engine: self.engine,
             wanted,
             scratch,
-        });
+        }
+        .solve();
         put_details(&parts, &self.fixed, wanted, &mut |output, value| {
             found[output as usize] = value;
         });

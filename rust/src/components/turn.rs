@@ -3,15 +3,15 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::components::contact::PowerLaws;
-use crate::components::equilibrium::{Equilibrium, Loaded, Motion};
-use crate::components::forces::RatedForces;
+use pulp::{Arch, Scalar, Simd, WithSimd};
+
+use crate::components::equilibrium::Motion;
+use crate::components::forces::{Factors, RatedForces};
 use crate::components::inputs::PartInput;
-use crate::components::mechanism::{Circles, Mechanism, Position};
+use crate::components::mechanism::Mechanism;
 use crate::components::outputs::{PART_OUTPUTS, PartOutput, Wanted};
 use crate::components::parts::{Fixed, Parts};
-use crate::components::quadratic::{self, Expected};
-use crate::kernel::lanes::Wide;
+use crate::components::positions::{Found, Group, Memory, State, lanes};
 use crate::model::inputs::Input;
 
 /// Positions of the crank over one period of the output pins, for means and extremes.
@@ -36,10 +36,7 @@ pub enum Engine {
 /// Memory of one thread.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    circles: Circles,
-    position: Position,
-    forces: RatedForces,
-    memory: Vec<f64>,
+    memory: Memory,
 }
 
 /// Values of every column; NaN where not asked for.
@@ -60,112 +57,89 @@ pub struct Turn<'a> {
     pub scratch: &'a mut Scratch,
 }
 
-/// A load over the positions of the crank: the last equilibrium, from which the next one starts,
-/// and sums of what is asked for.
+/// A load over the positions of the crank.
 #[derive(Debug, Clone, Copy)]
 struct Trace {
     share: f64,
-    before: Option<(Motion, Expected)>,
-    twist: f64,
-    stiffness: f64,
-    /// Whether any equilibrium is the full engine's, and whether any was not found at all.
-    by_full: bool,
-    failed: bool,
+    /// Flange's motion (m at R_OP) and stiffness (N/m) at each position.
+    flange: [f64; POSITIONS],
+    stiffness: [f64; POSITIONS],
+    found: Found,
 }
 
 impl Trace {
     const fn new(share: f64) -> Self {
         Self {
             share,
-            before: None,
-            twist: 0.0,
-            stiffness: 0.0,
-            by_full: false,
-            failed: false,
+            flange: [f64::NAN; POSITIONS],
+            stiffness: [f64::NAN; POSITIONS],
+            found: Found {
+                by_full: false,
+                failed: false,
+            },
         }
     }
 
-    /// The next equilibrium: after the last one of this load or, first of all, of a higher one.
-    /// Where secants fail the full engine takes over.
-    #[inline(always)]
-    fn step(
-        &mut self,
-        mechanism: &Mechanism,
-        position: &Position,
-        engine: Engine,
-        torque: f64,
-        higher: Option<Motion>,
-    ) -> Option<Equilibrium> {
-        if engine == Engine::Quadratic {
-            let start = self.before.as_ref();
-            let start = start.map(|(motion, expected)| (motion, expected));
-            let (mut found, expected) = quadratic::solve(mechanism, position, torque, start);
-            if found.converged {
-                self.before = Some((found.motion, expected));
-                found.stiffness = f64::NAN;
-                return Some(found);
-            }
-        }
-        self.by_full = true;
-        let loaded = Loaded::full(mechanism, position);
-        let start = self.before.map(|(motion, _)| motion).or(higher);
-        let start = start.unwrap_or_else(|| loaded.first_motion(torque));
-        let mut found = loaded.solve(torque, &start);
-        if !found.converged {
-            found = loaded.solve(torque, &loaded.first_motion(torque));
-        }
-        if !found.converged {
-            self.failed = true;
-            self.before = None;
-            return None;
-        }
-        let expected = Expected::first(mechanism, torque);
-        self.before = Some((found.motion, expected));
-        Some(found)
+    fn add(&mut self, found: Found) {
+        self.found.by_full |= found.by_full;
+        self.found.failed |= found.failed;
     }
 
-    /// Adds a position's twist, and its stiffness by the true laws, whichever laws it is of.
-    #[inline(always)]
-    fn add(&mut self, full: &Loaded<'_, PowerLaws>, found: &Equilibrium, with_stiffness: bool) {
-        self.twist += found.motion.flange;
-        if with_stiffness {
-            self.stiffness += if found.stiffness.is_nan() {
-                full.stiffness_at(&found.motion)
-            } else {
-                found.stiffness
-            };
+    /// Twist (arc minutes) with a shaft of this compliance behind the flange.
+    fn twist(&self, parts: &Parts, radius: f64) -> f64 {
+        if self.found.failed {
+            return f64::NAN;
         }
+        let flange = mean(&self.flange) / radius;
+        (flange + self.share * parts.torque * parts.shaft_compliance) / ARCMIN
+    }
+
+    /// Tangent stiffness (N m per arc minute), the shaft in series.
+    fn tangent(&self, parts: &Parts, radius: f64) -> f64 {
+        if self.found.failed {
+            return f64::NAN;
+        }
+        let stiffness = mean(&self.stiffness) * radius * radius;
+        ARCMIN / (1.0 / stiffness + parts.shaft_compliance)
     }
 }
 
-impl Wide for Turn<'_> {
+/// Mean in the order of the positions, however many stood side by side.
+fn mean(values: &[f64; POSITIONS]) -> f64 {
+    values.iter().sum::<f64>() / POSITIONS as f64
+}
+
+impl Turn<'_> {
+    /// Every column asked for, with the widest instructions that this machine has.
+    #[must_use]
+    pub fn solve(self) -> Row {
+        Arch::new().dispatch(self)
+    }
+}
+
+impl WithSimd for Turn<'_> {
     type Output = Row;
 
     #[inline(always)]
-    fn run(self) -> Row {
+    fn with_simd<S: Simd>(self, simd: S) -> Row {
         let mechanism = self.parts.mechanism(self.fixed);
-        self.scratch.circles.set(&mechanism);
         let mut row = [f64::NAN; PART_OUTPUTS];
         let mut put = |output: PartOutput, value: f64| row[output as usize] = value;
         let (parts, wanted) = (self.parts, self.wanted);
-        if wanted.gaps {
-            put(
-                PartOutput::Backlash,
-                mean_backlash(&mechanism, self.scratch),
-            );
-        }
-        if wanted.rated {
+        let memory = &mut self.scratch.memory;
+        if wanted.rated || wanted.gaps {
             loaded_turn(
+                simd,
                 parts,
                 wanted,
                 &mechanism,
                 self.engine,
-                self.scratch,
+                memory,
                 &mut put,
             );
         }
         if wanted.fine {
-            fine_turn(parts, &mechanism, self.engine, self.scratch, &mut put);
+            fine_turn(simd, parts, &mechanism, self.engine, memory, &mut put);
         }
         put_shape(parts, wanted, &mut put);
         row
@@ -182,111 +156,141 @@ pub fn positions(mechanism: &Mechanism, count: usize) -> impl Iterator<Item = f6
 
 /// Columns of equilibria at the few positions: means, extremes and forces.
 #[inline(always)]
-fn loaded_turn(
+fn loaded_turn<S: Simd>(
+    simd: S,
     parts: &Parts,
     wanted: Wanted,
     mechanism: &Mechanism,
     engine: Engine,
-    scratch: &mut Scratch,
+    memory: &mut Memory,
     put: &mut impl FnMut(PartOutput, f64),
 ) {
-    let Scratch {
-        circles,
-        position,
-        forces,
-        ..
-    } = scratch;
-    let (radius, shaft) = (mechanism.pin_circle_radius, parts.shaft_compliance);
-    forces.clear();
-    let mut rated = Trace::new(1.0);
-    let mut lower = [
+    let mut cranks = [0.0; POSITIONS];
+    for (crank, position) in cranks.iter_mut().zip(positions(mechanism, POSITIONS)) {
+        *crank = position;
+    }
+    let factors = Factors::of(parts);
+    let mut forces = RatedForces::default();
+    let mut gaps = [0.0; POSITIONS];
+    let mut traces = [
+        (wanted.rated, Trace::new(1.0)),
         (wanted.half, Trace::new(0.5)),
         (wanted.low, Trace::new(LOST_MOTION_LOAD)),
         (wanted.reverse, Trace::new(-LOST_MOTION_LOAD)),
     ];
-    for crank in positions(mechanism, POSITIONS) {
-        position.set(mechanism, circles, crank);
-        let full = Loaded::full(mechanism, position);
-        let at_rated = rated.step(mechanism, position, engine, parts.torque, None);
-        if let Some(found) = &at_rated {
-            rated.add(&full, found, wanted.stiffness);
-            if wanted.forces {
-                forces.add(parts, mechanism, &full, &found.motion);
-            }
+    let lanes = lanes::<S>();
+    for first in (0..POSITIONS).step_by(lanes) {
+        let at = first..first + lanes;
+        let mut group = Group::new(simd, mechanism, engine, &cranks[at.clone()], memory);
+        if wanted.gaps {
+            group.backlash(&mut gaps[at.clone()]);
         }
-        for (_, trace) in lower.iter_mut().filter(|(wanted, _)| *wanted) {
-            let torque = trace.share * parts.torque;
-            let above = at_rated.map(|found| found.motion);
-            let higher = if trace.share > 0.0 { above } else { None };
-            if let Some(found) = trace.step(mechanism, position, engine, torque, higher) {
-                trace.add(&full, &found, trace.share > 0.0);
+        if wanted.rated {
+            group.guess(parts.torque);
+        }
+        // Lower loads start from the rated one, whichever of them are asked for.
+        let mut rated = group.state();
+        for (_, trace) in traces.iter_mut().filter(|(wanted, _)| *wanted) {
+            if trace.share < 0.0 {
+                group.mirror();
+            } else if trace.share < 1.0 {
+                group.go_on_from(&rated);
+            }
+            trace.add(group.solve(trace.share * parts.torque));
+            if trace.share == 1.0 {
+                rated = group.state();
+            }
+            group.flange(&mut trace.flange[at.clone()]);
+            let stiffness = &mut trace.stiffness[at.clone()];
+            if trace.share == 1.0 && wanted.forces {
+                group.forces(&factors, stiffness, |found| {
+                    for position in 0..lanes {
+                        forces.add(parts, &found.at(position));
+                    }
+                });
+            } else if trace.share > 0.0 && (trace.share < 1.0 || wanted.stiffness) {
+                group.stiffness(stiffness);
             }
         }
     }
-    let mean = 1.0 / POSITIONS as f64;
-    let found = |trace: &Trace, value: f64| if trace.failed { f64::NAN } else { value };
-    let twist = |trace: &Trace| {
-        let shaft = trace.share * parts.torque * shaft;
-        found(trace, (trace.twist * mean / radius + shaft) / ARCMIN)
-    };
-    let tangent = |trace: &Trace| {
-        let stiffness = trace.stiffness * mean * radius * radius;
-        found(trace, ARCMIN / (1.0 / stiffness + shaft))
-    };
-    let [(_, half), (_, low), (_, reverse)] = &lower;
-    put(PartOutput::LoadedTwist, twist(&rated));
+    let radius = mechanism.pin_circle_radius;
+    if wanted.gaps {
+        put(PartOutput::Backlash, mean(&gaps) / radius / ARCMIN);
+    }
+    let [(_, rated), (_, half), (_, low), (_, reverse)] = &traces;
+    if wanted.rated {
+        put(PartOutput::LoadedTwist, rated.twist(parts, radius));
+        let solver = if rated.found.failed {
+            2
+        } else {
+            u8::from(rated.found.by_full)
+        };
+        put(PartOutput::Solver, f64::from(solver));
+    }
     if wanted.stiffness {
-        put(PartOutput::TangentStiffness100, tangent(&rated));
+        put(
+            PartOutput::TangentStiffness100,
+            rated.tangent(parts, radius),
+        );
     }
     if wanted.half {
-        put(PartOutput::TangentStiffness50, tangent(half));
+        put(PartOutput::TangentStiffness50, half.tangent(parts, radius));
     }
     if wanted.low {
-        put(PartOutput::TangentStiffness3, tangent(low));
+        put(PartOutput::TangentStiffness3, low.tangent(parts, radius));
     }
     if wanted.reverse {
-        put(PartOutput::LostMotion3, twist(low) - twist(reverse));
+        let lost = low.twist(parts, radius) - reverse.twist(parts, radius);
+        put(PartOutput::LostMotion3, lost);
     }
-    if wanted.forces && !rated.failed {
+    if wanted.forces && !rated.found.failed {
         forces.put(parts, put);
     }
-    let solver = if rated.failed {
-        2
-    } else {
-        u8::from(rated.by_full)
-    };
-    put(PartOutput::Solver, f64::from(solver));
 }
 
 /// Columns of equilibria at the many positions: how twist and input torque pulsate.
 #[inline(always)]
-fn fine_turn(
+fn fine_turn<S: Simd>(
+    simd: S,
     parts: &Parts,
     mechanism: &Mechanism,
     engine: Engine,
-    scratch: &mut Scratch,
+    memory: &mut Memory,
     put: &mut impl FnMut(PartOutput, f64),
 ) {
-    let Scratch {
-        circles,
-        position,
-        memory,
-        ..
-    } = scratch;
-    let mut trace = Trace::new(1.0);
+    // Each lane goes on in small steps through its own part of the period.
+    const STEPS: usize = FINE_POSITIONS / POSITIONS;
+    let lanes = lanes::<S>();
+    let mut cranks = [[0.0; POSITIONS]; STEPS];
+    for (place, crank) in positions(mechanism, FINE_POSITIONS).enumerate() {
+        cranks[place % STEPS][place / STEPS] = crank;
+    }
     let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for crank in positions(mechanism, FINE_POSITIONS) {
-        position.set(mechanism, circles, crank);
-        let Some(found) = trace.step(mechanism, position, engine, parts.torque, None) else {
-            return;
-        };
-        let loaded = Loaded::full(mechanism, position);
-        let input = loaded.input_torque(parts.torque, &found.motion, memory);
-        let ripple = input * mechanism.lobes as f64 / parts.torque;
-        let twist = found.motion.flange / mechanism.pin_circle_radius / ARCMIN;
-        for (k, value) in [twist, ripple].into_iter().enumerate() {
-            least[k] = least[k].min(value);
-            most[k] = most[k].max(value);
+    let (mut flange, mut input) = ([0.0; POSITIONS], [0.0; POSITIONS]);
+    for first in (0..POSITIONS).step_by(lanes) {
+        let mut before: Option<State<S>> = None;
+        for cranks in &cranks {
+            let cranks = &cranks[first..first + lanes];
+            let mut group = Group::new(simd, mechanism, engine, cranks, memory);
+            match &before {
+                Some(state) => group.go_on_from(state),
+                None => group.guess(parts.torque),
+            }
+            if group.solve(parts.torque).failed {
+                return;
+            }
+            before = Some(group.state());
+            let (flange, input) = (&mut flange[..lanes], &mut input[..lanes]);
+            group.flange(flange);
+            group.input_torque(parts.torque, input);
+            for (flange, input) in flange.iter().zip(input) {
+                let ripple = *input * mechanism.lobes as f64 / parts.torque;
+                let twist = flange / mechanism.pin_circle_radius / ARCMIN;
+                for (k, value) in [twist, ripple].into_iter().enumerate() {
+                    least[k] = least[k].min(value);
+                    most[k] = most[k].max(value);
+                }
+            }
         }
     }
     put(PartOutput::TransmissionError, most[0] - least[0]);
@@ -307,45 +311,6 @@ fn put_shape(parts: &Parts, wanted: Wanted, put: &mut impl FnMut(PartOutput, f64
         put(PartOutput::DiscMass, mass);
         put(PartOutput::DiscInertia, inertia);
     }
-}
-
-/// Mean over the few positions of the flange's free turn (arc minutes).
-fn mean_backlash(mechanism: &Mechanism, scratch: &mut Scratch) -> f64 {
-    let turns = positions(mechanism, POSITIONS).map(|crank| {
-        scratch.position.set(mechanism, &scratch.circles, crank);
-        backlash(mechanism, &scratch.position)
-    });
-    let sum: f64 = turns.sum();
-    sum / POSITIONS as f64 / mechanism.pin_circle_radius / ARCMIN
-}
-
-/// Turn of the flange (m at R_OP) between the first contacts of a disc in either sense, the
-/// eccentric's bearing in its middle: the least one of the discs.
-#[inline(always)]
-fn backlash(mechanism: &Mechanism, position: &Position) -> f64 {
-    let lever = mechanism.ring_lever() / mechanism.pin_circle_radius;
-    let mut ends = [f64::INFINITY; 2];
-    for disc in 0..mechanism.discs {
-        let mut turn = [f64::INFINITY; 2];
-        for (normal, gap) in position.rings[disc].contacts() {
-            let sense = usize::from(normal[1] > 0.0);
-            turn[sense] = turn[sense].min(gap.max(0.0) / (normal[1].abs() * lever));
-        }
-        let mut ahead = [f64::INFINITY; 2];
-        let e = mechanism.eccentricity;
-        for (tangent, gap) in position.pins[disc].contacts() {
-            // |(e, 0) + s t| = e + c in both senses of s.
-            let gap = gap.max(0.0);
-            let along = e * tangent[0];
-            let root = (along * along + gap * (2.0 * e + gap)).sqrt();
-            ahead[0] = ahead[0].min(root + along);
-            ahead[1] = ahead[1].min(root - along);
-        }
-        for sense in 0..2 {
-            ends[sense] = ends[sense].min(turn[sense] + ahead[sense]);
-        }
-    }
-    ends[0] + ends[1]
 }
 
 /// Mass (kg) and moment of inertia (kg m^2) of a disc about its own centre, holes and bore taken
@@ -371,11 +336,17 @@ fn disc_mass(parts: &Parts) -> (f64, f64) {
 pub fn contact_totals(
     parts: &Parts,
     mechanism: &Mechanism,
-    loaded: &Loaded<'_, PowerLaws>,
+    crank: f64,
     motion: &Motion,
 ) -> ([f64; 2], [f64; 6]) {
+    let (factors, mut memory) = (Factors::of(parts), Memory::default());
+    let cranks = [crank];
+    let mut group = Group::new(Scalar, mechanism, Engine::Full, &cranks, &mut memory);
+    group.put(motion);
     let mut forces = RatedForces::default();
-    forces.add(parts, mechanism, loaded, motion);
+    group.forces(&factors, &mut [0.0], |found| {
+        forces.add(parts, &found.at(0))
+    });
     let torque = forces.torque() * mechanism.pin_circle_radius;
     let budget = forces.budget();
     let of = [
@@ -387,4 +358,85 @@ pub fn contact_totals(
         budget.clearance,
     ];
     (forces.pressures(parts), of.map(|work| work / torque))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::components::inputs::PART_INPUTS;
+    use crate::model::inputs::SCALARS;
+
+    /// The 87:1 drive with clearances, and one of few lobes with modified profile and pins.
+    fn drives() -> [(Parts, Fixed); 2] {
+        let mut scalars = [0.0; SCALARS];
+        for (input, value) in [
+            (Input::Ratio, 87.0),
+            (Input::DiscCount, 2.0),
+            (Input::Eccentricity, 0.9e-3),
+            (Input::RingPinCircleRadius, 0.090),
+            (Input::OutputPinCount, 8.0),
+            (Input::OutputPinCircleRadius, 0.045),
+            (Input::OutputPinDiameter, 0.016),
+            (Input::DiscBoreRadius, 0.02),
+            (Input::YoungsModulus, 206e9),
+            (Input::PoissonRatio, 0.3),
+            (Input::OutputTorque, 585.0),
+        ] {
+            scalars[input as usize] = value;
+        }
+        let mut values = [f64::NAN; PART_INPUTS];
+        for (input, value) in [
+            (PartInput::RingPinRadius, 0.002),
+            (PartInput::DiscWidth, 0.012),
+            (PartInput::RingClearance, 0.02e-3),
+            (PartInput::HoleClearance, 0.05e-3),
+            (PartInput::BearingStiffness, 4e8),
+        ] {
+            values[input as usize] = value;
+        }
+        let plain = Fixed::default();
+        let first = Parts::of(&scalars, &values, &plain, 1e-6).unwrap_or_else(|e| panic!("{e}"));
+        scalars[Input::Ratio as usize] = 11.0;
+        scalars[Input::Eccentricity as usize] = 4e-3;
+        scalars[Input::DiscCount as usize] = 3.0;
+        scalars[Input::OutputPinCount as usize] = 6.0;
+        scalars[Input::HoleClocking as usize] = 0.01;
+        values[PartInput::RingCircleEnlargement as usize] = 0.01e-3;
+        values[PartInput::ProfileRotation as usize] = 2e-4;
+        values[PartInput::BearingClearance as usize] = 0.01e-3;
+        let uneven = Fixed {
+            ring_gap_errors: (0..12).map(|k| 1e-6 * f64::from(k % 5)).collect(),
+            hole_gap_errors: (0..6).map(|k| 2e-6 * f64::from(k % 4)).collect(),
+            ..Fixed::default()
+        };
+        let second = Parts::of(&scalars, &values, &uneven, 0.0).unwrap_or_else(|e| panic!("{e}"));
+        [(first, plain), (second, uneven)]
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn every_width_of_instructions_gives_the_same_bits() {
+        let every = Wanted::by(PartOutput::ALL);
+        for (parts, fixed) in &drives() {
+            for engine in [Engine::Full, Engine::Quadratic] {
+                let mut scratch = [Scratch::default(), Scratch::default(), Scratch::default()];
+                let [one, four, eight] = scratch.each_mut().map(|scratch| Turn {
+                    parts,
+                    fixed,
+                    engine,
+                    wanted: every,
+                    scratch,
+                });
+                let alone = Simd::vectorize(Scalar, one);
+                assert!(alone.iter().all(|value| value.is_finite()), "{alone:?}");
+                let bits = |row: Row| row.map(f64::to_bits);
+                if let Some(v3) = pulp::x86::V3::try_new() {
+                    assert_eq!(bits(Simd::vectorize(v3, four)), bits(alone));
+                }
+                if let Some(v4) = pulp::x86::V4::try_new() {
+                    assert_eq!(bits(Simd::vectorize(v4, eight)), bits(alone));
+                }
+            }
+        }
+    }
 }

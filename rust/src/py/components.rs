@@ -279,7 +279,7 @@ impl PyPartStudy {
             ring.push(of_ring);
             pins.push(of_pins);
         }
-        let (pressures, budget) = contact_totals(&parts, &mechanism, &full, &found.motion);
+        let (pressures, budget) = contact_totals(&parts, &mechanism, crank, &found.motion);
         let radius = mechanism.pin_circle_radius;
         let table = PyDict::new(py);
         table.set_item("converged", found.converged)?;

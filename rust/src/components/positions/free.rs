@@ -1,0 +1,102 @@
+//! Free turn of the flange, and the torque that holds the input, at positions side by side.
+
+use pulp::Simd;
+
+use crate::components::positions::contacts::{PinContacts, RingContacts, Visit};
+use crate::components::positions::equilibrium::{Loaded, Motions};
+use crate::components::positions::vector::Vector;
+
+/// Turn of the flange (m at R_OP) between the first contacts of a disc in either sense, the
+/// eccentric's bearing in its middle: the least one of the discs.
+#[inline(always)]
+pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
+    let (simd, mechanism) = (loaded.simd, loaded.mechanism);
+    let (zero, never) = (Vector::splat(simd, 0.0), Vector::splat(simd, f64::INFINITY));
+    let lever = loaded.lever();
+    let e = mechanism.eccentricity;
+    let mut ends = [never; 2];
+    for disc in 0..mechanism.discs {
+        let ring = &loaded.rings[disc];
+        let mut turn = [never; 2];
+        if ring.is_uniform() {
+            let mut fastest = [zero; 2];
+            for ([_, y], _) in ring.rows(simd) {
+                fastest = [fastest[0].max(-y), fastest[1].max(y)];
+            }
+            let gap = Vector::splat(simd, mechanism.ring_gap.max(0.0));
+            turn = [gap / (fastest[0] * lever), gap / (fastest[1] * lever)];
+        } else {
+            for ([_, y], gap) in ring.rows(simd) {
+                let there = gap.max(zero) / (y.abs() * lever);
+                let ahead = y.above(zero);
+                turn[0] = ahead.select(turn[0], turn[0].min(there));
+                turn[1] = ahead.select(turn[1].min(there), turn[1]);
+            }
+        }
+        let mut ahead = [never; 2];
+        for ([x, _], gap) in loaded.pins[disc].rows(simd) {
+            // |(e, 0) + s t| = e + c in both senses of s.
+            let gap = gap.max(0.0);
+            let along = x * e;
+            let root = (along * along + gap * (2.0 * e + gap)).sqrt();
+            ahead = [ahead[0].min(root + along), ahead[1].min(root - along)];
+        }
+        for sense in 0..2 {
+            ends[sense] = ends[sense].min(turn[sense] + ahead[sense]);
+        }
+    }
+    ends[0] + ends[1]
+}
+
+/// Growth of the contacts' energy with the crank's angle (N m): the normals turn and the holes go
+/// round as the crank goes on.
+pub(crate) struct InputTorque<'a, S: Simd> {
+    loaded: &'a Loaded<'a, S>,
+    motion: &'a Motions<S>,
+    /// Torques so far.
+    pub sum: Vector<S>,
+    /// Coefficient e (N + 1) / R.
+    width: f64,
+    turned: f64,
+}
+
+impl<'a, S: Simd> InputTorque<'a, S> {
+    #[inline(always)]
+    pub(crate) fn new(loaded: &'a Loaded<'a, S>, motion: &'a Motions<S>) -> Self {
+        let mechanism = loaded.mechanism;
+        let pins = mechanism.ring_pins() as f64;
+        Self {
+            loaded,
+            motion,
+            sum: Vector::zero(loaded.simd),
+            width: mechanism.eccentricity * pins / mechanism.ring_radius,
+            turned: mechanism.profile_rotation.abs() * mechanism.ring_lever(),
+        }
+    }
+}
+
+impl<S: Simd> Visit<S> for InputTorque<'_, S> {
+    #[inline(always)]
+    fn ring(&mut self, disc: usize, contacts: &RingContacts<S>) {
+        let shift = self.loaded.pitch_shift(self.motion.discs[disc]);
+        let [x, y] = contacts.normal;
+        let simd = self.loaded.simd;
+        // Angle by which the normal turns back for a crank that goes on by one: with the pins'
+        // cosine by the law of cosines, (1 - width cosine) / length^2.
+        let square = contacts.length * contacts.length;
+        let rest = Vector::splat(simd, 1.0 - self.width * self.width);
+        let turn = (rest / square + 1.0) * 0.5;
+        let closing = turn * (x * shift[1] - y * shift[0]);
+        let wider = y * (turn - 1.0) * (-self.loaded.mechanism.ring_enlargement * self.width);
+        let turned = turn * x * self.turned;
+        let turned = y.above(Vector::zero(simd)).select(turned, -turned);
+        self.sum += contacts.force * (closing - (wider - turned));
+    }
+
+    #[inline(always)]
+    fn pin(&mut self, disc: usize, contacts: &PinContacts<S>) {
+        let rate = 1.0 + 1.0 / self.loaded.mechanism.lobes as f64;
+        let [turn, _, _] = self.motion.against_flange(disc);
+        self.sum += contacts.force * turn * contacts.across * rate;
+    }
+}
