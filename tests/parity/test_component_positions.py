@@ -51,4 +51,5 @@ def test_columns_are_those_of_single_equilibria(seed: int) -> None:
     expect("lost_motion_3pct_arcmin", float(np.mean(low) - np.mean(reverse)), 1e-7)
     flange = np.array([1 / state.tangent_stiffness_nm_per_arcmin for state in states])
     flange -= shaft / load
-    expect("tangent_stiffness_100pct_nm_per_arcmin", 1 / (1 / np.mean(1 / flange) + shaft / load))
+    stiffness = float(1 / (1 / np.mean(1 / flange) + shaft / load))
+    expect("tangent_stiffness_100pct_nm_per_arcmin", stiffness)

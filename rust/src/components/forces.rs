@@ -1,6 +1,7 @@
 //! Forces, pressures, losses and shares of the twist at rated torque, gathered over the positions of
 //! the crank.
 
+use crate::components::details::Details;
 use crate::components::inputs::PartInput;
 use crate::components::laws::hertz;
 use crate::components::mechanism::MAX_DISCS;
@@ -50,6 +51,13 @@ pub(crate) struct AtPosition<T> {
     /// Largest share of a disc.
     pub share: T,
     pub bearing_force: T,
+    pub bearing_least: T,
+    /// Numbers of the ring pin with the largest pressure, counted on without end, and of the most
+    /// loaded output pin.
+    pub ring_pin: T,
+    pub output_pin: T,
+    /// Largest moment at an output pin's root (N m).
+    pub moment: T,
     /// Largest force times curvature at the ring (N/m).
     pub ring_pressure: T,
     /// Sum of the ring's forces times the distances of contact and pitch point (N m).
@@ -77,6 +85,10 @@ impl AtPosition<&[f64]> {
             pin_force: self.pin_force[position],
             share: self.share[position],
             bearing_force: self.bearing_force[position],
+            bearing_least: self.bearing_least[position],
+            ring_pin: self.ring_pin[position],
+            output_pin: self.output_pin[position],
+            moment: self.moment[position],
             ring_pressure: self.ring_pressure[position],
             ring_sliding: self.ring_sliding[position],
             pin_forces: self.pin_forces[position],
@@ -91,6 +103,8 @@ pub(crate) struct Factors {
     /// Flexibilities (m/N) of the output pins and their roots under the force of each disc.
     pub bending: [f64; MAX_DISCS],
     pub root: [f64; MAX_DISCS],
+    /// Reach of each disc's forces from the flange (m).
+    pub reach: [f64; MAX_DISCS],
     pub pin_radius: f64,
     pub pin_curvature: f64,
     pub ring_radius: f64,
@@ -109,6 +123,9 @@ impl Factors {
         Self {
             bending: parts.pins.map(|pin| pin.bending),
             root: parts.pins.map(|pin| pin.root),
+            reach: std::array::from_fn(|disc| {
+                parts.value(PartInput::ALL[PartInput::Reach1 as usize + disc])
+            }),
             pin_radius: profile.pin_radius,
             pin_curvature: 1.0 / profile.pin_radius,
             ring_radius: profile.ring_radius,
@@ -135,27 +152,13 @@ pub struct RatedForces {
     ring_pressure: f64,
     /// Sums of force times sliding speed over that of the crank (N m).
     losses: [f64; 3],
-}
-
-/// Mean and extremes of the sharing at one position.
-fn active(forces: &[f64]) -> (f64, f64, f64) {
-    let largest = forces.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let threshold = ACTIVE_SHARE * largest;
-    let count = forces.iter().filter(|force| **force > threshold).count();
-    let (sum, squares) = forces
-        .iter()
-        .fold((0.0, 0.0), |(sum, squares), f| (sum + f, squares + f * f));
-    let effective = if squares > 0.0 {
-        sum * sum / squares
-    } else {
-        0.0
-    };
-    (count as f64, effective, largest)
+    details: Details,
 }
 
 impl RatedForces {
-    /// Adds one position of the crank.
-    pub(crate) fn add(&mut self, parts: &Parts, at: &AtPosition<f64>) {
+    /// Adds one position of the crank (rad).
+    pub(crate) fn add(&mut self, parts: &Parts, crank: f64, at: &AtPosition<f64>) {
+        self.details.add(crank, at);
         let lobes = parts.counts[0] as f64;
         // Speeds for a crank that turns by one radian a second.
         let (spin, slip) = (
@@ -215,6 +218,11 @@ impl RatedForces {
         let at_ring = hertz(line_load[0], 1.0, ring, disc).pressure;
         let at_hole = hertz(line_load[1], parts.hole_curvature(), pin, disc).pressure;
         [at_ring, at_hole]
+    }
+
+    /// What few queries ask for.
+    pub(crate) const fn details(&self) -> &Details {
+        &self.details
     }
 
     /// Writes the columns.

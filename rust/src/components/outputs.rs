@@ -228,7 +228,9 @@ impl Wanted {
                 | PartOutput::BearingForceMin
                 | PartOutput::PinRootStress
                 | PartOutput::ContactYieldRatio
-                | PartOutput::PinYieldRatio => wanted.details = true,
+                | PartOutput::PinYieldRatio => {
+                    (wanted.rated, wanted.forces, wanted.details) = (true, true, true);
+                }
                 PartOutput::CurvatureRadiusMin | PartOutput::DriveVolume => {}
                 _ => (wanted.rated, wanted.forces) = (true, true),
             }

@@ -3,7 +3,6 @@
 
 use rayon::prelude::*;
 
-use crate::components::details::put_details;
 use crate::components::inputs::{PART_INPUTS, PARTS_AT, PartInput};
 use crate::components::outputs::{PART_OUTPUTS, PartOutput, Wanted};
 use crate::components::parts::{Fixed, PartError, Parts};
@@ -175,9 +174,6 @@ impl PartStudy {
             scratch,
         }
         .solve();
-        put_details(&parts, &self.fixed, wanted, &mut |output, value| {
-            found[output as usize] = value;
-        });
         let broken = self.limits.iter().find(|limit| {
             let value = found[limit.output as usize];
             !(limit.min..=limit.max).contains(&value)

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
+use crate::components::details::without_clearance;
 use crate::components::equilibrium::Motion;
 use crate::components::forces::{Factors, RatedForces};
 use crate::components::inputs::PartInput;
@@ -141,6 +142,9 @@ impl WithSimd for Turn<'_> {
         if wanted.fine {
             fine_turn(simd, parts, &mechanism, self.engine, memory, &mut put);
         }
+        if wanted.without_clearance {
+            tight_turn(simd, parts, &mechanism, self.engine, memory, &mut put);
+        }
         put_shape(parts, wanted, &mut put);
         row
     }
@@ -205,7 +209,7 @@ fn loaded_turn<S: Simd>(
             if trace.share == 1.0 && wanted.forces {
                 group.forces(&factors, stiffness, |found| {
                     for position in 0..lanes {
-                        forces.add(parts, &found.at(position));
+                        forces.add(parts, cranks[first + position], &found.at(position));
                     }
                 });
             } else if trace.share > 0.0 && (trace.share < 1.0 || wanted.stiffness) {
@@ -245,7 +249,38 @@ fn loaded_turn<S: Simd>(
     }
     if wanted.forces && !rated.found.failed {
         forces.put(parts, put);
+        if wanted.details {
+            forces.details().put(parts, put);
+        }
     }
+}
+
+/// The stiffness that a drive has without its clearances.
+#[inline(always)]
+fn tight_turn<S: Simd>(
+    simd: S,
+    parts: &Parts,
+    mechanism: &Mechanism,
+    engine: Engine,
+    memory: &mut Memory,
+    put: &mut impl FnMut(PartOutput, f64),
+) {
+    let tight = without_clearance(mechanism);
+    let mut cranks = [0.0; POSITIONS];
+    for (crank, position) in cranks.iter_mut().zip(positions(mechanism, POSITIONS)) {
+        *crank = position;
+    }
+    let lanes = lanes::<S>();
+    let mut trace = Trace::new(1.0);
+    for first in (0..POSITIONS).step_by(lanes) {
+        let at = first..first + lanes;
+        let mut group = Group::new(simd, &tight, engine, &cranks[at.clone()], memory);
+        group.guess(parts.torque);
+        trace.add(group.solve(parts.torque));
+        group.stiffness(&mut trace.stiffness[at]);
+    }
+    let stiffness = trace.tangent(parts, mechanism.pin_circle_radius);
+    put(PartOutput::StiffnessWithoutClearance, stiffness);
 }
 
 /// Columns of equilibria at the many positions: how twist and input torque pulsate.
@@ -345,7 +380,7 @@ pub fn contact_totals(
     group.put(motion);
     let mut forces = RatedForces::default();
     group.forces(&factors, &mut [0.0], |found| {
-        forces.add(parts, &found.at(0))
+        forces.add(parts, crank, &found.at(0))
     });
     let torque = forces.torque() * mechanism.pin_circle_radius;
     let budget = forces.budget();

@@ -16,6 +16,8 @@ pub(crate) struct RingContacts<S: Simd> {
     pub normal: [Vector<S>; 2],
     /// Distance from the pin's centre to the pitch point over R.
     pub length: Vector<S>,
+    /// Number of the pin, counted on without end.
+    pub pin: Vector<S>,
 }
 
 /// A loaded output contact in every lane; force zero where it is not loaded.
@@ -29,6 +31,8 @@ pub(crate) struct PinContacts<S: Simd> {
     /// Share of the force along and across the motion of the hole under a rotation.
     pub along: Vector<S>,
     pub across: Vector<S>,
+    /// Number of the pin.
+    pub pin: usize,
 }
 
 /// What looks at the loaded contacts while they are summed.
@@ -56,6 +60,8 @@ pub(crate) struct Ring {
     normal_x: Column,
     normal_y: Column,
     length: Column,
+    /// Number of the first pin in every lane.
+    first: Column,
     /// Only where gaps differ.
     gap: Column,
     uniform: f64,
@@ -87,6 +93,10 @@ impl Ring {
         let (mut sin, mut cos) = (rest, rest);
         for (sin, cos) in sin.as_mut_slice().iter_mut().zip(cos.as_mut_slice()) {
             (*sin, *cos) = sin.sin_cos();
+        }
+        self.first.make_room(lanes);
+        for (lane, first) in self.first.get_mut().iter_mut().enumerate() {
+            *first = shift(lane);
         }
         for column in [&mut self.normal_x, &mut self.normal_y, &mut self.length] {
             column.make_room(pins * lanes);
@@ -200,6 +210,7 @@ impl Ring {
         let gaps = if DIFFER { self.gap.get() } else { &[] };
         let gaps = Vector::<S>::of_slice(gaps);
         let uniform = Vector::splat(simd, self.uniform);
+        let first = Vector::new(simd, Vector::<S>::of_slice(self.first.get())[0]);
         for row in 0..normals_x.len() {
             let x = Vector::new(simd, normals_x[row]);
             let y = Vector::new(simd, normals_y[row]);
@@ -236,6 +247,7 @@ impl Ring {
                     gap,
                     normal: [x, y],
                     length: Vector::new(simd, lengths[row]),
+                    pin: first + row as f64,
                 },
             );
         }
@@ -330,7 +342,7 @@ impl Pins {
         };
         let [turn, x, y] = motion;
         let apart = x + eccentricity;
-        for ([tx, ty], gap) in self.rows(simd) {
+        for (pin, ([tx, ty], gap)) in self.rows(simd).enumerate() {
             let (dx, dy) = (apart + turn * tx, y + turn * ty);
             let square = dx * dx + dy * dy;
             let reach = eccentricity + gap;
@@ -374,6 +386,7 @@ impl Pins {
                     line: [mx, my],
                     along,
                     across,
+                    pin,
                 },
             );
         }

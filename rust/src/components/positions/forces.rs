@@ -28,6 +28,12 @@ pub(crate) struct Gather<'a, S: Simd> {
     largest_torque: Vector<S>,
     /// Largest force times curvature at the ring.
     pressure: Vector<S>,
+    /// Number of the pin that has it.
+    pressure_pin: Vector<S>,
+    /// Number of the most loaded output pin.
+    largest_pin: Vector<S>,
+    /// Largest moment at a pin's root.
+    moment: Vector<S>,
     /// Ring forces times the distance of contact and pitch point over R.
     sliding: Vector<S>,
     disc: usize,
@@ -107,6 +113,9 @@ impl<'a, S: Simd> Gather<'a, S> {
             torques: zero,
             largest_torque: zero,
             pressure: zero,
+            pressure_pin: zero,
+            largest_pin: zero,
+            moment: zero,
             sliding: zero,
             disc: 0,
         }
@@ -134,10 +143,12 @@ impl<'a, S: Simd> Gather<'a, S> {
         self.close();
         let zero = Vector::zero(self.simd);
         let (mut friction, mut largest, mut work) = (zero, zero, zero);
+        let mut least = Vector::splat(self.simd, f64::INFINITY);
         for [_, dx, dy] in motion.discs[..mechanism.discs].iter().copied() {
             let ([x, y], _) = bearing(self.simd, mechanism, [dx, dy]);
             let force = (x * x + y * y).sqrt();
             largest = largest.max(force);
+            least = least.min(force);
             friction += force;
             work += x * dx + y * dy;
         }
@@ -164,6 +175,10 @@ impl<'a, S: Simd> Gather<'a, S> {
             pin_force: self.pins.largest.as_slice(),
             share: share.as_slice(),
             bearing_force: largest.as_slice(),
+            bearing_least: least.as_slice(),
+            ring_pin: self.pressure_pin.as_slice(),
+            output_pin: self.largest_pin.as_slice(),
+            moment: self.moment.as_slice(),
             ring_pressure: self.pressure.as_slice(),
             ring_sliding: self.sliding.as_slice(),
             pin_forces: self.pins.sum.as_slice(),
@@ -196,7 +211,10 @@ impl<S: Simd> Visit<S> for Gather<'_, S> {
         let path = bend / (square * length);
         let one = Vector::splat(self.simd, 1.0);
         let curvature = path / (one - path * factors.pin_radius) + factors.pin_curvature;
-        self.pressure = self.pressure.max(force * curvature);
+        let pressure = force * curvature;
+        let worse = pressure.above(self.pressure);
+        self.pressure_pin = worse.select(contacts.pin, self.pressure_pin);
+        self.pressure = self.pressure.max(pressure);
         self.sliding += force * (length * factors.ring_radius - factors.pin_radius).abs();
     }
 
@@ -208,6 +226,10 @@ impl<S: Simd> Visit<S> for Gather<'_, S> {
         }
         let force = contacts.force;
         let e = self.factors.eccentricity;
+        let worse = force.above(self.pins.largest);
+        let pin = Vector::splat(self.simd, contacts.pin as f64);
+        self.largest_pin = worse.select(pin, self.largest_pin);
+        self.moment = self.moment.max(force * self.factors.reach[disc]);
         self.pins.add(force);
         self.squares += force * force;
         self.budget_pins += force * contacts.depth;
