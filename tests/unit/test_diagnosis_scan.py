@@ -9,7 +9,6 @@ from cyclosweep.diagnosis.identify.scan import (
     shape_choice_penalty,
     vector_penalty,
 )
-from cyclosweep.diagnosis.identify.verdict import unit_slip
 
 
 def test_evidence_is_nothing_without_gain_and_grows_with_it() -> None:
@@ -60,15 +59,3 @@ def test_choice_costs_the_range_over_the_error_and_nothing_where_nothing_is_know
     assert shape_choice_penalty(both, np.ones(2)) == pytest.approx(
         shape_choice_penalty(np.array([[2e4]]), np.ones(1)), abs=1e-3
     )
-
-
-@pytest.mark.parametrize(
-    ("factor", "word"),
-    [(57.3, "57.3"), (1 / 57.3, "57.3"), (1000, "1000"), (87.0**2, "squared"), (87.0, "the ratio")],
-)
-def test_unit_slips_are_named(factor: float, word: str) -> None:
-    assert word in str(unit_slip(factor * 1.05, 87.0))
-
-
-def test_other_factors_are_not() -> None:
-    assert unit_slip(20.0, 87.0) is None

@@ -51,7 +51,8 @@ STAGES = {
     "inputs": set[str](),
     "outcome": set[str](),
     "provenance": set[str](),
-    "refuse": FITTING | {"outcome", "provenance"},
+    "plausibility": set[str](),
+    "refuse": FITTING | {"outcome", "provenance", "plausibility"},
     "sliding": {"outcome", "provenance"},
     "calibrate": FITTING,
     "identify_effects": FITTING | {"calibrate"},
@@ -63,7 +64,8 @@ STAGES = {
     "verification": DECIDED | {"verify", "change"},
     "effects_found": DECIDED,
     "remainder": DECIDED | {"verify", "verification"},
-    "compose": DECIDED | {"verify", "verification", "effects_found", "remainder", "repair"},
+    "compose": DECIDED
+    | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility"},
 }
 
 

@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.identify.alarm import probability
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import hidden_effects
 from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.plausibility import doubts
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
@@ -70,6 +71,9 @@ def compose(
     search = concluded.search
     recording = search.problem.recording
     answer = _answer(concluded, regions, repaired, verified)
+    remarks = doubts(answer.repaired.parameters, recording, float(drive.ratio))
+    answer = replace(answer, plausibility=remarks)
+    answer = replace(answer, statement=statement_of(answer))
     hidden = tuple(row.name for row in answer.not_testable)
     return Diagnosis(
         recording=recording,
@@ -90,7 +94,7 @@ def _answer(
     repaired: RepairedModel,
     verified: Verification,
 ) -> Answer:
-    """Fill every part of the answer; the statement comes last, from all others.
+    """Fill every part of the answer but the statement and the remarks.
 
     Parameters
     ----------
@@ -139,7 +143,7 @@ def _answer(
     )
     if verified.change is not None:
         answer = _with_range(answer, verified.change)
-    return replace(answer, statement=statement_of(answer))
+    return answer
 
 
 def _with_range(answer: Answer, change: DriveChange) -> Answer:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.identify.verdict import unit_slip
 from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.plausibility import likely_mistakes
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.recording import Recording
@@ -93,13 +93,38 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
             f"the angle falls as the torque rises ({compliance:.4g} deg/(N m)): the sign of angle "
             "or torque is reversed, or the drive turned under the load",
         )
-    likely = unit_slip(ratio, float(drive.ratio)) if ratio > 0 else None
-    hint = f"; a factor near {likely}" if likely else "; check units, side and drive file"
+    likely = _likely(problem, ratio, float(drive.ratio)) if ratio > 0 else ()
+    hint = "; check units, side and drive file"
+    if likely:
+        hint = f": as where {' or '.join(likely)}"
     raise NoDiagnosisError(
         "DATA_FAULT",
         f"the compliance at the {problem.recording.side} shaft is {compliance:.4g} deg/(N m), "
         f"{ratio:.4g} times the nominal {problem.nominal_compliance:.4g}{hint}",
     )
+
+
+def _likely(problem: Problem, factor: float, ratio: float) -> tuple[str, ...]:
+    """Mistakes that explain an impossible compliance; those that the play contradicts come last.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    factor : float
+        Compliance over its nominal value.
+    ratio : float
+        Ratio of the drive.
+
+    Returns
+    -------
+    tuple of str
+        In words, empty where none fits.
+    """
+    play = None
+    if not problem.one_sided and problem.nominal_free_play > 0:
+        play = problem.history.free_play_deg / problem.nominal_free_play
+    return likely_mistakes(factor, play, ratio) or likely_mistakes(factor, None, ratio)
 
 
 def check_positive(compliance: float) -> None:

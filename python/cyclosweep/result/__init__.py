@@ -15,6 +15,7 @@ from cyclosweep.result.effects import (
 )
 from cyclosweep.result.json_form import answer_of, content_of, json_text
 from cyclosweep.result.mismatch import Explained, Mismatch, Region
+from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.proof import (
     HeldOutBlock,
     NextExperiment,
@@ -30,6 +31,7 @@ __all__ = [
     "Baseline",
     "Bound",
     "CalibratedParameter",
+    "Doubt",
     "DriveChange",
     "EffectParameter",
     "Explained",

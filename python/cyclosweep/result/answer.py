@@ -8,6 +8,7 @@ from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import Bound, Explanation, FoundEffect, Remainder, Untestable
 from cyclosweep.result.mismatch import Explained, Mismatch
 from cyclosweep.result.part import EMPTY, LEFT_OUT, Part
+from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.proof import NextExperiment, Repair, SelfCheck, Sufficiency
 from cyclosweep.result.verdict import Verdict
 
@@ -56,6 +57,8 @@ class Answer(Part):
     """The calibrated published model."""
     mismatch: Mismatch = field(default_factory=Mismatch)
     """Whether and where the calibrated published model and the recording differ."""
+    plausibility: tuple[Doubt, ...] = ()
+    """Calibrated values far from nominal, with the mistakes that would explain them."""
     explained: Explained = field(default_factory=Explained)
     """How much of that difference the accepted effects explain."""
     effects: tuple[FoundEffect, ...] = ()

@@ -23,8 +23,16 @@ def statement_of(answer: Answer) -> str:
     str
         One paragraph.
     """
-    said = _verdict_sentences(answer) + _forecast_sentences(answer.repaired.blocks)
+    said = _doubt_sentences(answer) + _verdict_sentences(answer)
+    said += _forecast_sentences(answer.repaired.blocks)
     return said if answer.thinning is None else f"{said} {thinning_words(answer.thinning)}"
+
+
+def _doubt_sentences(answer: Answer) -> str:
+    """Say before anything else what is far from the drive file, and what it may mean."""
+    if not answer.plausibility:
+        return ""
+    return "Check first: " + "; ".join(doubt.text for doubt in answer.plausibility) + ". "
 
 
 def _verdict_sentences(answer: Answer) -> str:

@@ -111,31 +111,3 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
         return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
     mostly = explained_share >= MOSTLY
     return Decision("MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS", best, explanations, True)
-
-
-def unit_slip(ratio: float, gear_ratio: float) -> str | None:
-    """Likely mistake of units behind a wrong compliance, in words; None where none fits.
-
-    Parameters
-    ----------
-    ratio : float
-        Measured compliance over the nominal one.
-    gear_ratio : float
-        Ratio of the drive.
-
-    Returns
-    -------
-    str or None
-    """
-    known = (
-        (180 / np.pi, "57.3: angles in rad read as deg, or the reverse"),
-        (1000.0, "1000: N mm read as N m, or mrad as rad"),
-        (gear_ratio**2, "the ratio squared: measured at the other shaft than stated"),
-        (gear_ratio, "the ratio: torque or angle taken at the other shaft"),
-        (360.0, "360: revolutions read as deg, or the reverse"),
-        (9.80665, "9.81: kgf m read as N m"),
-    )
-    size = abs(np.log(abs(ratio)))
-    distance = [abs(size - np.log(factor)) for factor, _ in known]
-    best = int(np.argmin(distance))
-    return known[best][1] if distance[best] < np.log(1.35) else None
