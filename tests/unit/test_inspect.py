@@ -204,6 +204,18 @@ def test_facts_are_shown(tmp_path: Path) -> None:
         assert word in plain.stdout
 
 
+def test_dwells_with_noise_are_counted(tmp_path: Path) -> None:
+    ramp = np.linspace(0, 20, 100)
+    rng = np.random.default_rng(5)
+    torque = np.r_[ramp, np.full(80, 20.0), ramp[::-1], np.zeros(80)]
+    torque = torque + 0.02 * rng.normal(size=len(torque))
+    time = 0.5 * np.arange(len(torque))
+    path = write(tmp_path / "loop.csv", "time_s,torque_nm,angle_deg", time, torque, 3 * torque)
+    dwells = inspected(path)["facts"]["dwells"]
+    assert dwells.startswith("2 at constant torque")
+    assert "40" in dwells
+
+
 def test_what_is_no_table_is_one_line(tmp_path: Path) -> None:
     path = tmp_path / "loop.csv"
     path.write_bytes(bytes(range(256)) * 4)

@@ -183,7 +183,7 @@ def _print(found: Inspection) -> None:
 
 def _column_line(column: ColumnFacts) -> str:
     """One column in a line."""
-    unit = f" [{column.unit}]" if column.unit else ""
+    unit = f" [{column.unit}]" if column.unit and column.unit not in column.name else ""
     role = f" = {column.role}" if column.role and column.role != column.name else ""
     missing = f", {column.missing} missing" if column.missing else ""
     step = f", steps of {column.step:.3g}" if column.step else ", constant"

@@ -1,9 +1,10 @@
 """Long recordings shortened by averaging neighbours, with the largest error that it makes."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cyclosweep.recording.columns import Columns
-from cyclosweep.recording.samples import Floats, Ints
+from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
 
 __all__ = ["merge_neighbours"]
@@ -29,7 +30,11 @@ def merge_neighbours(columns: Columns, count: int, notes: list[str]) -> Columns:
     torque, run = columns["torque_nm"], columns["run"]
     if torque is None or run is None or not len(torque):
         return columns
-    starts = _starts(torque, run, columns.get("unscored"), count)
+    cut = _cuts(torque, run, columns.get("unscored"))
+    pieces = np.flatnonzero(cut)
+    lengths = np.diff(np.r_[pieces, len(torque)])
+    groups = [a + np.arange(0, size, count) for a, size in zip(pieces, lengths, strict=True)]
+    starts = np.concatenate(groups).astype(np.int64)
     sizes = np.diff(np.r_[starts, len(torque)])
     merged = {
         name: None if values is None else np.add.reduceat(values, starts) / sizes
@@ -38,22 +43,27 @@ def merge_neighbours(columns: Columns, count: int, notes: list[str]) -> Columns:
     notes.append(f"Up to {count} neighbours averaged: {len(torque)} samples became {len(starts)}.")
     angle, means = columns["angle_deg"], merged["angle_deg"]
     if angle is not None and means is not None:
-        places = starts + 0.5 * (sizes - 1)
-        off = angle - np.interp(np.arange(len(angle)), places, means)
-        # Between runs and at their ends there is no line to be off.
-        inner = (np.arange(len(angle)) >= places[0]) & (np.arange(len(angle)) <= places[-1])
-        inner &= np.interp(np.arange(len(angle)), places, run[starts]) == run
-        if inner.any():
-            largest, rms = np.abs(off[inner]).max(), np.sqrt(np.mean(off[inner] ** 2))
+        piece = np.cumsum(cut)
+        at = np.arange(len(angle), dtype=np.float64)
+        centres = starts + 0.5 * (sizes - 1)
+        off = angle - np.interp(at, centres, means)
+        # Between two stretches, as through the play, there is no line to be off.
+        after = np.clip(np.searchsorted(centres, at), 1, max(len(starts) - 1, 1))
+        if len(starts) > 1:
+            inner = piece[starts[after]] == piece[starts[after - 1]]
+            inner &= (at >= centres[0]) & (at <= centres[-1])
+            off = off[inner]
+        if len(off):
             notes.append(
-                f"Bound of the averaging: no sample of the angle lies farther than {largest:.3g} "
-                f"deg (rms {rms:.2g} deg, noise included) off the line through neighbouring means."
+                f"Bound of the averaging: no sample of the angle lies farther than "
+                f"{np.abs(off).max():.3g} deg (rms {np.sqrt(np.mean(off**2)):.2g} deg, noise "
+                "included) off the line through neighbouring means."
             )
     return merged
 
 
-def _starts(torque: Floats, run: Floats, unscored: Floats | None, count: int) -> Ints:
-    """First samples of the groups that are averaged.
+def _cuts(torque: Floats, run: Floats, unscored: Floats | None) -> NDArray[np.bool_]:
+    """Mark the samples at which a new stretch begins, over which nothing is averaged.
 
     Parameters
     ----------
@@ -63,24 +73,19 @@ def _starts(torque: Floats, run: Floats, unscored: Floats | None, count: int) ->
         Trial each sample belongs to.
     unscored : ndarray of float, shape (n,), or None
         1 where a sample is not scored.
-    count : int
-        Most samples of a group.
 
     Returns
     -------
-    ndarray of int, shape (m,)
+    ndarray of bool, shape (n,)
     """
     n = len(torque)
     cut = np.zeros(n, dtype=bool)
     cut[0] = True
     cut[1:] |= np.diff(run) != 0
-    cut[1:] |= np.sign(torque[1:]) * np.sign(torque[:-1]) < 0
+    cut[1:] |= np.diff(np.sign(torque)) != 0
     if unscored is not None:
         cut[1:] |= np.diff(unscored) != 0
     turns = turning_points(torque, REVERSAL_SHARE * float(np.ptp(torque)))
-    cut[turns] = True  # the extreme stands at the head of the next group,
+    cut[turns] = True  # the extreme stands at the head of the next stretch,
     cut[np.minimum(turns + 1, n - 1)] = True  # alone, so that the torque keeps it
-    starts = np.flatnonzero(cut)
-    lengths = np.diff(np.r_[starts, n])
-    inner = [a + np.arange(0, length, count) for a, length in zip(starts, lengths, strict=True)]
-    return np.concatenate(inner).astype(np.int64)
+    return cut

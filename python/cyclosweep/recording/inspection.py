@@ -2,12 +2,14 @@
 
 import tomllib
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.checks import GAP_FACTOR
 from cyclosweep.recording.choosing import choose, numbers_of
 from cyclosweep.recording.columns import stem
 from cyclosweep.recording.metadata import Metadata
@@ -17,11 +19,15 @@ from cyclosweep.recording.proposal import propose
 from cyclosweep.recording.proposed import Known, Proposal
 from cyclosweep.recording.recording import Recording
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.structure import HOLD_SAMPLES
 
 __all__ = ["ColumnFacts", "Inspection", "inspect"]
 
-GAP_FACTOR = 20.0
-"""A step of the clock beyond so many median steps is a gap."""
+DWELL_BAND = 0.02
+"""Band of the torque, of its range, in which a dwell stays: noise of a sensor is less."""
+
+DWELL_FACTOR = 5.0
+"""A dwell stays in the band for so many times the samples that a ramp usually does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,13 +228,7 @@ def _facts(recording: Recording) -> dict[str, str]:
             f"steps of {step:g} deg" if step else "continuous"
         )
     facts["runs"] = _run_facts(recording)
-    holds = recording.structure.holds
-    if holds:
-        known = [hold.duration_s for hold in holds if hold.duration_s is not None]
-        lasting = f", {min(known):.3g} to {max(known):.3g} s" if known else ""
-        facts["dwells"] = f"{len(holds)} at constant torque{lasting}"
-    else:
-        facts["dwells"] = "none"
+    facts["dwells"] = _dwell_facts(recording)
     facts["clock"] = _clock_facts(recording)
     if recording.temperature_c is not None:
         warm = recording.temperature_c
@@ -236,6 +236,67 @@ def _facts(recording: Recording) -> dict[str, str]:
     if recording.crank_deg is not None:
         facts["mesh positions"] = f"{len(np.unique(recording.crank_deg))}"
     return facts
+
+
+def _dwell_facts(recording: Recording) -> str:
+    """Number of dwells and how long they last, equal torques or torques equal but for noise."""
+    spans = [(hold.start, hold.stop) for hold in recording.structure.holds]
+    spans = spans or _noisy_dwells(recording.torque_nm)
+    if not spans:
+        return "none"
+    time = recording.time_s
+    if time is None:
+        return f"{len(spans)} at constant torque"
+    known = [float(time[stop - 1] - time[start]) for start, stop in spans]
+    return f"{len(spans)} at constant torque, {min(known):.3g} to {max(known):.3g} s"
+
+
+def _noisy_dwells(torque: Floats) -> list[tuple[int, int]]:
+    """Find stretches in which the torque stays in one band for far longer than elsewhere.
+
+    Parameters
+    ----------
+    torque : ndarray of float, shape (n,)
+        Torque [N m].
+
+    Returns
+    -------
+    list of tuple of int
+        First sample, and the one after the last.
+    """
+    band = DWELL_BAND * float(np.ptp(torque))
+    bounds, low, high = [0], float(torque[0]), float(torque[0])
+    for place, value in enumerate(torque.tolist()):
+        low, high = min(low, value), max(high, value)
+        if high - low > band:
+            bounds.append(place)
+            low = high = value
+    spans = list(pairwise([*bounds, len(torque)]))
+    usual = float(np.median([stop - start for start, stop in spans]))
+    least = max(HOLD_SAMPLES, DWELL_FACTOR * usual)
+    return [
+        (start, stop)
+        for start, stop in spans
+        if stop - start >= least and _is_level(torque[start:stop], band)
+    ]
+
+
+def _is_level(torque: Floats, band: float) -> bool:
+    """Whether a stretch is level; at the crest of a wave the middle lies above the ends.
+
+    Parameters
+    ----------
+    torque : ndarray of float, shape (n,)
+        Torque of the stretch [N m].
+    band : float
+        Band in which it stays [N m].
+
+    Returns
+    -------
+    bool
+    """
+    first, middle, last = (float(part.mean()) for part in np.array_split(torque, 3))
+    return max(abs(middle - first), abs(middle - last)) < 0.2 * band
 
 
 def _run_facts(recording: Recording) -> str:

@@ -22,6 +22,12 @@ EQUAL = 0.1
 TICKS = 0.3
 """Share of rows on the tick of the row before from which they are averaged."""
 
+LONG = 1_000_000
+"""Rows from which neighbours are averaged while reading."""
+
+KEPT = 200_000
+"""Means that are kept of a long recording: 30 times what a diagnosis works on."""
+
 LIMITED = 0.97
 """Measured over commanded torque, relative to small loads, below which a motor is at its limit."""
 
@@ -99,8 +105,12 @@ def propose_ticks(numbers: dict[str, Floats], choice: Choice, made: Proposal) ->
         return
     step = np.diff(numbers[clock.column])
     share = float(np.mean(step == 0)) if len(step) else 0.0
+    rows = len(step) + 1
+    if rows > LONG:
+        made.meta["merge"] = {"neighbours": -(-rows // KEPT)}
+        made.remarks["merge"] = f"{rows} rows: means of neighbours, never over a reversal"
     if share > TICKS:
-        made.meta["merge"] = {"same_time": True}
+        made.meta["merge"] = {"same_time": True}  # which shortens a long recording, too
         made.remarks["merge"] = f"{share:.0%} of the rows share a clock tick with the one before"
 
 
