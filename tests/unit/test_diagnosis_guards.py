@@ -12,9 +12,10 @@ from cyclosweep.diagnosis.identify.explained import explained_share
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify.verdict import Decision, decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.refuse import NoDiagnosisError, check_positive
+from cyclosweep.diagnosis.repair import calibration_of
 from cyclosweep.simulation import effects
 
 SIGMA = 0.02
@@ -63,6 +64,31 @@ def test_share_is_nothing_for_the_baseline_and_all_for_the_right_law(bent: Searc
     # Noise is no mismatch: the share reaches one, not one less the noise's own part.
     ideal = 1.0 - (bent.noise.spread_deg / base.rmse_deg) ** 2
     assert found.share > 0.5 * (1.0 + ideal)
+
+
+def test_what_errs_by_several_times_the_noise_is_not_all(bent: Search) -> None:
+    # As if a fit had ended in a bad optimum whose residual shows none of the shapes tested.
+    poor = bent.baseline
+    claimed = Decision("IDENTIFIED", poor, [(poor, 1.0)], False)
+    assert poor.fit.rmse_deg > 2 * bent.noise.spread_deg
+    for share, verdict in ((0.95, "MOSTLY_EXPLAINED"), (0.5, "UNKNOWN_PHYSICS")):
+        decision = no_more_than_fits(claimed, poor, bent, share)
+        assert decision.verdict == verdict
+        assert decision.unexplained
+    softening = Term(effects.find("overload_softening"), {"onset_nm": 5.0, "power": 2.0})
+    good = bent.refit((softening,))
+    assert no_more_than_fits(claimed, good, bent, 0.95) is claimed
+
+
+def test_a_line_that_falls_is_not_stated_as_the_calibration(bent: Search) -> None:
+    fallen = replace(bent.baseline.fit, beta=bent.baseline.fit.beta * np.array([1.0, -1.0, 1.0]))
+    stated = calibration_of(fallen, bent.problem)
+    read = bent.problem.history
+    assert stated["compliance_deg_per_nm"].estimate == read.compliance_deg_per_nm > 0.0
+    assert stated["compliance_scale"].estimate > 0.0
+    assert stated["compliance_deg_per_nm"].std_error is None
+    fitted = calibration_of(bent.baseline.fit, bent.problem)
+    assert fitted["compliance_deg_per_nm"].estimate == bent.baseline.fit.beta[1]
 
 
 @pytest.mark.parametrize("compliance", [0.0, -0.06])

@@ -81,6 +81,22 @@ def test_noise_behind_a_coarse_dial(sigma: float) -> None:
     assert noise.sigma_deg == pytest.approx(sigma, rel=0.35)
 
 
+def test_a_coarse_dial_keeps_how_steps_are_counted() -> None:
+    # The clock runs at uneven steps, but the noise correlates from row to row.
+    rng, x, basis, gap = material(3000)
+    white = 0.1 * rng.normal(size=len(x))
+    noise = np.empty(len(x))
+    noise[0] = white[0]
+    for k in range(1, len(x)):
+        noise[k] = 0.8 * noise[k - 1] + 0.6 * white[k]
+    angle = np.round((30 * x + noise) / 0.5) * 0.5
+    uneven = np.where(gap > 0, rng.choice([0.25, 1.0, 3.0], len(gap)), 0.0)
+    found = estimate_noise(angle, basis, uneven, 0.5, np.ones(len(x)), gap)
+    assert found.step_deg == 0.5
+    assert found.by_rows
+    np.testing.assert_array_equal(found.gap, gap)
+
+
 def test_fine_dial_counts_as_noise() -> None:
     rng, x, basis, gap = material()
     angle = np.round((30 * x + 0.2 * rng.normal(size=len(x))) / 0.5) * 0.5

@@ -9,6 +9,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
+from cyclosweep.simulation.effects.history import Floats
 
 
 def calibrate(problem: Problem, library: Library, seed: int) -> Search:
@@ -28,7 +29,10 @@ def calibrate(problem: Problem, library: Library, seed: int) -> Search:
     Search
         Its ``baseline`` is the calibrated published model; no effect has been fitted yet.
     """
-    return Search(problem, noise_beyond(problem, library, None), library, seed)
+    flexible = flexible_basis(problem, library, None)
+    search = Search(problem, _noise_left(problem, flexible), library, seed)
+    search.flexible = flexible
+    return search
 
 
 def noise_beyond(problem: Problem, library: Library, known: Candidate | None) -> Noise:
@@ -41,21 +45,38 @@ def noise_beyond(problem: Problem, library: Library, known: Candidate | None) ->
     library : Library
         Hypotheses, whose shapes the flexible model contains.
     known : Candidate or None
-        A structure whose terms it contains as well.
+        A structure whose terms the flexible model contains as well.
+
+    Returns
+    -------
+    Noise
+    """
+    columns = None
+    if known is not None:
+        use, history = problem.fitted, known.fit.history
+        terms = [term.columns(history)[use] for term in known.fit.terms]
+        columns = np.column_stack([history.elastic_nm[use], *terms])
+    return _noise_left(problem, flexible_basis(problem, library, columns))
+
+
+def _noise_left(problem: Problem, flexible: Floats) -> Noise:
+    """Estimate the noise that the columns of a flexible model leave of a recording.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    flexible : ndarray, shape (fitted, k)
+        Orthonormal columns.
 
     Returns
     -------
     Noise
     """
     use = problem.fitted
-    columns = None
-    if known is not None:
-        history = known.fit.history
-        terms = [term.columns(history)[use] for term in known.fit.terms]
-        columns = np.column_stack([history.elastic_nm[use], *terms])
     return estimate_noise(
         problem.angle_deg[use],
-        flexible_basis(problem, library, columns),
+        flexible,
         problem.gap[use],
         problem.resolution_deg,
         problem.weight[use],

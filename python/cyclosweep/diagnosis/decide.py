@@ -11,6 +11,7 @@ from cyclosweep.diagnosis.identify.verdict import (
     Decision,
     decide,
     decide_in_stages,
+    no_more_than_fits,
 )
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition, repetition
@@ -85,6 +86,8 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     """
     history = search.baseline.fit.history
     check_compliance(search.problem, drive, history.compliance_deg_per_nm)
+    if search.baseline.fit.beta[1] <= 0.0:
+        check_positive(search.problem.history.compliance_deg_per_nm)
     tolerance = DEFAULT_TOLERANCE * history.largest_twist_deg
     if tolerance_deg is not None:
         tolerance = tolerance_deg
@@ -93,14 +96,20 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     repeats = None
     if search.noise.structured:
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
+    staged: tuple[Candidate, Explained] | None = None
     if search.noise.structured or search.start is not search.baseline:
         found = search.chosen or search.start
-        staged = explained_share(search.baseline.fit, found.fit, search.seed)
-        decision = decide_in_stages(search, staged.share or 0.0)
+        staged = found, explained_share(search.baseline.fit, found.fit, search.seed)
+        decision = decide_in_stages(search, staged[1].share or 0.0)
     else:
         decision = decide(search, beyond_baseline, tolerance)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
-    check_positive(accepted.fit.history.compliance_deg_per_nm)
+    check_positive(float(accepted.fit.beta[1]))
+    if staged is not None and staged[0] is accepted:
+        explained = staged[1]
+    else:
+        explained = explained_share(search.baseline.fit, accepted.fit, search.seed)
+    decision = no_more_than_fits(decision, accepted, search, explained.share or 0.0)
     beyond_accepted = beyond_baseline
     if accepted is not search.baseline:
         beyond_accepted = testability(search, accepted, p_values)
@@ -115,7 +124,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         beyond_baseline=beyond_baseline,
         beyond_accepted=beyond_accepted,
         excluded=frozenset(below - possible),
-        explained=explained_share(search.baseline.fit, accepted.fit, search.seed),
+        explained=explained,
     )
 
 

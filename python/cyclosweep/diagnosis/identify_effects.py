@@ -38,7 +38,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         With all visited structures. Another one where the best of them showed the noise to be
         another: the search then starts over with that noise.
     """
-    flexible = flexible_basis(search.problem, search.library, None)
+    flexible = search.flexible
+    if flexible is None:
+        flexible = flexible_basis(search.problem, search.library, None)
     if search.noise.structured or visibility(search.baseline.fit, flexible) > LOUD:
         return _by_size(search, flexible, say)
     for _ in range(RESTARTS):

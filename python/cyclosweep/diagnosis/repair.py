@@ -1,7 +1,7 @@
 """Repair: the published model with the accepted effects, its parameters and its predictions."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
@@ -11,6 +11,13 @@ from cyclosweep.result import Baseline, CalibratedParameter
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
+
+FALLING = (
+    "A straight line with free play, fitted to all readings in contact, would fall with the "
+    "torque, as no drive does; the calibrated stiffness is that of the line read off the flanks, "
+    "and has no error to state."
+)
+"""Note beside a calibrated stiffness that is not the fitted one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +58,13 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     problem = concluded.search.problem
     base, fitted = concluded.search.baseline.fit, concluded.accepted.fit
     before, after = fitted.baseline_prediction(base), fitted.prediction
+    model = fitted.model(drive.name)
+    if base.beta[1] <= 0.0:
+        model = replace(model, notes=(*model.notes, FALLING))
     return RepairedModel(
-        model=fitted.model(drive.name),
+        model=model,
         before=Baseline(
-            parameters=calibrated_parameters(base, problem), rmse_deg=finite(before.error_deg)
+            parameters=calibration_of(base, problem), rmse_deg=finite(before.error_deg)
         ),
         after=Baseline(
             parameters=calibrated_parameters(fitted, problem), rmse_deg=finite(after.error_deg)
@@ -110,6 +120,37 @@ def calibrated_parameters(
             nominal=0.0, estimate=zero.value_nm, std_error=finite(zero.std_error_nm), unit="N m"
         )
     return found
+
+
+def calibration_of(base: FittedStructure, problem: Problem) -> Mapping[str, CalibratedParameter]:
+    """Return the calibration without effects; never one that falls with the torque.
+
+    Parameters
+    ----------
+    base : FittedStructure
+        The calibrated published model.
+    problem : Problem
+        The prepared recording.
+
+    Returns
+    -------
+    mapping of str to CalibratedParameter
+        Where the fitted line falls, that read off the flanks, without standard errors.
+    """
+    fitted = calibrated_parameters(base, problem)
+    if base.beta[1] > 0.0:
+        return fitted
+    read = problem.history
+    values = {
+        "compliance_scale": read.compliance_deg_per_nm / problem.nominal_compliance,
+        "compliance_deg_per_nm": read.compliance_deg_per_nm,
+        "free_play_deg": read.free_play_deg,
+        "datum_deg": read.datum_deg,
+    }
+    return {
+        name: replace(each, estimate=values[name], std_error=None) if name in values else each
+        for name, each in fitted.items()
+    }
 
 
 def _at_samples(problem: Problem, angle_deg: Floats, fitted: FittedStructure) -> Floats:

@@ -58,6 +58,8 @@ class Search:
 
     Attributes
     ----------
+    flexible : ndarray, shape (fitted, k), or None
+        Columns of a flexible model, where the calibration has set them.
     baseline : Candidate
         The calibrated published model without effects.
     start : Candidate
@@ -104,6 +106,7 @@ class Search:
             self.start = replace(self.start, alarm=self.alarm)
             self.visited[self.start.names] = self.start
         self.chosen: Candidate | None = None
+        self.flexible: Floats | None = None
         self.rivals_of_start: list[tuple[Candidate, float]] = []
 
     def run(self, progress: Callable[[str], None] = lambda text: None) -> None:

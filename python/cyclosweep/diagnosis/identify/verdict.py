@@ -1,6 +1,6 @@
 """The verdict: which explanation, if any, the evidence supports."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,9 @@ all others together. What else is possible stands beside it."""
 BEYOND_NOISE = 3.0
 """Root mean square error over noise and rounding from which something is missing, whatever the
 tests say."""
+WITHIN_NOISE = 2.0
+"""Root mean square error over noise and rounding up to which named effects may be said to leave
+nothing: an estimate of strongly correlated noise may be too small by as much."""
 MOSTLY = 0.9
 """Share of the mismatch from which named effects are said to explain most of it."""
 COVERAGE = 0.95
@@ -59,8 +62,7 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     Decision
     """
     if search.baseline.largest_excess < search.threshold:
-        scatter = np.hypot(search.noise.spread_deg, search.problem.resolution_deg / np.sqrt(12.0))
-        if search.baseline.fit.rmse_deg > BEYOND_NOISE * scatter:
+        if search.baseline.fit.rmse_deg > BEYOND_NOISE * _scatter(search):
             return Decision("UNKNOWN_PHYSICS", None, [], True)
         clear = bool(bounds) and all(b.upper95_deg < tolerance_deg for b in bounds)
         return Decision("NOTHING_MISSING" if clear else "INSUFFICIENT_DATA", None, [], False)
@@ -111,3 +113,39 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
         return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
     mostly = explained_share >= MOSTLY
     return Decision("MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS", best, explanations, True)
+
+
+def no_more_than_fits(
+    decision: Decision, accepted: Candidate, search: Search, explained_share: float
+) -> Decision:
+    """Verdict without the claim that nothing is left, where the error says otherwise.
+
+    A fit may end in a bad optimum; what it leaves then passes tests that look for other shapes.
+
+    Parameters
+    ----------
+    decision : Decision
+        Verdict by the tests.
+    accepted : Candidate
+        The structure that it names.
+    search : Search
+        With the noise.
+    explained_share : float
+        Share of the mismatch that the accepted structure explains.
+
+    Returns
+    -------
+    Decision
+        The same where the verdict claims no more than the error allows.
+    """
+    claims = decision.verdict in ("IDENTIFIED", "AMBIGUOUS")
+    if not claims or accepted.fit.rmse_deg <= WITHIN_NOISE * _scatter(search):
+        return decision
+    mostly = explained_share >= MOSTLY
+    verdict: Verdict = "MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS"
+    return replace(decision, verdict=verdict, unexplained=True)
+
+
+def _scatter(search: Search) -> float:
+    """Standard deviation of noise and rounding together [deg]."""
+    return float(np.hypot(search.noise.spread_deg, search.problem.resolution_deg / np.sqrt(12.0)))

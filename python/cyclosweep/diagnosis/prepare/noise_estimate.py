@@ -80,7 +80,7 @@ def estimate_noise(
     averaged = float(np.median(weight)) > 1.5
     if resolution > 0 and not averaged:
         if sigma**2 < 0.165 * resolution**2 and count >= 60:
-            coarse = _coarse_noise(angle, whole, rough.gap, resolution, sigma)
+            coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
             if coarse is not None:
                 return coarse
         sigma = max(sigma, resolution / np.sqrt(12.0))
@@ -108,7 +108,7 @@ def _floor(left: Floats) -> float:
 
 
 def _coarse_noise(
-    angle: Floats, basis: Floats, gap: Floats, resolution: float, start_sigma: float
+    angle: Floats, basis: Floats, rough: Noise, resolution: float, start_sigma: float
 ) -> Noise | None:
     """Noise below a reading so coarse that its intervals count; None where it is fine enough.
 
@@ -118,8 +118,8 @@ def _coarse_noise(
         Measured twist [deg].
     basis : ndarray, shape (n, k)
         Orthonormal columns of the model.
-    gap : ndarray, shape (n,)
-        Steps since the row before, zero where unrelated.
+    rough : Noise
+        Estimate without regard to the steps of the reading, for how steps from row to row count.
     resolution : float
         Step of the reading [deg].
     start_sigma : float
@@ -135,10 +135,10 @@ def _coarse_noise(
     if fine >= resolution / COARSE_STEP:
         return None
     freedom = max(count - inner.shape[1], 1)
-    known = Noise(fine, 0.0, 0.0, np.inf, resolution, freedom, gap)
+    known = Noise(fine, 0.0, 0.0, np.inf, resolution, freedom, rough.gap, by_rows=rough.by_rows)
     mean = _scored_mean(angle, basis[:, :12], known, start_sigma)
     score, weight = known.residual(angle, mean)
-    best, upper = _correlation(score, inner[:, :1], gap)
+    best, upper = _correlation(score, inner[:, :1], rough.gap)
     near_a_step = float(np.sum((weight * fine) ** 2))
     return replace(
         known, correlation=upper, best_correlation=best, freedom=max(near_a_step - 6.0, 4.0)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.prepare.flanks import NominalLine, find_flanks
+from cyclosweep.diagnosis.prepare.neighbours import angle_by_neighbours
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.recording import Recording
@@ -170,9 +171,11 @@ def prepare(
         temperature_c=warm,
         output_pin_count=output_pin_count,
         mesh_ratio=mesh_ratio,
-        measured_deg=angle,
         resets_datum=recording.reset_between_runs,
     )
+    moves = np.diff(run) + np.abs(np.diff(side)) + np.abs(np.diff(history.sense)) != 0
+    piece = np.cumsum(np.r_[False, moves]).astype(np.int64)
+    history = history.with_state(measured_deg=angle_by_neighbours(angle, piece))
     one_sided = bool(np.all(side[fitted] > 0) or np.all(side[fitted] < 0))
     return Problem(
         recording=recording,

@@ -24,6 +24,7 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     BLUR,
     Forecast,
     fit_forecast,
+    predicted_path,
     refit,
     starting_model,
 )
@@ -37,7 +38,8 @@ FEW_RUNS = 4
 """Fitted runs up to which the flanks alone may not tell effects apart."""
 MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
-all rows is taken instead."""
+all rows is taken instead; and error of that structure, simulated on all rows, over that of the
+simulation fitted to them, from which the latter is taken whatever it does on the flanks."""
 MOST_ADDED = 1
 """Effects added beyond the usual ones."""
 TRIED = 2
@@ -72,14 +74,19 @@ def whole_loop_structure(search: Search) -> Candidate | None:
         if each is not None and each.terms
     ]
     room = MOST_WORSE * search.start.fit.rmse_deg
-    offered = [(each, fitted) for each, fitted in offered if fitted.rmse_deg <= room]
+    clear = _simulation_error(search) / MOST_WORSE
+    offered = [
+        (each, fitted)
+        for each, fitted in offered
+        if fitted.rmse_deg <= room or each.error_deg < clear
+    ]
     if not offered:
         return None
-    errors = [left_out_error(each) for each, _ in offered]
-    first = int(np.argmin(errors))
-    if errors[first] >= (1.0 - LEAST_GAIN) * left_out_error(base):
+    # Stretches that were left out guard against a structure that explains nothing. Between two of
+    # them they decide badly: one crossing of the dead zone that comes late outweighs all the rest.
+    best, fitted = min(offered, key=lambda pair: _cost(pair[0]))
+    if left_out_error(best) >= (1.0 - LEAST_GAIN) * left_out_error(base):
         return None
-    best, fitted = offered[first]
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
     return search.add(fitted, gain)
 
@@ -109,6 +116,25 @@ def _found(search: Search) -> Forecast | None:
     return _better(
         first, fit_forecast(problem, first.model, first.terms, zero=zero, most=10, blur=BLUR)
     )
+
+
+def _simulation_error(search: Search) -> float:
+    """Root mean square error of the structure fitted to the flanks, simulated on all rows [deg].
+
+    Parameters
+    ----------
+    search : Search
+
+    Returns
+    -------
+    float
+        Zero where the structure holds terms without a name, which cannot be simulated.
+    """
+    problem, fitted = search.problem, search.start.fit
+    if any(term.effect is None for term in fitted.terms):
+        return 0.0
+    path = predicted_path(problem, fitted.model(""))
+    return problem.rms_error(path.angle_deg, problem.whole_fitted)
 
 
 def _crosses_late(problem: Problem) -> bool:
