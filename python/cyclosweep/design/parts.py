@@ -12,6 +12,8 @@ import cyclosweep._core as _core
 from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.loaded import LoadedState, loaded_state
 from cyclosweep.design.nominal_line import Side
+from cyclosweep.design.numbers import checked_loads
+from cyclosweep.design.pin_loads import THICK_FLANGE, Pin, pin_load_table, root_flexibility
 from cyclosweep.design.shaft import NonNegative, Positive
 from cyclosweep.design.torque_twist import Rig, TorqueTwist, torque_twist_curve
 
@@ -25,8 +27,6 @@ Poisson = Annotated[float, Field(gt=-1, le=0.5)]
 
 PART_DEFAULTS = {name: (kind, number, of) for name, kind, number, of in _core.part_input_table()}
 """For each input: ``required``, ``number``, ``same`` as another input, or so many ``widths``."""
-
-_THICK_FLANGE = (1.224, 0.231, 5.117)
 
 
 class PartInputs(DriveInputs):
@@ -221,6 +221,50 @@ class PartInputs(DriveInputs):
         nominal = self.nominal_torque_nm if side == "input" else self.output_torque_nm
         return torque_twist_curve(study, parts, Rig(side, crank_deg, nominal, to_load_tn, points))
 
+    def pin_loads(self, loads_tn: tuple[float, ...] = (1, 2, 3, 4, 4.5)) -> pl.DataFrame:
+        """One output pin under the five loads of the paper's Fig. 13, with and without its root.
+
+        Parameters
+        ----------
+        loads_tn : tuple of float
+            Loads [T_N], not zero.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``load_tn``; ``torque_nm`` and ``force_n`` of the pin, Eqs. (1), (2), (9);
+            ``deflection_mm`` of its end after Timoshenko, the paper's is by finite elements;
+            ``rotation_deg``, Eq. (8); ``compliance_rad_per_nm``, Eq. (10); and the last three
+            ``..._with_root``, the flange's own deflection added.
+
+        Raises
+        ------
+        DesignError
+            When the drive cannot be built.
+        InputError
+            For a load that is zero or no finite number.
+
+        Examples
+        --------
+        >>> import cyclosweep as cs
+        >>> table = cs.Drive.reference_87().pin_loads()
+        >>> table["load_tn"].to_list()
+        [1.0, 2.0, 3.0, 4.0, 4.5]
+        >>> (table["deflection_with_root_mm"] / table["deflection_mm"])[0] > 1.1
+        True
+        """
+        loads = checked_loads(loads_tn)
+        study = self.study()
+        if (reason := study.explain(0)) is not None:
+            raise _core.DesignError(f"{self.name}: {reason}")
+        names = ["force_per_pin_n", "pin_compliance_rad_per_nm"]
+        force, compliance = study.evaluate_range(0, 1, names)[2][:, 0]
+        length, diameter = self.output_pin_length_mm, self.output_pin_diameter_mm
+        root = self.pin_root_compliance or THICK_FLANGE
+        at_root = root_flexibility(root, length, diameter, self.youngs_modulus_gpa)
+        pin = Pin(self.output_pin_circle_radius_mm, float(force), float(compliance), at_root)
+        return pin_load_table(pin, loads)
+
     def accepted(self, engine: Engine) -> tuple[_core.Study, _core.PartStudy]:
         """Return the core's studies of this drive alone.
 
@@ -247,7 +291,7 @@ class PartInputs(DriveInputs):
         return _core.PartStudy(
             list(self.part_values().items()),
             self.contact_law or "palmgren",
-            list(self.pin_root_compliance or _THICK_FLANGE),
+            list(self.pin_root_compliance or THICK_FLANGE),
             list(self.ring_gap_errors_mm or ()),
             list(self.hole_gap_errors_mm or ()),
             engine,

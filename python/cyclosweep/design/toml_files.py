@@ -70,20 +70,17 @@ def one_line(error: ValidationError) -> str:
     Returns
     -------
     str
-        The first problem, and how many more there are.
+        The first problem, and how many more there are; every missing key is named at once.
     """
     problems = error.errors(include_url=False)
     first = problems[0]
-    # Pydantic puts the kind of a shaft segment into the path of its keys.
-    kinds = ("keyway", "cylinder", "frustum")
-    where = ".".join(
-        str(step + 1 if isinstance(step, int) else step)
-        for step in first["loc"]
-        if step not in kinds
-    )
+    where = _path(first["loc"])
     kind = first["type"]
+    more = len(problems) - 1
     if kind == "missing":
-        text = f"{where}: missing"
+        missing = [_path(other["loc"]) for other in problems if other["type"] == "missing"]
+        text = f"{', '.join(missing)}: missing"
+        more = len(problems) - len(missing)
     elif kind == "extra_forbidden":
         text = f"{where}: unknown key"
     elif kind == "value_error":
@@ -92,8 +89,15 @@ def one_line(error: ValidationError) -> str:
     else:
         wanted = first["msg"].removeprefix("Input should be ").removeprefix("a valid ")
         text = f"{where}: found {_shortened(repr(first['input']))}, expected {wanted}"
-    more = len(problems) - 1
     return f"{text} (and {more} more)" if more else text
+
+
+def _path(steps: tuple[int | str, ...]) -> str:
+    """Key of a problem, parts of a list counted from 1."""
+    # Pydantic puts the kind of a shaft segment into the path of its keys.
+    kinds = ("keyway", "cylinder", "frustum")
+    named = (str(step + 1 if isinstance(step, int) else step) for step in steps)
+    return ".".join(step for step in named if step not in kinds)
 
 
 def _shortened(text: str) -> str:
