@@ -50,6 +50,17 @@ def test_what_no_file_can_tell_is_a_remark_where_the_drive_is_known(tmp_path: Pa
     assert "56 deg" in remark.reason
 
 
+def test_a_diagnosis_remarks_on_the_modulo_with_the_drive_it_is_given(
+    tmp_path: Path, reference: cs.Drive
+) -> None:
+    torque, angle = loop()
+    angle = angle + 0.05 * np.random.default_rng(1).normal(size=len(angle))
+    recording = cs.Recording.read(written(tmp_path, torque, angle, 58.0))
+    assert recording.faults == ()
+    found = cs.diagnose(recording, reference, full=False)
+    assert "known modulo 58 deg" in found.statement
+
+
 def test_a_fine_modulo_is_no_remark(tmp_path: Path) -> None:
     torque = np.sin(np.linspace(0, 20, 2000)) * 10
     angle = np.sign(torque) * np.minimum(np.abs(torque) * 20, 28) + 2.73 * torque

@@ -211,9 +211,9 @@ def doubts(
     reach = nominal_play + elastic * max(factor, 1.0)
     if play.std_error is not None and abs(datum) > FAR_DATUM * reach:
         found.append(_datum(datum, reach))
-    for fault in recording.faults:
-        if "modulo" in fault.reason:
-            found.append(Doubt(quantity="angle_modulo", text=fault.reason))
+    modulo = recording.modulo_fault(2.0 * nominal_play)
+    if modulo is not None:
+        found.append(Doubt(quantity="angle_modulo", text=modulo.reason))
     return tuple(found)
 
 

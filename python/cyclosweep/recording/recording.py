@@ -211,12 +211,27 @@ class Recording(Samples):
         found = find_faults(
             self, conditioning_runs=self.conditioning_runs, holdout_runs=self.holdout_runs
         )
-        if self.angle_modulo_deg is not None and self.angle_deg is not None:
-            fault = modulo_fault(
-                self.angle_deg, self.torque_nm, self.run, self.angle_modulo_deg, self._play_deg()
-            )
-            found = (*found, fault) if fault is not None else found
+        modulo = self.modulo_fault(self._play_deg())
+        found = found if modulo is None else (*found, modulo)
         return replace(self, faults=(*self.faults, *found))
+
+    def modulo_fault(self, play_deg: float | None = None) -> Fault | None:
+        """Return the remark that the angle's modulo is too small to put it together, if it is.
+
+        Parameters
+        ----------
+        play_deg : float, optional
+            Whole free play of the drive file at the measured shaft, from flank to flank [deg].
+
+        Returns
+        -------
+        Fault or None
+        """
+        if self.angle_modulo_deg is None or self.angle_deg is None:
+            return None
+        return modulo_fault(
+            self.angle_deg, self.torque_nm, self.run, self.angle_modulo_deg, play_deg
+        )
 
     def _play_deg(self) -> float | None:
         """Whole free play at the measured shaft [deg], where the metadata name a drive."""
