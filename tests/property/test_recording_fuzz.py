@@ -4,10 +4,13 @@ import gzip
 import tempfile
 from pathlib import Path
 
+import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cyclosweep as cs
+from tests.unit.test_recording_formats import WRITERS
 
 FUZZ = settings(
     max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True
@@ -136,3 +139,18 @@ def test_made_up_tables(content: bytes) -> None:
 )
 def test_made_up_metadata(meta: bytes) -> None:
     read_or_refuse(VALID, meta)
+
+
+@pytest.mark.parametrize("kind", ["mat5", "mat7.3", "tdms", "json", "labview", "excel", "german"])
+def test_damaged_files_of_laboratory_programs(tmp_path: Path, kind: str) -> None:
+    name, write = WRITERS[kind]
+    write(tmp_path / name)
+    content = (tmp_path / name).read_bytes()
+    meta = b'[columns]\ntorque_nm = "Torque"\nangle_deg = "Angle"\n'
+    rng = np.random.default_rng(7)
+    for _ in range(60):
+        damaged = bytearray(content)
+        for place in rng.integers(0, len(content), rng.integers(1, 8)):
+            damaged[place] = int(rng.integers(0, 256))
+        cut = int(rng.integers(1, len(content))) if rng.random() < 0.3 else len(content)
+        read_or_refuse(bytes(damaged[:cut]), meta, name)

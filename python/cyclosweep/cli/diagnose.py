@@ -44,7 +44,11 @@ class _Job:
 
 def diagnose(
     recordings: Annotated[
-        list[Path], typer.Argument(metavar="RECORDING.csv...", help="Measured torque and twist.")
+        list[Path],
+        typer.Argument(
+            metavar="RECORDING.csv...",
+            help="Measured torque and twist: CSV, Excel, MATLAB, TDMS, LabVIEW, JSON.",
+        ),
     ],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the results.")],
     drive: Annotated[
