@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from component_model import component_lines
+
 __all__ = ["write_report"]
 
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
@@ -87,8 +89,8 @@ def _lines(results: dict[str, Any]) -> list[str]:
             f"| {row['seconds'] / row['variants'] * 1e9:.0f} "
             f"| {row['over_baseline_mib']:.0f} MiB |"
         )
+    lines += ["", *component_lines(results["components"])]
     lines += [
-        "",
         "## Diagnosis",
         "",
         "The whole diagnosis with its report, one run each. A recording of more than 6,000 samples "

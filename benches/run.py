@@ -21,6 +21,7 @@ import numpy as np
 import polars as pl
 
 import cyclosweep as cs
+from component_model import measure_components
 from cyclosweep.sweep.dataset import COMPRESSION, ROWS_PER_PART
 from diagnosis import measure_diagnoses
 from measure import Timing, alternate
@@ -62,6 +63,8 @@ def main() -> None:
         results["parquet"] = _parquet(count, rounds, Path(folder))
         print("streams")
         results["streams"] = _streams(arguments, Path(folder))
+    print("component model")
+    results["components"] = measure_components(quick=arguments.quick)
     print("diagnosis")
     results["diagnosis"] = measure_diagnoses(quick=arguments.quick)
     target = BENCHES.parent / ("out/bench" if arguments.quick else "docs")

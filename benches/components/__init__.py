@@ -1,0 +1,1 @@
+"""The component model in benchmarks."""
