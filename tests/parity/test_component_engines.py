@@ -29,7 +29,7 @@ def test_both_engines_find_every_equilibrium(errors: dict[str, Any]) -> None:
     assert errors["quadratic"] == {"quadratic": DESIGNS}
 
 
-# Over 20,000 designs (docs/performance.md) no median is above 0.25 % and 99 of 100 are within 1.8 %.
+# Over 20,000 designs (docs/performance.md) no median is above 0.25 %, 99 of 100 are within 1.8 %.
 def test_errors_are_as_small_as_stated(errors: dict[str, Any]) -> None:
     for name, row in errors["relative_error"].items():
         assert row["median"] < 0.005, name
