@@ -204,6 +204,16 @@ def test_facts_are_shown(tmp_path: Path) -> None:
         assert word in plain.stdout
 
 
+def test_a_row_of_units_under_canonical_names(tmp_path: Path) -> None:
+    _, torque, angle, _ = loop()
+    path = write(tmp_path / "loop.csv", "torque_nm,angle_deg\nlbf in,mrad",
+                 torque / 0.112984829, angle / 0.0572957795)  # fmt: skip
+    found = inspected(path, "--drive", "reference-87")
+    assert found["metadata"]["columns"]["torque_nm"]["unit"] == "lbf in"
+    (said,) = (text for text in found["assumed"] if text.startswith("Side"))
+    assert "1.10 times" in said
+
+
 def test_dwells_with_noise_are_counted(tmp_path: Path) -> None:
     ramp = np.linspace(0, 20, 100)
     rng = np.random.default_rng(5)

@@ -222,6 +222,7 @@ def test_repeated_rows_are_dropped_only_with_a_clock(tmp_path: Path) -> None:
         ("# only a comment\n", ["only comments"]),
         ("angle_deg\n1\n2\n", ["line 1", "one column"]),
         ("1,2\n3,4\n", ["line 1", "header"]),
+        ("1.5 2.5\n3 4\n", ["line 1", "numbers", "header"]),
         ("torque,angle\n1,2\n", ["no column torque_nm", "torque, angle", "[columns]"]),
         (TEXT.replace("50.0", "fifty"), ["line 4", "angle_deg", "'fifty'", "number"]),
         ("# c\n" + TEXT.replace("50.0", "50.0 deg"), ["line 5", "angle_deg", "'50.0 deg'"]),

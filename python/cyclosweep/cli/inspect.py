@@ -107,7 +107,8 @@ def inspect(
     if as_json:
         return
     if out is None:
-        print("\nProposed metadata file (--out writes it):\n")
+        state = "incomplete" if found.proposal.open else "--out writes it"
+        print(f"\nProposed metadata file ({state}):\n")
         print(found.toml, end="")
     else:
         print(f"\nWritten: {out}")

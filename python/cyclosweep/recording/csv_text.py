@@ -172,6 +172,11 @@ def open_csv(content: bytes, path: Path, options: TableOptions, wanted: Collecti
     place = find_text_table(content, options.header_row, wanted)
     if place is not None and (place.line != line or place.body_line != line or place.blanks):
         return _placed(content, place, options)
+    if len(head.split()) > 1 and all(is_number(cell) for cell in head.split()):
+        raise InputError(
+            f"{path}, line {line}: found numbers ({shown(head)}), expected a header row with "
+            "column names such as torque_nm angle_deg"
+        )
     if separator not in head and head.strip().strip('"') != "torque_nm":  # a programme's least
         raise InputError(
             f"{path}, line {line}: one column ({shown(head)}), expected at least torque_nm and "

@@ -13,6 +13,7 @@ from cyclosweep.recording.roles import Named, with_unit
 from cyclosweep.recording.run_proposal import propose_limit, propose_runs, propose_ticks
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
+from cyclosweep.recording.units import find_unit
 
 __all__ = ["propose"]
 
@@ -90,6 +91,9 @@ def _column(role: str, named: Named, known: Known, made: Proposal) -> dict[str, 
     """
     column: dict[str, Any] = {"column": named.column}
     if named.is_canonical or role == "run":
+        stated = find_unit(named.unit, role) if named.unit is not None else None
+        if stated is not None and (stated.factor, stated.offset) != (1.0, 0.0):
+            column["unit"] = named.unit
         return column
     if named.unit is not None:
         column["unit"] = named.unit

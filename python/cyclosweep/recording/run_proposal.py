@@ -79,9 +79,12 @@ def propose_runs(
         made.meta["history"] = "continuous"
         made.remarks["history"] = "the clock goes on from run to run without a pause"
         kept = [k for k in tops if k not in small]
-        if len(kept) >= 3 and max(tops[k] for k in kept) - min(tops[k] for k in kept) < (
-            EQUAL * largest
-        ):
+        if choice.commands:  # runs are equal that ask for the same, whatever the motor gave
+            asked = np.abs(numbers[choice.commands[0]])[known]
+            tops = {k: float(np.quantile(asked[run == k], NEARLY_ALL)) for k in tops}
+            largest = max(tops.values())
+        reach = [tops[k] for k in kept]
+        if len(kept) >= 3 and max(reach) - min(reach) < EQUAL * largest:
             made.meta["conditioning_runs"] = kept[:1]
             made.remarks["conditioning_runs"] = "equal runs: the first settles the drive"
             made.meta["holdout_runs"] = kept[-1:]
