@@ -119,6 +119,17 @@ def test_erratic_datum_is_said_to_be_and_not_predicted(tmp_path: Path) -> None:
     assert model.datum_deg == pytest.approx(PAPER.mean(), abs=0.1)
 
 
+def test_erratic_datum_forecasts_no_worse_than_no_effect() -> None:
+    # A run that was left out has no offset of its own; the first one had that of all others.
+    offsets = [0.3, 0.95, -0.6, 1.1, -0.45, 1.0, -0.75, 0.9, -0.45, 0.75]
+    tops = [12.0, 24.0, 20.0, 16.0, 24.0, 12.0, 20.0, 16.0, 24.0, 12.0]
+    found = diagnose(recorded(offsets, loops(tops)), full=True)
+    assert names(found) == ["datum_drift"]
+    assert "erratic" in physics(found)
+    repaired, before = found.content["repaired"], found.content["baseline"]
+    assert repaired["holdout_rmse_deg"] <= 1.01 * before["holdout_rmse_deg"]
+
+
 def test_datum_that_turns_back_has_a_negative_memory() -> None:
     found = diagnose(recorded([0.0, 0.8, 0.16, 0.67, 0.26, 0.59], loops(np.full(6, 20.0))))
     assert names(found) == ["datum_drift"]

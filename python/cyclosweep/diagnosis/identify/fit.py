@@ -102,10 +102,40 @@ class ContactFit(FittedStructure):
             repaired = base
             if self.terms:
                 repaired = fit(train, train_noise, self.terms, self, rounds=4)
-            held, mean = train.held_out, repaired.mean_deg
+            held, mean = train.held_out, repaired.mean_deg + self._unforeseen(repaired, train)
             ratio = _log_likelihood_ratio(problem, noise, mean, held)
             found.append(LeftOutPrediction(label, held, kept_runs, base.mean_deg, mean, ratio))
         return found
+
+    def _unforeseen(self, repaired: "ContactFit", train: Problem) -> Floats:
+        """Put the mean of the fitted rows for what no prediction can tell of other runs.
+
+        An erratic datum has an offset for each run that was fitted, and none for a new one.
+
+        Parameters
+        ----------
+        repaired : ContactFit
+            The structure fitted to a part of the recording.
+        train : Problem
+            That part.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            What is added to the twist of the part that was left out [deg].
+        """
+        change = np.zeros(len(self.history))
+        for index, term in enumerate(self.terms):
+            if term.effect is None or term.slips:
+                continue
+            known = self.beta[self.column_range(index)]
+            shape, _ = term.effect.portable(self.history, term.shape, known)
+            if np.any(term.effect.columns(self.history, shape)):
+                continue
+            part = repaired.terms[index].columns(repaired.history)
+            twist = part @ repaired.beta[repaired.column_range(index)]
+            change[train.held_out] += twist[train.fitted].mean() - twist[train.held_out]
+        return change
 
     def left_out_evidence(
         self, predictions: Sequence[LeftOutPrediction], baseline_deg: float, structure_deg: float
