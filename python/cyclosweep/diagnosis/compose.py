@@ -7,7 +7,12 @@ import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
-from cyclosweep.diagnosis.effects_found import explanations, found_effects, tried_effects
+from cyclosweep.diagnosis.effects_found import (
+    classes_shown,
+    explanations,
+    found_effects,
+    tried_effects,
+)
 from cyclosweep.diagnosis.identify.alarm import probability
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import hidden_effects
@@ -121,6 +126,7 @@ def _answer(
         mismatch=_mismatch(concluded.search, regions),
         explained=concluded.explained,
         effects=found_effects(concluded, verified.held_out.e_value),
+        classes=classes_shown(concluded),
         explanation_set=explanations(concluded),
         ruled_out=_bounds(concluded, excluded=True),
         undecided=_bounds(concluded, excluded=False),

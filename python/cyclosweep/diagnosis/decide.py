@@ -1,13 +1,15 @@
 """Decision: the verdict that the visited structures allow, and the structure that it rests on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import explained_share
+from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, testability
 from cyclosweep.diagnosis.identify.verdict import (
+    MOSTLY,
     Decision,
     decide,
     decide_in_stages,
@@ -15,10 +17,21 @@ from cyclosweep.diagnosis.identify.verdict import (
 )
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition, repetition
-from cyclosweep.result import Explained
+from cyclosweep.result import Explained, Verdict
 
 DEFAULT_TOLERANCE = 0.01
 """Size below which an effect does not matter, as a share of the largest elastic twist."""
+FEW_READINGS = 100
+"""Readings up to which laws that fit about as well are not told apart: so few cannot show that a
+law leaves nothing but noise."""
+SURE_OF_FEW = 0.99
+"""Probability that the best explanation needs to be named from a few readings."""
+
+NAMING = ("IDENTIFIED", "AMBIGUOUS", "MOSTLY_EXPLAINED")
+"""Verdicts that name effects."""
+MOST_WORSE = 1.02
+"""Error of a structure over that of the calibrated model beyond which it repairs nothing. Where a
+few rows are far off, a likelihood may be better by effects at an error a little larger."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +47,10 @@ class Conclusion:
     decision : Decision
         Verdict and explanations.
     accepted : Candidate
-        The named part of the best structure, for sizes, repair and prediction; the baseline where
-        nothing was found.
+        The effects of the best structure, for repair and prediction; the baseline where nothing was
+        found. Those that may not be named stand in for their classes of behaviour.
+    naming : Naming
+        Which of them may be named.
     repetition : Repetition or None
         How far the residual repeats between runs, where it is error of the model.
     beyond_baseline, beyond_accepted : list of Testability
@@ -43,13 +58,14 @@ class Conclusion:
     excluded : frozenset of str
         Effects that are ruled out.
     explained : Explained
-        Share of the mismatch that the accepted structure explains.
+        Share of the mismatch that the named effects explain.
     """
 
     search: Search
     tolerance_deg: float
     decision: Decision
     accepted: Candidate
+    naming: Naming
     repetition: Repetition | None
     beyond_baseline: list[Testability]
     beyond_accepted: list[Testability]
@@ -104,15 +120,21 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     else:
         decision = decide(search, beyond_baseline, tolerance)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
-    check_positive(float(accepted.fit.beta[1]))
-    if staged is not None and staged[0] is accepted:
+    naming = names_that_hold(search, accepted)
+    if staged is not None and staged[0] is naming.part:
         explained = staged[1]
     else:
-        explained = explained_share(search.baseline.fit, accepted.fit, search.seed)
+        explained = explained_share(search.baseline.fit, naming.part.fit, search.seed)
+    decision = _with_names_that_hold(search, decision, naming, explained.share or 0.0)
+    if decision.verdict == "INSUFFICIENT_DATA":
+        accepted = search.baseline
+    check_positive(float(accepted.fit.beta[1]))
     decision = no_more_than_fits(decision, accepted, search, explained.share or 0.0)
     beyond_accepted = beyond_baseline
     if accepted is not search.baseline:
         beyond_accepted = testability(search, accepted, p_values)
+        unnamed = {check.name for check in naming.withdrawn} & set(accepted.fit.names)
+        beyond_accepted += [bound for bound in beyond_baseline if bound.name in unnamed]
     possible = {term.name for each, _ in decision.explanations for term in each.fit.terms}
     below = {bound.name for bound in beyond_accepted if bound.upper95_deg < tolerance}
     return Conclusion(
@@ -120,6 +142,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         tolerance_deg=tolerance,
         decision=decision,
         accepted=accepted,
+        naming=naming,
         repetition=repeats,
         beyond_baseline=beyond_baseline,
         beyond_accepted=beyond_accepted,
@@ -128,11 +151,44 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     )
 
 
+def _with_names_that_hold(
+    search: Search, decision: Decision, naming: Naming, share: float
+) -> Decision:
+    """Change a verdict that rests on laws which do not stand for their classes.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    decision : Decision
+        The verdict by the evidence of whole structures.
+    naming : Naming
+        Which effects may be named.
+    share : float
+        Share of the mismatch that these explain.
+
+    Returns
+    -------
+    Decision
+    """
+    few = search.problem.count <= FEW_READINGS
+    best = max((p for _, p in decision.explanations), default=0.0)
+    told = not naming.withdrawn and (best >= SURE_OF_FEW or not naming.names)
+    if few and not told:
+        return replace(decision, verdict="INSUFFICIENT_DATA", unexplained=False)
+    nothing = decision.verdict in NAMING and not naming.names
+    if not naming.withdrawn and not nothing:
+        return decision
+    mostly = bool(naming.names) and share >= MOSTLY
+    verdict: Verdict = "MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS"
+    return replace(decision, verdict=verdict, unexplained=True)
+
+
 def _named_part(search: Search, candidate: Candidate) -> Candidate:
     """Return the structure without the terms that have no name.
 
     Where these carry the fit, the others alone may err more than no effect at all, and are then
-    left out too.
+    left out too; and so is a structure that model error made to fit worse than none.
 
     Parameters
     ----------
@@ -145,11 +201,11 @@ def _named_part(search: Search, candidate: Candidate) -> Candidate:
     -------
     Candidate
     """
-    if candidate.all_recognised:
-        return candidate
-    named = [t for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own]
-    if not named:
-        return search.baseline
-    found = search.visited.get(frozenset(t.name for t in named)) or search.refit(tuple(named))
-    better = found.fit.rmse_deg <= search.baseline.fit.rmse_deg
-    return found if better else search.baseline
+    found, worst = candidate, MOST_WORSE * search.baseline.fit.rmse_deg
+    if not candidate.all_recognised:
+        named = [t for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own]
+        if not named:
+            return search.baseline
+        found = search.visited.get(frozenset(t.name for t in named)) or search.refit(tuple(named))
+        worst = search.baseline.fit.rmse_deg
+    return found if found.fit.rmse_deg <= worst else search.baseline

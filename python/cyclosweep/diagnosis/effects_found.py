@@ -7,11 +7,19 @@ import numpy as np
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.alarm import DRAWS
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, size_of, spread_of_size
 from cyclosweep.diagnosis.prepare.noise import orthonormal
-from cyclosweep.result import EffectParameter, Explanation, FoundEffect, Hypothesis, Size
+from cyclosweep.result import (
+    BehaviourClass,
+    EffectParameter,
+    Explanation,
+    FoundEffect,
+    Hypothesis,
+    Size,
+)
 from cyclosweep.result.effects import Outcome
 from cyclosweep.result.part import finite
 
@@ -20,7 +28,7 @@ NORMAL_95 = 1.96
 
 
 def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, ...]:
-    """Describe the effects of the accepted structure.
+    """Describe the effects of the accepted structure that may be named.
 
     Parameters
     ----------
@@ -33,9 +41,11 @@ def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, .
     -------
     tuple of FoundEffect
     """
-    terms = concluded.accepted.fit.terms
+    names = concluded.naming.names
     return tuple(
-        _effect(concluded.search, concluded.accepted, index, e_value) for index in range(len(terms))
+        _effect(concluded.search, concluded.accepted, index, e_value)
+        for index, term in enumerate(concluded.accepted.fit.terms)
+        if term.name in names
     )
 
 
@@ -204,6 +214,47 @@ def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParam
             meaning=nonlinear.quantity.meaning,
         )
     return found
+
+
+def classes_shown(concluded: Conclusion) -> tuple[BehaviourClass, ...]:
+    """Classes of behaviour of the named effects, then those that no law stands for.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the effects that may be named.
+
+    Returns
+    -------
+    tuple of BehaviourClass
+    """
+    naming, library = concluded.naming, concluded.search.library
+    named = naming.names if concluded.decision.verdict != "INSUFFICIENT_DATA" else frozenset()
+    listed = []
+    for behaviour in dict.fromkeys(check.behaviour for check in naming.checks if check.behaviour):
+        alike = [c for c in naming.checks if c.behaviour == behaviour and c.name in named]
+        if alike:
+            laws = tuple(check.name for check in alike)
+            missed = finite(max(check.missed_share for check in alike))
+            listed.append(BehaviourClass(behaviour=behaviour, laws=laws, missed_share=missed))
+        elif concluded.decision.verdict == "INSUFFICIENT_DATA":
+            known = candidates_of(behaviour, library)
+            listed.append(BehaviourClass(behaviour=behaviour, candidates=known))
+    if not concluded.decision.unexplained:
+        return tuple(listed)
+    of_model = {term.name for term in concluded.accepted.fit.terms}
+    gone = [check for check in naming.withdrawn if check.name in of_model]
+    for each in naming.shown:
+        known = candidates_of(each.behaviour, library)
+        listed.append(
+            BehaviourClass(
+                behaviour=each.behaviour,
+                visibility=finite(each.visibility),
+                stand_ins=tuple(c.name for c in gone if c.behaviour == each.behaviour),
+                candidates=tuple(name for name in known if name not in named),
+            )
+        )
+    return tuple(listed)
 
 
 def explanations(concluded: Conclusion) -> tuple[Explanation, ...]:

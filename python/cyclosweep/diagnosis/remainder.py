@@ -39,6 +39,8 @@ def remainder(
         return _of_change(concluded, verified.change)
     if not verified.decision.unexplained or verified.decision.best is None:
         return None
+    if concluded.naming.withdrawn and concluded.naming.shown:
+        return _of_class(concluded)
     if verified.drift is not None:
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
@@ -67,6 +69,30 @@ def _of_change(concluded: Conclusion, change: DriveChange) -> Remainder:
         place="at equal torque, earlier against later",
         size_deg=abs(moved) * history.largest_torque_nm,
     )
+
+
+def _of_class(concluded: Conclusion) -> Remainder:
+    """Describe the class of behaviour for which laws stand in that may not be named.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+
+    Returns
+    -------
+    Remainder
+    """
+    fitted = concluded.accepted.fit
+    gone = {check.name for check in concluded.naming.withdrawn}
+    sizes = [
+        float(np.max(np.abs(size_of(fitted, index))))
+        for index, term in enumerate(fitted.terms)
+        if term.name in gone
+    ]
+    size = max(sizes, default=concluded.naming.part.fit.rmse_deg)
+    shape = concluded.naming.shown[0].behaviour
+    return Remainder(shape=shape, place="all along", size_deg=size)
 
 
 def _unnamed_term(best: Candidate) -> Remainder | None:

@@ -61,8 +61,14 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     model = fitted.model(drive.name)
     if base.beta[1] <= 0.0:
         model = replace(model, notes=(*model.notes, FALLING))
+    unnamed = [check for check in concluded.naming.withdrawn if check.name in fitted.names]
+    notes = tuple(
+        f"{check.name} is a stand-in for this class: {check.behaviour or 'without a name'}; "
+        "its law was not found to hold"
+        for check in unnamed
+    )
     return RepairedModel(
-        model=model,
+        model=replace(model, notes=(*model.notes, *notes)),
         before=Baseline(
             parameters=calibration_of(base, problem), rmse_deg=finite(before.error_deg)
         ),

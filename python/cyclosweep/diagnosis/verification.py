@@ -89,7 +89,7 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
 def _of_changed_drive(concluded: Conclusion) -> Decision:
     """Verdict where the drive changed: named effects explain most of it at best."""
     share = concluded.explained.share or 0.0
-    named = bool(concluded.accepted.fit.terms) and share >= MOSTLY
+    named = bool(concluded.naming.names) and share >= MOSTLY
     verdict: Verdict = "MOSTLY_EXPLAINED" if named else "UNKNOWN_PHYSICS"
     return replace(concluded.decision, verdict=verdict, unexplained=True)
 

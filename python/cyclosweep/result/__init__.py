@@ -4,6 +4,7 @@ from cyclosweep.result.answer import SCHEMA, Answer, Finding, RunToRunDrift
 from cyclosweep.result.calibration import Baseline, CalibratedParameter, NoiseEstimate, Thinning
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import (
+    BehaviourClass,
     Bound,
     EffectParameter,
     Explanation,
@@ -29,6 +30,7 @@ __all__ = [
     "SCHEMA",
     "Answer",
     "Baseline",
+    "BehaviourClass",
     "Bound",
     "CalibratedParameter",
     "Doubt",

@@ -5,7 +5,14 @@ from typing import Literal
 
 from cyclosweep.result.calibration import Baseline, NoiseEstimate, Thinning
 from cyclosweep.result.change import DriveChange
-from cyclosweep.result.effects import Bound, Explanation, FoundEffect, Remainder, Untestable
+from cyclosweep.result.effects import (
+    BehaviourClass,
+    Bound,
+    Explanation,
+    FoundEffect,
+    Remainder,
+    Untestable,
+)
 from cyclosweep.result.mismatch import Explained, Mismatch
 from cyclosweep.result.part import EMPTY, LEFT_OUT, Part
 from cyclosweep.result.plausibility import Doubt
@@ -63,6 +70,9 @@ class Answer(Part):
     """How much of that difference the accepted effects explain."""
     effects: tuple[FoundEffect, ...] = ()
     """Effects that were accepted by name, also where something unknown remains."""
+    classes: tuple[BehaviourClass, ...] = ()
+    """Classes of behaviour that the recording shows: those of named effects, then those that no law
+    of the vocabulary stands for."""
     explanation_set: tuple[Explanation, ...] = ()
     """Explanations that fit, the most probable first, together at least 95 % probable."""
     ruled_out: tuple[Bound, ...] = ()

@@ -108,6 +108,24 @@ class Remainder(Part):
     """How large it is [deg]."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BehaviourClass(Part):
+    """A class of behaviour that the recording shows, whatever law is behind it."""
+
+    behaviour: str
+    """What the twist looks like."""
+    laws: tuple[str, ...] = ()
+    """Effects whose laws stand for it and are named; empty where no law of the vocabulary does."""
+    missed_share: float | None = None
+    """What these laws miss inside the class over what both explain, as root mean squares."""
+    visibility: float | None = None
+    """Signal-to-noise ratio of what no named law explains of it; null where laws stand for it."""
+    stand_ins: tuple[str, ...] = ()
+    """Effects by which the repaired model represents it, which are not named."""
+    candidates: tuple[str, ...] = ()
+    """Effects of the vocabulary of this class that were not named."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hypothesis:
     """One effect of the library: whether it was accepted, and its size or how large it could be.

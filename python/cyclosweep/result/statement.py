@@ -9,6 +9,11 @@ from cyclosweep.result.effects import Explanation
 from cyclosweep.result.mismatch import Region
 from cyclosweep.result.proof import HeldOutBlock
 
+SPREAD = 3
+"""Classes of behaviour from which something belongs to none of them."""
+WORTH_SAYING = 0.02
+"""Share that a law misses inside its class from which the statement says so."""
+
 
 def statement_of(answer: Answer) -> str:
     """Compose the statement of a diagnosis.
@@ -62,7 +67,14 @@ def _nothing_missing(answer: Answer) -> str:
 
 
 def _insufficient(answer: Answer) -> str:
-    """Say which effects could still be too large."""
+    """Say which effects could still be too large, or that few readings fit several laws."""
+    if answer.classes:
+        options = " or ".join(_option(explanation) for explanation in answer.explanation_set)
+        return (
+            "Something is missing, and so few readings cannot tell which law it follows. It may be "
+            f"{options}.{_classes(answer)} It shows most at "
+            f"{place_of(answer.mismatch.regions)}. {_calibration(answer)}"
+        )
     open_effects = sorted(answer.undecided, key=lambda bound: -bound.upper95_deg)
     names = listed([bound.name for bound in open_effects[:4]]) if open_effects else "no effect"
     return (
@@ -102,13 +114,13 @@ def _mostly_explained(answer: Answer) -> str:
             share += f" (95 %: {100 * low:.3g} to {100 * high:.3g})"
     remains = "something without a name"
     if answer.unknown is not None:
-        remains = f"a {answer.unknown.shape} of {degrees(answer.unknown.size_deg)}"
+        remains = f"{with_article(answer.unknown.shape)} of {degrees(answer.unknown.size_deg)}"
         remains += f", {answer.unknown.place}"
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
-        f"mismatch; what is left is above the noise and has no name of its own: {remains}. Size "
-        f"after re-calibration: {_sizes(answer)}. It shows most at "
-        f"{place_of(answer.mismatch.regions)}.{_improvement(answer)} "
+        f"mismatch; what is left is above the noise and has no name of its own: {remains}."
+        f"{_missed(answer)}{_classes(answer)} Size after re-calibration: {_sizes(answer)}. "
+        f"It shows most at {place_of(answer.mismatch.regions)}.{_improvement(answer)} "
         f"{_calibration(answer)}"
     )
 
@@ -122,7 +134,7 @@ def _unknown(answer: Answer) -> str:
     remains = ""
     if answer.unknown is not None:
         size = f"{answer.unknown.size_deg:.2g} deg"
-        remains = f": a {answer.unknown.shape} of {size}, {answer.unknown.place}"
+        remains = f": {with_article(answer.unknown.shape)} of {size}, {answer.unknown.place}"
     calibration = _calibration(answer)
     if answer.drift is not None and answer.change is None:
         remains = ": a drift from run to run"
@@ -132,9 +144,44 @@ def _unknown(answer: Answer) -> str:
             "own. It is unfit for a stiffness; warm-up, wear or creep have to settle first."
         )
     return (
-        f"Unknown physics:{known} something without a name in the vocabulary remains{remains}. "
-        f"It shows most at {place_of(answer.mismatch.regions)}. {calibration}"
+        f"Unknown physics:{known} something without a name in the vocabulary remains{remains}."
+        f"{_classes(answer)} It shows most at {place_of(answer.mismatch.regions)}. {calibration}"
     )
+
+
+def _classes(answer: Answer) -> str:
+    """Say of which class of behaviour that is for which no law stands."""
+    shown = [each for each in answer.classes if not each.laws]
+    if not shown:
+        return ""
+    if len(shown) >= SPREAD:
+        names = listed([each.behaviour for each in shown])
+        return f" It is spread over several classes of behaviour ({names}), as no listed effect is."
+    words = []
+    for each in shown:
+        text = with_article(each.behaviour)
+        if answer.verdict == "INSUFFICIENT_DATA":
+            words.append(text)
+            continue
+        if each.stand_ins:
+            text += f", of which {listed(each.stand_ins)} is only a stand-in"
+        others = [name for name in each.candidates if name not in each.stand_ins]
+        if others:
+            text += f" (listed effects of this class: {listed(others)})"
+        words.append(text)
+    said = "" if answer.verdict == "INSUFFICIENT_DATA" else "; no law of the vocabulary fits it"
+    return f" Its class of behaviour is clear: {' and '.join(words)}{said}."
+
+
+def _missed(answer: Answer) -> str:
+    """Say what named laws miss inside their classes, where it is worth a word."""
+    words = [
+        f" Inside its class, {with_article(each.behaviour)}, the law of {listed(each.laws)} misses "
+        f"{100 * each.missed_share:.2g} %."
+        for each in answer.classes
+        if each.laws and each.missed_share is not None and each.missed_share >= WORTH_SAYING
+    ]
+    return "".join(words)
 
 
 def _forecast_sentences(blocks: Sequence[HeldOutBlock]) -> str:
@@ -294,6 +341,11 @@ def degrees(value: float | None) -> str:
 def readable(name: str) -> str:
     """Name of an effect in plain words."""
     return name.replace("_", " ")
+
+
+def with_article(words: str) -> str:
+    """Put "a" or "an" before some words."""
+    return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"
 
 
 def listed(names: Sequence[str]) -> str:
