@@ -12,7 +12,9 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_FAMILY,
+    EVEN_CURVE,
     LOOP,
+    ODD_CURVE,
     OPENING_LOOP,
     RATE_LOOP,
 )
@@ -30,10 +32,11 @@ FURTHER_LAW = 6.0
 """Log prior odds against each further law in the same class [nat], as in the search."""
 SHAPE_CHARGE = 1.0
 """Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
-CLOSE = 1.2
-"""Log evidence by which a class may be ahead of a law that is named [nat]: odds of three to one."""
-CLOSE_LOOP = 4.0
-"""The same for loops, whose flexible groups hold some laws exactly."""
+CLOSE = 1.6
+"""Log evidence by which a class may be ahead of a law that is named [nat]: odds of five to one."""
+CLOSE_OTHER = 4.0
+"""The same for classes other than curves: their flexible groups hold some laws exactly, and they
+have fewer twins."""
 CLOSE_BESIDE = 1.5
 """What is added beside other laws, whose errors reach into every class [nat]."""
 CLEARLY = 300.0
@@ -252,7 +255,7 @@ def _check(
     replaced = False
     loop = bool({LOOP, OPENING_LOOP, RATE_LOOP} & set(own))
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
-    close += CLOSE_LOOP if loop else CLOSE
+    close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
     beyond = max(by_law - CLEARLY, 0.0)
     rival = max(rivals, key=lambda name: every[name].evidence, default=None)
     if rival is not None and every[rival].evidence > by_law + close:
@@ -262,7 +265,7 @@ def _check(
         replaced = remains < max(LEAST_EVIDENCE, LEFT_BESIDE * by_law)
     stands = deficit <= close + (CLOSE_LOOP_SHARE if loop else CLOSE_SHARE) * beyond
     whole = share <= (MOST_MISSED_LOOP if loop else MOST_MISSED)
-    whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < 1.0
+    whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < CLEAR
     holds = by_law >= LEAST_EVIDENCE and stands and whole and not (replaced or cancels)
     listed = family if holds and family else list(every)
     behaviour = max(listed, key=lambda name: every[name].evidence, default="")
