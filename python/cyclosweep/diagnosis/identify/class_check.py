@@ -26,8 +26,11 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
-LEAST_EVIDENCE = 3.0
-"""Log evidence of its own that a law must have to be named [nat]."""
+LEAST_EVIDENCE = 0.5
+"""Log evidence of its own that a law must have to be named [nat]. That something is missing was
+decided before; a faint law, whose shape the recording leaves open, is charged too much for it."""
+LEAST_LEFT = 3.0
+"""Log evidence that has to be left of a law beside a rival class that explains more [nat]."""
 FURTHER_LAW = 6.0
 """Log prior odds against each further law in the same class [nat], as in the search."""
 SHAPE_CHARGE = 1.0
@@ -49,7 +52,7 @@ literature leave 0 to 0.1 of each other where they are curves, to 0.25 where the
 LEAST_SUM = 0.6
 """Size of the sum of laws in one class over that of the largest, below which they are not named."""
 LEFT_BESIDE = 0.1
-"""Share of a law's evidence that has to be left beside a rival class that explains more."""
+"""The same as a share of the law's evidence."""
 CLEAR = 6.0
 """Log evidence from which a residual shows a class [nat]."""
 MOST_CLASSES = 4
@@ -262,7 +265,7 @@ def _check(
         beside = classes.beside(known, rival)
         left_law, left_over = (each - beside @ (beside.T @ each) for each in (law, residual))
         remains = _law_evidence(left_over, left_law, charged, classes.freedom)
-        replaced = remains < max(LEAST_EVIDENCE, LEFT_BESIDE * by_law)
+        replaced = remains < max(LEAST_LEFT, LEFT_BESIDE * by_law)
     stands = deficit <= close + (CLOSE_LOOP_SHARE if loop else CLOSE_SHARE) * beyond
     whole = share <= (MOST_MISSED_LOOP if loop else MOST_MISSED)
     whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < CLEAR
