@@ -46,6 +46,9 @@ CLEARLY = 300.0
 """Log evidence of a law from which it is the law's own error that counts [nat]."""
 CLOSE_SHARE, CLOSE_LOOP_SHARE = 0.005, 0.02
 """Share of the evidence beyond that by which the class may be ahead of curves, and of loops."""
+LITTLE_MISSED = 0.05
+"""What a law of more evidence may miss inside its class in any case, as root mean squares: where the
+noise is small no law is exact, and flexible groups are."""
 MOST_MISSED, MOST_MISSED_LOOP = 0.1, 0.25
 """What a named law may miss inside its class, as a share of both in root mean squares: laws of the
 literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops."""
@@ -267,6 +270,7 @@ def _check(
         remains = _law_evidence(left_over, left_law, charged, classes.freedom)
         replaced = remains < max(LEAST_LEFT, LEFT_BESIDE * by_law)
     stands = deficit <= close + (CLOSE_LOOP_SHARE if loop else CLOSE_SHARE) * beyond
+    stands |= beyond > 0.0 and share <= LITTLE_MISSED
     whole = share <= (MOST_MISSED_LOOP if loop else MOST_MISSED)
     whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < CLEAR
     holds = by_law >= LEAST_EVIDENCE and stands and whole and not (replaced or cancels)
