@@ -47,8 +47,8 @@ CLEARLY = 300.0
 CLOSE_SHARE, CLOSE_LOOP_SHARE = 0.005, 0.02
 """Share of the evidence beyond that by which the class may be ahead of curves, and of loops."""
 LITTLE_MISSED = 0.05
-"""What a law of more evidence may miss inside its class in any case, as root mean squares: where the
-noise is small no law is exact, and flexible groups are."""
+"""What a law of more evidence may miss inside its class in any case, as root mean squares: where
+the noise is small no law is exact, and flexible groups are."""
 MOST_MISSED, MOST_MISSED_LOOP = 0.1, 0.25
 """What a named law may miss inside its class, as a share of both in root mean squares: laws of the
 literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops."""
@@ -173,7 +173,7 @@ def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:
         Strongest evidence first; those far smaller than the largest are left out.
     """
     classes = ClassColumns.of(fitted)
-    known, residual = fitted.tangent, fitted.residual
+    known, residual = fitted.tangent, classes.scale * fitted.residual
     found: list[ShownClass] = []
     for _ in range(MOST_CLASSES):
         taken = {each.behaviour for each in found}
@@ -243,11 +243,12 @@ def _check(
     charged = (amplitudes, len(places) - amplitudes)
     others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
     known = orthonormal(fitted.sensitivity[:, others], 1e-6)
-    single = [_whitened(fitted, index) for index in indices]
+    single = [classes.scale * _whitened(fitted, index) for index in indices]
     law = np.sum(single, axis=0)
     cancels = _cancel(fitted, single)
     law = law - known @ (known.T @ law)
-    residual = fitted.residual + law
+    whole_residual = classes.scale * fitted.residual
+    residual = whole_residual + law
     residual = residual - known @ (known.T @ residual)
     by_law = _law_evidence(residual, law, charged, classes.freedom)
     every = {name: classes.evidence(name, known, residual) for name in classes.columns}
@@ -255,7 +256,7 @@ def _check(
     rivals = [name for name in every if name not in own]
     by_law -= FURTHER_LAW * (len(indices) - 1)
     deficit = max((every[name].evidence for name in family), default=-np.inf) - by_law
-    left = [classes.evidence(k, fitted.tangent, fitted.residual) for k in family]
+    left = [classes.evidence(k, fitted.tangent, whole_residual) for k in family]
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))
     replaced = False
@@ -273,7 +274,9 @@ def _check(
     stands |= beyond > 0.0 and share <= LITTLE_MISSED
     whole = share <= (MOST_MISSED_LOOP if loop else MOST_MISSED)
     whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < CLEAR
-    holds = by_law >= LEAST_EVIDENCE and stands and whole and not (replaced or cancels)
+    # The terms of a whole loop were chosen by what they predict.
+    seen = by_law >= LEAST_EVIDENCE or fitted.independent_share < 1.0
+    holds = seen and stands and whole and not (replaced or cancels)
     listed = family if holds and family else list(every)
     behaviour = max(listed, key=lambda name: every[name].evidence, default="")
     if behaviour and every[behaviour].evidence <= 0.0:

@@ -12,7 +12,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import class_columns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import likelihood_gain
-from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
 NARROWEST = 1e-9
@@ -53,10 +53,14 @@ class ClassColumns:
         By the name of the class.
     freedom : float
         Degrees of freedom with which the noise is known.
+    scale : float
+        Factor by which columns are multiplied, and residuals are to be: where what is left is error
+        of the model, all rows together count as a few independent pieces.
     """
 
     columns: dict[str, Floats]
     freedom: float
+    scale: float = 1.0
 
     @classmethod
     def of(cls, fitted: FittedStructure) -> "ClassColumns":
@@ -75,7 +79,12 @@ class ClassColumns:
         use = problem.fitted
         _, weight = noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
         made = class_columns(fitted.history)
-        return cls({k: noise.design(each[use], weight) for k, each in made.items()}, noise.freedom)
+        scale, freedom = 1.0, noise.freedom
+        if noise.structured:
+            freedom = min(INDEPENDENT_PIECES, freedom)
+            scale = float(np.sqrt(freedom / max(problem.count, 1)))
+        columns = {k: scale * noise.design(each[use], weight) for k, each in made.items()}
+        return cls(columns, freedom, scale)
 
     def evidence(self, name: str, known: Floats, residual: Floats) -> ClassEvidence:
         """Evidence for one class in a residual.
