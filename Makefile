@@ -93,6 +93,7 @@ bench: env
 	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m pip install --quiet --no-deps cycloidgen
 	$(BIN)/python benches/run.py --full
+	$(BIN)/python benches/dynamics.py
 	$(BIN)/python benches/instructions.py
 
 # Some minutes; make bench then shows the record in docs/performance.md.

@@ -12,8 +12,10 @@ __all__ = [
     "DesignError",
     "PartStudy",
     "Study",
+    "Train",
     "__version__",
     "active_pins",
+    "chain_frequencies",
     "creep_state",
     "dragged",
     "hole_locus",
@@ -140,6 +142,7 @@ def torque_twist(
     steps: int,
 ) -> tuple[_Reals, npt.NDArray[np.bool_], float, bool]: ...
 
+@final
 class Train:
     def __new__(
         cls,
@@ -170,6 +173,7 @@ class Train:
         samples: _Reals,
     ) -> dict[str, Any]: ...
 
+def chain_frequencies(inertias: _Reals, stiffnesses: _Reals) -> _Reals: ...
 def part_input_table() -> list[tuple[str, str, float, str]]: ...
 def part_output_table() -> list[tuple[str, str]]: ...
 def part_status_labels() -> list[str]: ...

@@ -15,6 +15,7 @@ from cyclosweep.atomic import write_text
 from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion
 from cyclosweep.design.drive_train import CalibratedModel, TrainParts, train_of
 from cyclosweep.design.nominal_line import NominalLine
+from cyclosweep.design.parts import TRAIN_INPUTS
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
 from cyclosweep.design.toml_files import one_line, read_toml
@@ -226,8 +227,8 @@ class Drive(PublishedDrive):
             every low frequency falls by the root of the efficiency.
         **parts
             What the drive's file does not hold: the fields of
-            :class:`cyclosweep.design.drive_train.TrainParts`. Without ``load_inertia_kg_m2`` the
-            output is locked.
+            :class:`cyclosweep.design.drive_train.TrainParts`, before those that the drive has as
+            keys. Without ``load_inertia_kg_m2`` the output is locked.
 
         Returns
         -------
@@ -253,4 +254,6 @@ class Drive(PublishedDrive):
         if unknown:
             known = ", ".join(TrainParts.__dataclass_fields__)
             raise InputError(f"{unknown[0]}: no such part of a train, expected one of {known}")
-        return train_of(self, model, TrainParts(**parts), with_efficiency)  # type: ignore[arg-type]
+        own = {name: getattr(self, name) for name in TRAIN_INPUTS}
+        given = {**{name: value for name, value in own.items() if value is not None}, **parts}
+        return train_of(self, model, TrainParts(**given), with_efficiency)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["PART_INPUTS", "PART_LISTS", "PART_OUTPUTS", "Quantity"]
+__all__ = ["PART_INPUTS", "PART_LISTS", "PART_OUTPUTS", "TRAIN_OUTPUTS", "Quantity"]
 
 
 class Quantity(NamedTuple):
@@ -68,6 +68,14 @@ PART_INPUTS: dict[str, Quantity] = {
         "", "MPa", "yield strength of the softer body of every contact"
     ),
     "pin_yield_strength_mpa": Quantity("", "MPa", "yield strength of the output pins"),
+    "load_inertia_kg_m2": Quantity(
+        "J_L", "kg m^2", "driven machine at the output; without it the output is locked"
+    ),
+    "eccentric_inertia_kg_m2": Quantity("", "kg m^2", "eccentric and input shaft, none by default"),
+    "flange_inertia_kg_m2": Quantity("", "kg m^2", "output flange in front of a coupling"),
+    "coupling_stiffness_nm_per_rad": Quantity(
+        "", "N m/rad", "coupling between flange and load, at the output"
+    ),
 }
 
 PART_LISTS: dict[str, Quantity] = {
@@ -82,6 +90,22 @@ PART_LISTS: dict[str, Quantity] = {
 }
 
 _AT_RATED = "at rated torque, mean over the crank"
+TRAIN_OUTPUTS: dict[str, Quantity] = {
+    "natural_frequency_1_hz": Quantity(
+        "f_1",
+        "Hz",
+        "first natural frequency of input, drive and load beyond the play; null without the "
+        "input's inertia",
+    ),
+    "natural_frequency_2_hz": Quantity("f_2", "Hz", "second one; null without flange and coupling"),
+    "reversal_shock_factor": Quantity(
+        "",
+        "1",
+        "peak over static torque when the nominal torque is reversed through the play, "
+        "1 + 2 sqrt(1 + K gamma / T_N)",
+    ),
+}
+
 PART_OUTPUTS: dict[str, Quantity] = {
     "loaded_twist_arcmin": Quantity(
         "", "arcmin", f"twist at the output from the unloaded middle, {_AT_RATED}"

@@ -17,7 +17,7 @@ from cyclosweep.design.pin_loads import THICK_FLANGE, Pin, pin_load_table, root_
 from cyclosweep.design.shaft import NonNegative, Positive
 from cyclosweep.design.torque_twist import Rig, TorqueTwist, torque_twist_curve
 
-__all__ = ["PART_DEFAULTS", "Engine", "PartInputs"]
+__all__ = ["PART_DEFAULTS", "TRAIN_INPUTS", "Engine", "PartInputs"]
 
 Engine = Literal["full", "quadratic"]
 """How equilibria are found: by power laws, or by their secants at the expected forces."""
@@ -26,7 +26,10 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 Poisson = Annotated[float, Field(gt=-1, le=0.5)]
 
 PART_DEFAULTS = {name: (kind, number, of) for name, kind, number, of in _core.part_input_table()}
-"""For each input: ``required``, ``number``, ``same`` as another input, or so many ``widths``."""
+"""For each input: ``required``, ``number``, ``same`` as another, so many ``widths``, ``absent``."""
+
+TRAIN_INPUTS = tuple(name for name, (kind, _, _) in PART_DEFAULTS.items() if kind == "absent")
+"""Inputs of the torsional train alone, on which no equilibrium depends."""
 
 
 class PartInputs(DriveInputs):
@@ -61,6 +64,10 @@ class PartInputs(DriveInputs):
     friction_bearing: NonNegative | None = None
     contact_yield_strength_mpa: Positive | None = None
     pin_yield_strength_mpa: Positive | None = None
+    load_inertia_kg_m2: Positive | None = None
+    eccentric_inertia_kg_m2: NonNegative | None = None
+    flange_inertia_kg_m2: Positive | None = None
+    coupling_stiffness_nm_per_rad: Positive | None = None
     contact_law: Literal["palmgren", "johnson"] | None = None
     pin_root_compliance: tuple[NonNegative, Finite, NonNegative] | None = None
     ring_gap_errors_mm: tuple[Finite, ...] | None = None
@@ -96,7 +103,7 @@ class PartInputs(DriveInputs):
 
     def part_definition(self) -> dict[str, str]:
         """Return what decides the component model's numbers, for the hash of a study."""
-        names = (*self._PARTS, *self._FIXED)
+        names = [name for name in (*self._PARTS, *self._FIXED) if name not in TRAIN_INPUTS]
         given = {name: getattr(self, name) for name in names}
         return {name: repr(value) for name, value in given.items() if value is not None}
 
@@ -112,6 +119,8 @@ class PartInputs(DriveInputs):
         """
         rows = []
         for name, (kind, number, of) in PART_DEFAULTS.items():
+            if kind == "absent":
+                continue
             value = getattr(self, name)
             mark = self.provenance.get(name, "given")
             if value is None:

@@ -5,7 +5,13 @@ from __future__ import annotations
 import re
 
 import cyclosweep._core as _core
-from cyclosweep.design.part_units import PART_INPUTS, PART_LISTS, PART_OUTPUTS, Quantity
+from cyclosweep.design.part_units import (
+    PART_INPUTS,
+    PART_LISTS,
+    PART_OUTPUTS,
+    TRAIN_OUTPUTS,
+    Quantity,
+)
 
 __all__ = ["INPUTS", "OUTPUTS", "Quantity", "quantity", "twist_column"]
 
@@ -160,7 +166,7 @@ def quantity(name: str) -> Quantity:
     """
     if name in OUTPUTS:
         return OUTPUTS[name]
-    for known in (INPUTS, PART_OUTPUTS, PART_INPUTS, PART_LISTS):
+    for known in (INPUTS, PART_OUTPUTS, TRAIN_OUTPUTS, PART_INPUTS, PART_LISTS):
         if name in known:
             return known[name]
     if match := re.fullmatch(r"twist_((?:minus_)?[0-9a-z]+)tn_deg", name):

@@ -8,9 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
+import cyclosweep._core as _core
 from cyclosweep.dynamics.chain import Chain
+from cyclosweep.errors import InputError
 
-__all__ = ["Modes"]
+__all__ = ["Modes", "natural_frequencies_hz"]
 
 Reals = npt.NDArray[np.float64]
 
@@ -138,3 +140,42 @@ class Modes:
         for name, shape in zip(self.train.names, self.shapes.T, strict=True):
             columns[name] = shape
         return pl.DataFrame(columns)
+
+
+def natural_frequencies_hz(
+    inertias_kg_m2: npt.ArrayLike, stiffnesses_nm_per_rad: npt.ArrayLike
+) -> Reals:
+    """Natural frequencies of many chains at once, on all cores.
+
+    Parameters
+    ----------
+    inertias_kg_m2 : array_like, shape (chains, nodes)
+        Inertias [kg m^2], all referred to one shaft.
+    stiffnesses_nm_per_rad : array_like, shape (chains, nodes - 1) or (chains, nodes)
+        Stiffnesses between neighbours [N m/rad]; with as many as inertias the last spring goes to
+        the ground.
+
+    Returns
+    -------
+    ndarray, shape (chains, nodes)
+        Frequencies [Hz], the slowest first; zero exactly for the rigid mode, NaN for a chain with
+        an inertia that is not above zero or a stiffness below zero.
+
+    Raises
+    ------
+    InputError
+        When the shapes do not fit.
+
+    Examples
+    --------
+    >>> natural_frequencies_hz([[5.0, 11.0, 22.0]], [[1e5, 2e5]]).round(3)
+    array([[ 0.   , 19.682, 32.254]])
+    """
+    inertias = np.ascontiguousarray(inertias_kg_m2, dtype=np.float64)
+    stiffnesses = np.ascontiguousarray(stiffnesses_nm_per_rad, dtype=np.float64)
+    if inertias.ndim != 2 or stiffnesses.ndim != 2:
+        raise InputError("natural frequencies: expected tables with one row a chain")
+    try:
+        return _core.chain_frequencies(inertias, stiffnesses)
+    except ValueError as error:
+        raise InputError(f"natural frequencies: {error}") from None

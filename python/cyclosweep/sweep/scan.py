@@ -6,6 +6,7 @@ engine trusts the source: it must apply the predicate and the row limit itself.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +18,12 @@ import cyclosweep._core as _core
 from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.study import Limits, Study, StudyModel
+from cyclosweep.sweep.train_columns import (
+    TRAIN_COLUMNS,
+    needed_inputs,
+    needed_results,
+    train_columns,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -267,7 +274,12 @@ def _results(
     stop: int,
     picked: npt.NDArray[np.uint64] | None,
 ) -> list[pl.Series]:
-    outputs = [name for name in names if name != "status"]
+    wanted = [name for name in names if name != "status"]
+    of_train = [name for name in wanted if name in TRAIN_COLUMNS]
+    with_parts = study.model == "components"
+    outputs = [name for name in wanted if name not in TRAIN_COLUMNS]
+    if of_train:
+        outputs = list(dict.fromkeys([*outputs, *needed_results(with_parts)]))
     of_parts = [name for name in outputs if name in _PARTS and study.model == "components"]
     published = [name for name in outputs if name not in of_parts]
     status, any_refused, columns = _evaluated(study.core, published, start, stop, picked)
@@ -277,6 +289,12 @@ def _results(
         status, any_refused, columns = _solved(study, of_parts, start, stop, picked)
         values.update(zip(of_parts, columns, strict=True))
         may_not_apply.update(dict.fromkeys(of_parts, True))
+    if of_train:
+        inputs = _train_inputs(study, with_parts, start, stop, picked)
+        results = {name: values[name] for name in needed_results(with_parts)}
+        values.update(train_columns(of_train, {**inputs, **results}, with_parts))
+        may_not_apply.update(dict.fromkeys(of_train, True))
+    outputs = wanted
     dtypes = study.schema()
     series = {"status": pl.Series("status", status)}
     for name in outputs:
@@ -291,6 +309,27 @@ def _results(
         pl.col("status").cat.to(dtypes["status"]),
     )
     return [table[name] for name in names]
+
+
+def _train_inputs(
+    study: Study,
+    with_parts: bool,
+    start: int,
+    stop: int,
+    picked: npt.NDArray[np.uint64] | None,
+) -> dict[str, npt.NDArray[np.float64] | float]:
+    """Inputs of the torsional train: columns where they vary, numbers elsewhere, NaN without."""
+    drive = study.space.drive
+    varying = {axis.name for axis in study.space.axes}
+    names = needed_inputs(with_parts)
+    axes = [name for name in names if name in varying]
+    found: dict[str, npt.NDArray[np.float64] | float] = {}
+    for name in names:
+        value = getattr(drive, name)
+        found[name] = math.nan if value is None else float(value)
+    for name, column in zip(axes, study.core.axes(axes, start, stop), strict=True):
+        found[name] = column if picked is None else column[picked - np.uint64(start)]
+    return found
 
 
 _PARTS = frozenset(name for name, _ in _core.part_output_table())

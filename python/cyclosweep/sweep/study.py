@@ -15,7 +15,8 @@ import polars as pl
 
 import cyclosweep._core as _core
 from cyclosweep.design.numbers import checked_loads, real_numbers
-from cyclosweep.design.parts import PART_DEFAULTS, Engine
+from cyclosweep.design.part_units import TRAIN_OUTPUTS
+from cyclosweep.design.parts import PART_DEFAULTS, TRAIN_INPUTS, Engine
 from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.objective import Objective
@@ -118,6 +119,8 @@ class Study:
         for name, _, _ in bounds:
             if name not in columns or name in ("criterion", "solver_status"):
                 raise InputError(f"limits.{name}: no such column, expected an input or a result")
+            if name in TRAIN_OUTPUTS:
+                raise InputError(f"limits.{name}: found a train column, filter by it instead")
             if name in PART_DEFAULTS and name not in axes:
                 raise InputError(f"limits.{name}: does not vary, expected an axis or a result")
         if objective is not None:
@@ -184,7 +187,16 @@ class Study:
         table = _core.output_table(list(self.loads_tn))
         if self.model == "components":
             table = [*table, *_PART_KINDS.items()]
+        if self.has_train:
+            table = [*table, *((name, "real") for name in TRAIN_OUTPUTS)]
         return {name: kind for name, kind in table if name not in axes}
+
+    @property
+    def has_train(self) -> bool:
+        """Whether the columns of the torsional train are there: the drive or an axis has a part."""
+        axes = {axis.name for axis in self.space.axes}
+        drive = self.space.drive
+        return any(getattr(drive, name) is not None or name in axes for name in TRAIN_INPUTS)
 
     @functools.cached_property
     def statuses(self) -> tuple[str, ...]:
@@ -214,6 +226,7 @@ class Study:
             "limits": [[name, repr(low), repr(high)] for name, low, high in self.limits],
             "version": _core.__version__,
             **self._part_definition(),
+            **self._train_definition(),
         }
 
     def _part_definition(self) -> dict[str, Any]:
@@ -222,6 +235,13 @@ class Study:
             return {}
         parts = self.space.drive.part_definition()
         return {"model": self.model, "solver": self.solver, "parts": parts}
+
+    def _train_definition(self) -> dict[str, Any]:
+        """Return what else decides the numbers of the torsional train; nothing without it."""
+        if not self.has_train:
+            return {}
+        drive = self.space.drive
+        return {"train": {name: repr(getattr(drive, name)) for name in TRAIN_INPUTS}}
 
     @functools.cached_property
     def hash(self) -> str:

@@ -3,7 +3,7 @@
 
 use crate::model::inputs::Input;
 
-/// A number that only the component model reads.
+/// A number that the component model or the torsional train reads, and the published model does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
 #[expect(
@@ -35,10 +35,14 @@ pub enum PartInput {
     FrictionBearing,
     ContactYieldStrength,
     PinYieldStrength,
+    LoadInertia,
+    EccentricInertia,
+    FlangeInertia,
+    CouplingStiffness,
 }
 
 /// Number of the component model's inputs.
-pub const PART_INPUTS: usize = 24;
+pub const PART_INPUTS: usize = 28;
 /// Place of the first of them among all inputs, far behind the shaft's.
 pub const PARTS_AT: usize = 1 << 16;
 
@@ -56,6 +60,8 @@ pub enum Substitute {
     Same(Input),
     /// This share of a disc's width: discs a third of their width apart, a sixth from the flange.
     Widths(f64),
+    /// Nothing, and nothing is missing: the equilibria do not depend on it.
+    Absent,
 }
 
 impl PartInput {
@@ -85,12 +91,16 @@ impl PartInput {
         PartInput::FrictionBearing,
         PartInput::ContactYieldStrength,
         PartInput::PinYieldStrength,
+        PartInput::LoadInertia,
+        PartInput::EccentricInertia,
+        PartInput::FlangeInertia,
+        PartInput::CouplingStiffness,
     ];
 
     /// Name and unit as in a drive file, what turns a value into SI, and the default.
     #[must_use]
     pub const fn row(self) -> (&'static str, f64, Substitute) {
-        use Substitute::{Number, Required, Same, Widths};
+        use Substitute::{Absent, Number, Required, Same, Widths};
         match self {
             Self::RingPinRadius => ("ring_pin_radius_mm", MILLI, Required),
             Self::DiscWidth => ("disc_width_mm", MILLI, Required),
@@ -116,6 +126,10 @@ impl PartInput {
             Self::FrictionBearing => ("friction_bearing", 1.0, Number(0.003)),
             Self::ContactYieldStrength => ("contact_yield_strength_mpa", 1e6, Number(1700.0)),
             Self::PinYieldStrength => ("pin_yield_strength_mpa", 1e6, Number(750.0)),
+            Self::LoadInertia => ("load_inertia_kg_m2", 1.0, Absent),
+            Self::EccentricInertia => ("eccentric_inertia_kg_m2", 1.0, Absent),
+            Self::FlangeInertia => ("flange_inertia_kg_m2", 1.0, Absent),
+            Self::CouplingStiffness => ("coupling_stiffness_nm_per_rad", 1.0, Absent),
         }
     }
 

@@ -156,6 +156,7 @@ impl Parts {
                     Substitute::Number(number) => number * unit,
                     Substitute::Same(input) => scalar(input),
                     Substitute::Widths(share) => share * given[PartInput::DiscWidth as usize],
+                    Substitute::Absent => continue,
                 };
             }
             let expected = match range(input) {
@@ -409,8 +410,12 @@ const fn range(input: PartInput) -> Range {
         | PartInput::DiscYoungsModulus
         | PartInput::DiscDensity
         | PartInput::ContactYieldStrength
-        | PartInput::PinYieldStrength => Range::Positive,
+        | PartInput::PinYieldStrength
+        | PartInput::LoadInertia
+        | PartInput::FlangeInertia
+        | PartInput::CouplingStiffness => Range::Positive,
         PartInput::BearingClearance
+        | PartInput::EccentricInertia
         | PartInput::FrictionRing
         | PartInput::FrictionOutput
         | PartInput::FrictionBearing

@@ -14,6 +14,7 @@
 //! Sources of the equations: W. T. Thomson, *Theory of Vibration with Applications* (modes of
 //! torsional trains); the slip elements are those of [`crate::model::hysteresis`].
 
+pub mod batch;
 pub mod branch;
 pub mod modes;
 mod motion;

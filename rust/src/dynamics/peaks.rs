@@ -3,8 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Part of the largest torque so far within which a larger one is not looked for.
-const CLOSE_ENOUGH: f64 = 1e-10;
+/// Part of the largest torque so far within which no other turn is looked for. The turn that is
+/// found is then followed to the last digits.
+const CLOSE_ENOUGH: f64 = 1e-7;
+/// Newton steps with which a turn is followed; two or three are enough.
+const STEPS: usize = 6;
 
 /// Largest torque so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -58,13 +61,15 @@ impl Peak {
     /// Looks for a larger torque between two times of a branch.
     ///
     /// `around` describes the torque around a time after `start` within a radius. The stretch that
-    /// may hold most is halved first, until none may hold more than the largest torque found.
+    /// may hold most is halved first, until none may hold more than the largest torque found; a
+    /// turn that has been found is followed by Newton steps.
     pub(super) fn search(
         &mut self,
         start: f64,
         length: f64,
         mut around: impl FnMut(f64, f64) -> Nearby,
     ) {
+        let before = *self;
         let mut open = BinaryHeap::new();
         let mut look = |peak: &mut Self, open: &mut BinaryHeap<Stretch>, from: f64, to: f64| {
             let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
@@ -85,6 +90,23 @@ impl Peak {
             let middle = 0.5 * (from + to);
             look(self, &mut open, from, middle);
             look(self, &mut open, middle, to);
+        }
+        if *self != before {
+            self.follow(start, length, around);
+        }
+    }
+
+    /// Follows the turn near the largest torque found.
+    fn follow(&mut self, start: f64, length: f64, mut around: impl FnMut(f64, f64) -> Nearby) {
+        let mut after = self.time - start;
+        for _ in 0..STEPS {
+            let [torque, rate, curvature] = around(after, 0.0).parabola;
+            self.take(torque, start + after);
+            let next = after - rate / curvature;
+            if !(next > 0.0 && next < length) || next == after {
+                break;
+            }
+            after = next;
         }
     }
 }

@@ -35,6 +35,7 @@ pub fn part_input_table() -> Vec<(&'static str, &'static str, f64, &'static str)
         (name, _, Substitute::Required) => (name, "required", f64::NAN, ""),
         (name, _, Substitute::Number(number)) => (name, "number", number, ""),
         (name, _, Substitute::Same(other)) => (name, "same", f64::NAN, other.name()),
+        (name, _, Substitute::Absent) => (name, "absent", f64::NAN, ""),
         (name, _, Substitute::Widths(share)) => (name, "widths", share, "disc_width_mm"),
     };
     PartInput::ALL.into_iter().map(row).collect()

@@ -1,10 +1,14 @@
 //! `_core.Train`: modes and transients of a torsional train.
 
-use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{
+    IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::dynamics::batch;
 use crate::dynamics::branch::{EventKind, static_twist};
 use crate::dynamics::modes::Modes;
 use crate::dynamics::train::{SlipElement, Spring, Train, TrainError};
@@ -138,7 +142,33 @@ impl PyTrain {
     }
 }
 
+/// Natural frequencies (Hz) of chains, one row each.
+#[pyfunction]
+fn chain_frequencies<'py>(
+    py: Python<'py>,
+    inertias: PyReadonlyArray2<'py, f64>,
+    stiffnesses: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let shape = inertias.shape();
+    let (rows, nodes) = (shape[0], shape[1]);
+    let springs = stiffnesses.shape();
+    if springs[0] != rows || nodes == 0 || !(nodes - 1..=nodes).contains(&springs[1]) {
+        return Err(PyValueError::new_err(
+            "expected as many rows, and as many springs as inertias or one fewer",
+        ));
+    }
+    let found = PyArray2::<f64>::zeros(py, [rows, nodes], false);
+    {
+        let mut found = found.readwrite();
+        let (inertias, stiffnesses) = (inertias.as_slice()?, stiffnesses.as_slice()?);
+        let found = found.as_slice_mut()?;
+        py.detach(|| batch::frequencies(nodes, inertias, stiffnesses, found));
+    }
+    Ok(found)
+}
+
 /// Registers what Python sees.
 pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<PyTrain>()
+    module.add_class::<PyTrain>()?;
+    module.add_function(wrap_pyfunction!(chain_frequencies, module)?)
 }
