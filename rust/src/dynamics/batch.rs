@@ -13,11 +13,7 @@ const TASK: usize = 256;
 /// or a stiffness below zero.
 pub fn frequencies(nodes: usize, inertias: &[f64], stiffnesses: &[f64], frequencies: &mut [f64]) {
     let rows = frequencies.len() / nodes.max(1);
-    let springs = if rows == 0 {
-        0
-    } else {
-        stiffnesses.len() / rows
-    };
+    let springs = stiffnesses.len().checked_div(rows).unwrap_or(0);
     frequencies
         .par_chunks_mut(nodes * TASK)
         .enumerate()
