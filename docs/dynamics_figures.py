@@ -28,9 +28,7 @@ def main() -> None:
     transient_figure(transient(train, event)).savefig(DOCS / "shock.png", dpi=100)
     modes = train.modes()
     mode_shapes_figure(modes).savefig(DOCS / "mode-shapes.png", dpi=100)
-    campbell_figure(modes, excitation_orders(drive), 1500.0).savefig(
-        DOCS / "campbell.png", dpi=100
-    )
+    campbell_figure(modes, excitation_orders(drive), 1500.0).savefig(DOCS / "campbell.png", dpi=100)
     spring = drive.train().springs[0]
     mark = (spring.slopes_nm_per_rad[0], math.degrees(spring.gap_rad))
     shock_map_figure(drive.nominal_torque_nm, (5.0, 100.0), (0.0, 40.0), mark).savefig(

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis import Diagnosis
 from cyclosweep.diagnosis.plausibility import likely_mistakes
 from cyclosweep_challenge import make_case
 
@@ -18,7 +17,7 @@ def recorded(
     play_deg: float = 27.0,
     compliance: float = 2.8,
     offset_deg: float = 1.0,
-) -> Diagnosis:
+) -> cs.Diagnosis:
     """Diagnose a loop of both directions that was read with wrong units."""
     rng = np.random.default_rng(3)
     torque = np.tile(np.r_[1:9:40j, 9:1:40j, -1:-9:40j, -9:-1:40j], 2)
