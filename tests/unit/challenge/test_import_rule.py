@@ -88,6 +88,7 @@ def test_nothing_that_predicts_or_diagnoses_knows_of_the_challenge() -> None:
 
 ORDER = (
     "second_generator",
+    "component_rig",
     "rig",
     "trial",
     "opponents",
