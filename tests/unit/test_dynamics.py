@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -140,9 +141,24 @@ def _friction_model() -> cs.Model:
     return cs.Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(friction,))
 
 
-def test_friction_of_a_model_takes_the_area_of_its_static_loop() -> None:
-    model = _friction_model()
+def _diagnosed_model(drive: cs.Drive) -> cs.Model:
+    """Model of a recording of a drive with friction, its datum and torque zero put to zero."""
+    line = drive.nominal_line()
+    true = dataclasses.replace(_friction_model(), compliance_deg_per_nm=line.compliance_deg_per_nm)
+    up = np.linspace(0, 28, 90)
+    ramp = np.r_[up, up[::-1], -up, -up[::-1]]
+    clean = cs.simulate(true, cs.Recording.from_arrays(np.r_[ramp, 0.6 * ramp]))
+    assert clean.angle_deg is not None
+    noise = np.random.default_rng(3).normal(0, 0.05, len(clean))
+    found = cs.diagnose(clean.with_angle(clean.angle_deg + noise), drive)
+    assert found.model is not None
+    assert [effect.name for effect in found.model.effects] == ["friction_hysteresis"]
+    return dataclasses.replace(found.model, datum_deg=0.0, torque_zero_nm=0.0)
+
+
+def test_friction_of_a_diagnosed_model_takes_the_area_of_its_static_loop() -> None:
     drive = cs.Drive.reference_87()
+    model = _diagnosed_model(drive)
     train = drive.train(model)
     # From preload to the opposite side and back: the twist turns twice.
     run = train.transient({0: -6.0}, 0.2, 20_001, preload_nm={0: 6.0})
