@@ -4,6 +4,7 @@ import numpy as np
 from scipy import stats
 
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_words
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
@@ -345,7 +346,8 @@ def _staircase(problem: Problem, forecast: Forecast, repeats: float) -> Finding:
         "staircase",
         f"Steps of about {_angle(float(np.quantile(np.abs(left), 0.9)))} remain that no effect "
         f"explains{spaced}. They repeat at the same positions from run to run (correlation "
-        f"{repeats:.2f}): they are tied to the position of mesh and motor, not to noise.",
+        f"{repeats:.2f}): they are tied to the position of mesh and motor, not to noise."
+        f"{in_words(direction_correlation(problem))}",
     )
 
 
