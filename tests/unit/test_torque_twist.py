@@ -14,6 +14,7 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.design.torque_twist import TorqueTwist
 from cyclosweep.simulation.elastic_curve import ElasticCurve
 from tests.support.arrays import present
 
@@ -183,6 +184,16 @@ def test_a_model_file_keeps_the_curve(tmp_path: Path) -> None:
         (tmp_path / "model.json").write_text(json.dumps({**content, "elastic_curve": broken}))
         with pytest.raises(cs.InputError, match=message):
             cs.Model.from_json(tmp_path / "model.json")
+
+
+def test_where_the_torque_falls_the_branch_jumps() -> None:
+    angle = [-3.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    load = [-2.0, 0.0, 0.0, 0.0, 1.0, 0.5, 0.75, 2.0]
+    table = pl.DataFrame({"angle_deg": angle, "torque_nm": load}).with_columns(converged=True)
+    curve = TorqueTwist("input", 0.0, 1.0, (-1.0, 1.0), True, table)
+    torque, twist = curve.branches()
+    np.testing.assert_allclose(torque, [-2.0, 0.0, 1.0, 2.0])
+    np.testing.assert_allclose(twist, [-2.0, 0.0, 1.0, 4.0])
 
 
 def test_a_curve_goes_straight_on() -> None:
