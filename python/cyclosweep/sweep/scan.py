@@ -17,6 +17,7 @@ from polars.io.plugins import register_io_source
 import cyclosweep._core as _core
 from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError
+from cyclosweep.sweep.memory import take
 from cyclosweep.sweep.study import Limits, Study, StudyModel
 from cyclosweep.sweep.train_columns import (
     TRAIN_COLUMNS,
@@ -254,7 +255,9 @@ def _split(predicate: pl.Expr | None, cheap: set[str]) -> tuple[list[pl.Expr], l
 def _inputs(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
     dtypes = study.schema()
     axes = [name for name in names if name != "variant"]
-    values = dict(zip(axes, study.core.axes(axes, start, stop), strict=True))
+    memory = take(len(axes) * (stop - start))
+    study.core.fill_axes(axes, start, stop, memory)
+    values = dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
     columns = []
     for name in names:
         if name == "variant":
@@ -351,7 +354,9 @@ def _evaluated(
 ) -> tuple[npt.NDArray[np.uint8], bool, npt.NDArray[np.float64]]:
     """Statuses of the published model and its columns."""
     if picked is None:
-        return core.evaluate_range(start, stop, outputs)
+        memory = take(len(outputs) * (stop - start))
+        status, any_refused = core.fill_range(start, stop, outputs, memory)
+        return status, any_refused, memory.reshape(len(outputs), stop - start)
     return core.evaluate_at(picked, outputs)
 
 

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 
@@ -160,6 +160,17 @@ impl PyStudy {
     }
 }
 
+/// Memory as this many columns of a length.
+fn columns_of(memory: &mut [f64], count: usize, len: usize) -> PyResult<Vec<&mut [f64]>> {
+    if memory.len() != count * len {
+        let found = memory.len();
+        return Err(PyValueError::new_err(format!(
+            "memory for {found} numbers, expected {count} times {len}"
+        )));
+    }
+    Ok(memory.chunks_mut(len.max(1)).collect())
+}
+
 #[pymethods]
 impl PyStudy {
     /// `base`: every input by name in the user's unit, NaN where left out. `axes`: (name, form,
@@ -280,6 +291,29 @@ impl PyStudy {
         Ok(columns)
     }
 
+    /// Writes values of axes for variants start..stop to memory, one axis after the other.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a list and an array from Python arrive by value"
+    )]
+    fn fill_axes(
+        &self,
+        py: Python<'_>,
+        names: Vec<String>,
+        start: u64,
+        stop: u64,
+        mut memory: PyReadwriteArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let len = self.check_range(start, stop)?;
+        let axes = names
+            .iter()
+            .map(|name| self.axis_number(name))
+            .collect::<PyResult<Vec<_>>>()?;
+        let columns = columns_of(memory.as_slice_mut()?, axes.len(), len)?;
+        py.detach(|| self.study.axes_into(&axes, Rows::From(start), columns))?;
+        Ok(())
+    }
+
     /// Values of one axis for picked variants.
     fn axis_at<'py>(
         &self,
@@ -307,6 +341,34 @@ impl PyStudy {
     ) -> PyResult<Evaluated<'py>> {
         let len = self.check_range(start, stop)?;
         self.evaluate(py, Rows::From(start), len, &outputs)
+    }
+
+    /// Evaluates variants start..stop into memory, one column after the other.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a list and an array from Python arrive by value"
+    )]
+    fn fill_range<'py>(
+        &self,
+        py: Python<'py>,
+        start: u64,
+        stop: u64,
+        outputs: Vec<String>,
+        mut memory: PyReadwriteArray1<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyArray1<u8>>, bool)> {
+        let len = self.check_range(start, stop)?;
+        let outputs = self.chosen(&outputs)?;
+        VARIANTS.fetch_add(len as u64, Ordering::Relaxed);
+        VALUES.fetch_add((len * outputs.len()) as u64, Ordering::Relaxed);
+        let columns = columns_of(memory.as_slice_mut()?, outputs.len(), len)?;
+        let status = PyArray1::<u8>::zeros(py, len, false);
+        let any_refused = {
+            let mut status = status.readwrite();
+            let status = status.as_slice_mut()?;
+            let rows = Rows::From(start);
+            py.detach(|| self.study.evaluate_into(rows, &outputs, status, columns))?
+        };
+        Ok((status, any_refused))
     }
 
     /// Evaluates picked variants.
