@@ -216,8 +216,9 @@ def write_german_late(path: Path) -> None:
     """Divide thousands first far below the rows that are looked at to find the table."""
     lines = text(";", ",", "", units=False).splitlines()
     angles = [line.split(";")[2] for line in lines[1:]]
+    near = [f"{100 + k},500000;0,000000;{angles[-1]}" for k in range(700)]
     far = [f"1.{k:03d},500000;0,000000;{angles[-1]}" for k in range(600)]
-    path.write_text("\n".join(lines + far) + "\n")
+    path.write_text("\n".join(lines + near + far) + "\n")
 
 
 def write_swiss(path: Path) -> None:
@@ -419,7 +420,8 @@ def test_thousands_divided_only_far_below(tmp_path: Path) -> None:
     recording = read(tmp_path / "loop.csv")
     time = present(recording.time_s)
     np.testing.assert_allclose(time[:40], TIME)
-    np.testing.assert_allclose(time[40:], np.arange(600) + 1000.5)
+    np.testing.assert_allclose(time[40:740], np.arange(700) + 100.5)
+    np.testing.assert_allclose(time[740:], np.arange(600) + 1000.5)
 
 
 def test_a_bad_row_below_names_is_not_passed_over(tmp_path: Path) -> None:

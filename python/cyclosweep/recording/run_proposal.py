@@ -28,7 +28,7 @@ LONG = 1_000_000
 KEPT = 200_000
 """Means that are kept of a long recording: 30 times what a diagnosis works on."""
 
-LIMITED = 0.97
+LIMITED = 0.95
 """Measured over commanded torque, relative to small loads, below which a motor is at its limit."""
 
 
@@ -150,7 +150,7 @@ def propose_limit(numbers: dict[str, Floats], choice: Choice, made: Proposal) ->
             continue
         start = 40 - int(np.argmin(short[::-1])) if not short.all() else 40
         if 10 < start < 38:
-            limit = float(f"{edges[start]:.2g}")
+            limit = float(f"{edges[start]:.4g}")
             made.meta["score"] = {"abs_max": {command: limit}}
             made.remarks["score"] = (
                 f"beyond, {torque} stays behind {command}: the motor is at its limit"
