@@ -17,7 +17,7 @@ from cyclosweep.sweep.space import Space, linspace
 from cyclosweep.sweep.study import Objective, Study
 
 if _TYPE_CHECKING:
-    from cyclosweep.diagnosis import Diagnosis, diagnose
+    from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
     from cyclosweep.recording import Recording
     from cyclosweep.reference.rows import validate
     from cyclosweep.simulation.simulate import Model, simulate
@@ -27,7 +27,9 @@ _LATER = {
     "Diagnosis": "diagnosis",
     "Model": "simulation.simulate",
     "Recording": "recording",
+    "Series": "diagnosis",
     "diagnose": "diagnosis",
+    "diagnose_folder": "diagnosis",
     "simulate": "simulation.simulate",
     "validate": "reference.rows",
 }
@@ -53,12 +55,14 @@ __all__ = [
     "Model",
     "Objective",
     "Recording",
+    "Series",
     "Space",
     "Study",
     "SweepError",
     "Train",
     "__version__",
     "diagnose",
+    "diagnose_folder",
     "kernel_evaluations",
     "linspace",
     "scan",

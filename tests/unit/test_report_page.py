@@ -12,8 +12,14 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.report import ReportData, write_html
+from cyclosweep.report.charts import Line, nice_ticks
+from cyclosweep.report.figures import main_figure
 from cyclosweep.report.html import page
+from cyclosweep.report.look_at import LOOK_AT
+from cyclosweep.report.sentences import headline
+from cyclosweep.report.wording import number
 from cyclosweep.result import Answer, Bound, Mismatch, Region, Remainder
+from cyclosweep.simulation.effects import VOCABULARY
 from tests.unit.made_up_report import make
 
 FAULTY = Answer(verdict="DATA_FAULT", statement="Time runs backwards.")
@@ -52,11 +58,18 @@ def test_nothing_is_fetched(whole: ReportData) -> None:
     assert len(text.encode()) < 1_000_000
 
 
+def first_figure(text: str) -> ET.Element:
+    """Legend and panels of the first figure, and its texts."""
+    figure = re.search(r"<figure>(.*?)<figcaption>", text, re.DOTALL)
+    assert figure is not None
+    return ET.fromstring(f"<figure>{figure[1]}</figure>")
+
+
 def test_main_picture_comes_first_and_is_complete(whole: ReportData) -> None:
     text = page(whole)
     assert text.index("<svg") < text.index("<h2>")
-    first = svgs(text)[0]
-    words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
+    first = first_figure(text)
+    words = [word for element in first.iter() for word in (element.text, element.tail) if word]
     for name in (
         "measured", "simulation before", "simulation after", "what the repair adds",
         "located region", "residual (arcmin)", "torque at the input shaft (N m)",
@@ -66,6 +79,63 @@ def test_main_picture_comes_first_and_is_complete(whole: ReportData) -> None:
     assert any(word.startswith("Residual after") for word in words)
     shaded = [e for e in first.iter() if e.get("class") == "span"]
     assert len(shaded) == 6  # two regions in each of three panels
+
+
+def test_panels_are_pictures_of_their_own_that_can_stack(whole: ReportData) -> None:
+    panels = re.findall(r'<div class="panels".*?</div>', page(whole), re.DOTALL)
+    assert panels[0].count("<svg") == 3
+    assert ".panels { display: block; }" in page(whole)
+
+
+def test_readings_in_the_dead_zone_do_not_set_the_scale(whole: ReportData) -> None:
+    assert whole.before_deg is not None
+    assert whole.after_deg is not None
+    near = np.flatnonzero(np.abs(whole.recording.torque_nm) < 1.0)[:5]
+    wrong = whole.after_deg.copy()
+    wrong[near] += 30.0
+    usual = main_figure(whole).panels[2].panel.y_range
+    shown = main_figure(replace(whole, after_deg=wrong))
+    found = shown.panels[2].panel.y_range
+    assert usual is not None
+    assert found is not None
+    assert found[1] < 2 * usual[1]
+    assert "lie beyond the scale" in shown.caption
+
+
+def test_headline_and_picture_quote_the_same_error(whole: ReportData) -> None:
+    error = whole.result.baseline.rmse_deg
+    assert error is not None
+    title = main_figure(whole).panels[1].panel.title
+    assert title == f"Residual before: fit error {number(error)} deg"
+    assert any(number(error) in value for value, _, _ in headline(whole))
+
+
+def test_every_axis_has_two_numbers_at_least() -> None:
+    for low, high in ((0.6, 1.9), (-0.04, 0.9), (7.1, 7.9), (1e-6, 3e-6), (-1.0, 1.0)):
+        for count in range(1, 9):
+            assert len(nice_ticks(low, high, count)) >= 2
+
+
+def test_what_was_not_computed_is_a_dash(whole: ReportData) -> None:
+    base = replace(whole.result.baseline, holdout_rmse_deg=0.0)
+    repaired = replace(whole.result.repaired, holdout_rmse_deg=0.0)
+    quick = replace(whole, result=replace(whole.result, baseline=base, repaired=repaired))
+    assert ("–", "held-out error", "not computed") in headline(quick)
+
+
+def test_simulation_lines_reach_the_last_of_a_dozen_readings() -> None:
+    torque = np.array([0.5, 2, 4, 6, 8, 10, 14, 18, 14, 10, 6, 2])
+    twist = 28 + 2.7 * torque
+    recording = cs.Recording.from_arrays(torque, twist)
+    data = ReportData(recording=recording, result=FAULTY, before_deg=twist, after_deg=twist)
+    loop = main_figure(data).panels[0].panel
+    line = next(s for s in loop.series if isinstance(s, Line))
+    assert not np.isnan(line.x).any()
+    assert line.x[-1] == 2
+
+
+def test_every_effect_says_what_to_look_at() -> None:
+    assert set(LOOK_AT) == {effect.name for effect in VOCABULARY}
 
 
 def test_nothing_is_drawn_outside_the_page(whole: ReportData) -> None:
@@ -134,7 +204,7 @@ def test_an_event_in_time_is_shown_over_time(whole: ReportData) -> None:
         share_of_excess=0.9,
     )
     result = replace(whole.result, mismatch=Mismatch(p_value=0.001, regions=(region,)))
-    first = svgs(page(replace(whole, result=result)))[0]
+    first = first_figure(page(replace(whole, result=result)))
     words = [element.text or "" for element in first.iter() if element.tag.endswith("text")]
     assert words.count("time (s)") == 2
 

@@ -54,6 +54,8 @@ STAGES = {
     "plausibility": set[str](),
     "refuse": FITTING | {"outcome", "provenance", "plausibility"},
     "sliding": {"outcome", "provenance"},
+    "series": {"outcome"},
+    "folder": {"diagnose", "series"},
     "calibrate": FITTING,
     "identify_effects": FITTING | {"calibrate"},
     "decide": FITTING | {"outcome", "provenance", "refuse"},

@@ -18,7 +18,7 @@ from cyclosweep.cli import (
     torque_twist,
     validate,
 )
-from cyclosweep.cli.output import fail
+from cyclosweep.cli.output import fail, survive_encoding
 from cyclosweep.errors import DesignError, InputError, SweepError
 
 __all__ = ["main"]
@@ -61,6 +61,7 @@ def _root(
 
 def main() -> None:
     """Run the command line; every error is one line and an exit status."""
+    survive_encoding()
     try:
         status = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
     except _UsageError as error:

@@ -9,16 +9,19 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from cyclosweep.atomic import write_text
-from cyclosweep.cli.output import AsJson, fail, interruptible, print_json, refuse_file
+from cyclosweep.cli.output import (
+    AsJson,
+    fail,
+    interruptible,
+    print_json,
+    print_tables,
+    refuse_file,
+)
 from cyclosweep.errors import DesignError, InputError
-
-if TYPE_CHECKING:
-    from cyclosweep.diagnosis import Diagnosis
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,7 @@ def diagnose(
     recordings: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RECORDING.csv...",
+            metavar="RECORDING.csv|FOLDER...",
             help="Measured torque and twist: CSV, Excel, MATLAB, TDMS, LabVIEW, JSON.",
         ),
     ],
@@ -74,12 +77,20 @@ def diagnose(
             "--quick", help="Verdict, effects and model alone: no report, self-check or held-out."
         ),
     ] = False,
+    workers: Annotated[
+        int, typer.Option("--workers", min=1, help="Processes that diagnose a folder.")
+    ] = 1,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Diagnose a folder anew, not only what is missing.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Find the physics that the simulation leaves out of a recording.
 
     Writes diagnosis.json, model.json and report.html: into DIR for one recording, into
-    DIR/<stem>/ each for several. Exit status 0 whatever the verdict, 2 when a file is bad input.
+    DIR/<stem>/ each for several. For a FOLDER every recording in it is diagnosed, and table.csv,
+    table.parquet and index.html compare them. Exit status 0 whatever the verdict, 2 when a file
+    is bad input.
     """
     from cyclosweep.design.drive import Drive
     from cyclosweep.recording.reading import stem
@@ -94,6 +105,9 @@ def diagnose(
         "without": without or (),
     }
     job = _Job(meta, png, quick, as_json, options)
+    if any(path.is_dir() for path in recordings):
+        _diagnose_folder(recordings, out, job, workers, fresh)
+        return
     contents: dict[str, Any] = {}
     bad = 0
     for path, folder in _folders(recordings, out).items():
@@ -133,7 +147,7 @@ def _diagnose_one(path: Path, folder: Path, job: _Job) -> dict[str, Any]:
     with _status(recording.name) as show:
         found = run(recording, progress=show, full=not job.quick, **job.options)
         if job.quick:
-            _write_quick(found, folder)
+            found.write(folder, report=False)
         else:
             show("writing the report")
             found.write(folder)
@@ -148,12 +162,60 @@ def _diagnose_one(path: Path, folder: Path, job: _Job) -> dict[str, Any]:
     return content
 
 
-def _write_quick(found: Diagnosis, folder: Path) -> None:
-    """Write diagnosis.json and model.json alone."""
-    folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / "diagnosis.json", found.to_json())
-    if found.model is not None:
-        write_text(folder / "model.json", found.model.to_json())
+def _diagnose_folder(
+    recordings: list[Path], out: Path, job: _Job, workers: int, fresh: bool
+) -> None:
+    """Diagnose all recordings of a folder and print what the table across them shows."""
+    from rich.table import Table
+
+    from cyclosweep.diagnosis.folder import diagnose_folder, recordings_in
+    from cyclosweep.report.wording import number
+
+    paths = [
+        path for each in recordings for path in (recordings_in(each) if each.is_dir() else [each])
+    ]
+    with interruptible(f"what is done stays in {out}; repeat the command to go on"):
+        series = diagnose_folder(
+            paths,
+            out,
+            meta=job.meta,
+            workers=workers,
+            resume=not fresh,
+            full=not job.quick,
+            progress=lambda text: print(text, file=sys.stderr),
+            **job.options,
+        )
+    if job.quiet:
+        trends = [{"condition": each.condition, "measure": each.measure, "pairs": each.pairs,
+                   "rising": each.rising, "p_value": each.p_value, "text": each.text,
+                   "levels": [{"value": level.value, "recordings": level.recordings,
+                               "mean": level.mean, "ci95": level.ci95} for level in each.levels]}
+                  for each in series.trends]  # fmt: skip
+        print_json({"table": series.table.to_dicts(), "trends": trends})
+    else:
+        table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+        shown = [name for name in ("recording", *series.conditions, "verdict", "friction_nm",
+                                   "play_deg", "loop_compliance_deg_per_nm")
+                 if name in series.table.columns]  # fmt: skip
+        for name in shown:
+            table.add_column(name.replace("_", " "), overflow="fold")
+        for row in series.table.to_dicts():
+            table.add_row(
+                *(
+                    number(row[n]) if isinstance(row[n], float) else str(row[n] or "–")
+                    for n in shown
+                )
+            )
+        print_tables([table])
+        for trend in series.trends:
+            print(trend.text)
+        print(f"Written: {out / 'index.html'}, table.csv, table.parquet")
+    if series.failed:
+        fail(
+            f"{series.failed} of {len(paths)} recordings have no diagnosis, see "
+            f"{out / 'table.csv'}",
+            2,
+        )
 
 
 @contextmanager

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
+import io
 import json
 import sys
 from collections.abc import Iterable, Iterator
@@ -19,6 +21,30 @@ if TYPE_CHECKING:
 __all__ = ["AsJson", "fail", "interruptible", "print_json", "print_tables", "refuse_file"]
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
+
+
+SPELT = {
+    "→": "->", "–": "-", "—": "-", "−": "-", "…": "..", "•": "*", "×": "x", "·": "|", "±": "+/-",
+    "∞": "inf", "²": "2", "σ": "sigma", "°": " deg", "µ": "u", "μ": "u", "\N{NO-BREAK SPACE}": " ",
+    "\N{NARROW NO-BREAK SPACE}": " ", "\N{THIN SPACE}": " ", "⁻": "^-",
+    **dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True)),
+}  # fmt: skip
+"""Signs that a terminal's encoding may lack, and what is printed then."""
+
+
+def survive_encoding() -> None:
+    """Print signs that the terminal's encoding lacks in other words instead of failing."""
+
+    def spelt(error: UnicodeError) -> tuple[str, int]:
+        if not isinstance(error, UnicodeEncodeError):
+            raise error
+        missing = error.object[error.start : error.end]
+        return "".join(SPELT.get(sign, "?") for sign in missing), error.end
+
+    codecs.register_error("cyclosweep.spelt", spelt)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper) and not stream.encoding.lower().startswith("utf"):
+            stream.reconfigure(errors="cyclosweep.spelt")
 
 
 def print_tables(renderables: Iterable[RenderableType]) -> None:

@@ -76,7 +76,9 @@ def compose(
     search = concluded.search
     recording = search.problem.recording
     answer = _answer(concluded, regions, repaired, verified)
-    remarks = doubts(answer.repaired.parameters, recording, float(drive.ratio))
+    remarks = doubts(
+        answer.baseline.parameters, answer.repaired.parameters, recording, float(drive.ratio)
+    )
     answer = replace(answer, plausibility=remarks)
     answer = replace(answer, statement=statement_of(answer))
     hidden = tuple(row.name for row in answer.not_testable)

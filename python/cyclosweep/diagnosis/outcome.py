@@ -115,13 +115,17 @@ class Diagnosis:
         """
         return write_report(self.report_data(), path)
 
-    def write(self, folder: str | Path) -> Path:
+    def write(self, folder: str | Path, *, report: bool = True) -> Path:
         """Write ``diagnosis.json``, ``model.json`` and ``report.html``, each whole or not at all.
+
+        What an earlier diagnosis left in the folder and this one does not write is removed.
 
         Parameters
         ----------
         folder : path
             Where; made if absent.
+        report : bool
+            Whether to write the page, too.
 
         Returns
         -------
@@ -135,8 +139,11 @@ class Diagnosis:
         """
         target = Path(folder)
         target.mkdir(parents=True, exist_ok=True)
+        for old in [target / "report.html", target / "model.json", *target.glob("pictures/*.png")]:
+            old.unlink(missing_ok=True)
         write_text(target / "diagnosis.json", self.to_json())
         if self.model is not None:
             write_text(target / "model.json", self.model.to_json())
-        self.report(target / "report.html")
+        if report:
+            self.report(target / "report.html")
         return target

@@ -166,14 +166,19 @@ def likely_mistakes(
 
 
 def doubts(
-    parameters: Mapping[str, CalibratedParameter], recording: Recording, ratio: float
+    before: Mapping[str, CalibratedParameter],
+    after: Mapping[str, CalibratedParameter],
+    recording: Recording,
+    ratio: float,
 ) -> tuple[Doubt, ...]:
     """Remark on compliance, free play and datum far from nominal, and on a modulo too small.
 
     Parameters
     ----------
-    parameters : mapping of str to CalibratedParameter
-        Calibrated parameters of the repaired model by name.
+    before, after : mapping of str to CalibratedParameter
+        Calibrated parameters of the published and of the repaired model by name: an effect may
+        take compliance or play from the line, or hide in it, so that a value is far only where
+        both say so.
     recording : Recording
         What was measured.
     ratio : float
@@ -184,8 +189,9 @@ def doubts(
     tuple of Doubt
         Empty where every value is near nominal.
     """
-    compliance, play = parameters["compliance_deg_per_nm"], parameters["free_play_deg"]
-    datum = parameters["datum_deg"].estimate
+    compliance = _nearer("compliance_deg_per_nm", before, after)
+    play = _nearer("free_play_deg", before, after)
+    datum = _nearer("datum_deg", before, after).estimate
     nominal, nominal_play = compliance.nominal or compliance.estimate, play.nominal or 0.0
     factor = compliance.estimate / nominal
     elastic = abs(nominal) * float(abs(recording.torque_nm).max())
@@ -215,6 +221,31 @@ def doubts(
     if modulo is not None:
         found.append(Doubt(quantity="angle_modulo", text=modulo.reason))
     return tuple(found)
+
+
+def _nearer(
+    name: str,
+    before: Mapping[str, CalibratedParameter],
+    after: Mapping[str, CalibratedParameter],
+) -> CalibratedParameter:
+    """Return of two estimates the one that is nearer to nominal.
+
+    Parameters
+    ----------
+    name : str
+        Which parameter.
+    before, after : mapping of str to CalibratedParameter
+        Parameters of the published and of the repaired model.
+
+    Returns
+    -------
+    CalibratedParameter
+    """
+    pair = (after[name], before.get(name, after[name]))
+    if name == "datum_deg" or not all(each.estimate > 0 for each in pair):
+        return min(pair, key=lambda each: abs(each.estimate - (each.nominal or 0.0)))
+    nominal = after[name].nominal or 1.0
+    return min(pair, key=lambda each: abs(log(each.estimate / nominal)))
 
 
 def _compliance(

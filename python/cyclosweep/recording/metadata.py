@@ -1,10 +1,18 @@
 """The TOML file beside a recording that says how to read it."""
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
 from cyclosweep.errors import InputError
@@ -183,6 +191,10 @@ class Metadata(_Strict):
         The rig was reset, so that the datum cannot remember earlier runs either.
     conditioning_runs, holdout_runs : list of int
         Runs that are simulated only, and runs that are kept for the verdict.
+    conditions : dict
+        What was set or varied in the test, by name: a step of preload, a lubricant.
+    conditions_from_name : str or None
+        Regular expression with named groups that reads conditions from the name of the file.
     table : TableOptions
         Where the table stands in its file, and how numbers are spelt.
     columns : dict
@@ -203,6 +215,8 @@ class Metadata(_Strict):
     reset_between_runs: bool = False
     conditioning_runs: list[int] = Field(default_factory=list)
     holdout_runs: list[int] = Field(default_factory=list)
+    conditions: dict[str, float | str] = Field(default_factory=dict)
+    conditions_from_name: str | None = None
     table: TableOptions = Field(default_factory=TableOptions)
     columns: dict[CanonicalName, Annotated[Column, BeforeValidator(_named_column)]] = Field(
         default_factory=dict
@@ -219,6 +233,22 @@ class Metadata(_Strict):
             except ValueError as error:
                 raise ValueError(f"columns.{name}: {error}") from None
         return self
+
+    @field_validator("conditions_from_name")
+    @classmethod
+    def _names_groups(cls, pattern: str | None) -> str | None:
+        if pattern is not None:
+            try:
+                groups = re.compile(pattern).groupindex
+            except re.error as error:
+                raise ValueError(
+                    f"found {pattern!r}, expected a regular expression ({error})"
+                ) from None
+            if not groups:
+                raise ValueError(
+                    f"found {pattern!r}, expected named groups such as (?P<preload>[0-9]+)"
+                )
+        return pattern
 
     @model_validator(mode="after")
     def _select_is_lists_and_limits(self) -> Self:

@@ -168,12 +168,14 @@ def nice_ticks(low: float, high: float, count: int = 6) -> Floats:
     span = high - low
     if not np.isfinite(span) or span <= 0:
         return np.array([low])
-    raw = span / count
-    magnitude = 10.0 ** np.floor(np.log10(raw))
-    step = next(m * magnitude for m in (1, 2, 2.5, 5, 10) if m * magnitude >= raw * 0.999)
-    ticks: Floats = (
-        np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1) * step + 0.0
-    )
+    ticks: Floats = np.zeros(0)
+    while len(ticks) < 2:  # one number alone is no scale
+        raw = span / count
+        magnitude = 10.0 ** np.floor(np.log10(raw))
+        step = next(m * magnitude for m in (1, 2, 2.5, 5, 10) if m * magnitude >= raw * 0.999)
+        first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
+        ticks = np.arange(first, last + 1) * step + 0.0
+        count += 1
     return ticks
 
 

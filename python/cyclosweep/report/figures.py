@@ -31,6 +31,12 @@ from cyclosweep.report.wording import ARCMIN, number
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+DEAD_ZONE_SHARE = 0.05
+"""Share of the largest torque below which a reading may be inside the dead zone."""
+FEW_BEYOND = 3.0
+"""Multiple of the residual that all but one in 200 samples keep, above which the largest do not
+set the scale."""
+
 NAME_MEASURED = "measured"
 NAME_BEFORE = "simulation before"
 NAME_AFTER = "simulation after"
@@ -70,7 +76,9 @@ def main_figure(data: ReportData) -> Figure:
     x, x_label = axis_values(recording, axis)
     sigma, _ = data.noise
     rows = shown[data.scored[shown]]
-    limit = 1.2 * max(np.abs(before[rows]).max(), np.abs(after[rows]).max(), 2 * sigma, 1e-9)
+    limit = 1.2 * max(_scale_of(data, rows, before), _scale_of(data, rows, after), 2 * sigma, 1e-9)
+    beyond = int(np.count_nonzero(np.maximum(abs(before), abs(after))[data.scored] > limit))
+    result = data.result
     chosen = located(data)[rows]
     inside, outside = rows[chosen], rows[~chosen]
     panels = [Placed(panel=loop, row=0, column=0, rows=2)]
@@ -81,15 +89,16 @@ def main_figure(data: ReportData) -> Figure:
         added = before - after
         line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
         repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
-    for row, (residual, colour, title, model) in enumerate(
+    for row, (residual, colour, title, model, fitted) in enumerate(
         (
-            (before, BEFORE, "Residual before", repair),
-            (after, AFTER, after_title, []),
+            (before, BEFORE, "Residual before", repair, result.baseline.rmse_deg),
+            (after, AFTER, after_title, [], result.repaired.rmse_deg),
         )
     ):
         rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))
+        words = f"{number(rmse)} deg rms" if fitted is None else f"fit error {number(fitted)} deg"
         panel = Panel(
-            title=f"{title}: {number(rmse)} deg rms over all samples",
+            title=f"{title}: {words}",
             x_label=x_label,
             y_label="residual (deg)",
             series=(
@@ -111,12 +120,32 @@ def main_figure(data: ReportData) -> Figure:
         caption="Before: the published model with calibrated stiffness, free play and datum. "
         f"After: the same{change}. Shaded: where simulation and recording "
         "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
-        f"deviations of the noise ({number(sigma)} deg).",
+        f"deviations of the noise ({number(sigma)} deg)."
+        + (
+            f" {beyond} of {np.count_nonzero(data.scored)} samples lie beyond the scale of the "
+            "residuals, most of them on the way through the dead zone."
+            if beyond
+            else ""
+        ),
         panels=tuple(panels),
         rows=2,
         columns=2,
         row_height=258,
     )
+
+
+def _scale_of(data: ReportData, rows: NDArray[np.int64], residual: Floats) -> float:
+    """Largest residual that the axis has to show: not that of readings inside the dead zone.
+
+    There the twist says nothing of the drive: a crossing that comes a moment early or late is
+    wrong by the whole play.
+    """
+    sizes = np.abs(residual[rows])
+    loaded = np.abs(data.recording.torque_nm[rows])
+    outside = loaded > DEAD_ZONE_SHARE * loaded.max()
+    shown = sizes[outside] if np.count_nonzero(outside) >= len(rows) // 2 else sizes
+    usual, largest = float(np.quantile(shown, 0.995)), float(shown.max())
+    return largest if largest < FEW_BEYOND * usual else usual
 
 
 def zoom_figure(data: ReportData) -> Figure:
@@ -197,7 +226,11 @@ def _shown_rows(data: ReportData) -> NDArray[np.int64]:
     residual = data.residual_before_deg
     key = data.recording.angle_deg if residual is None else residual
     assert key is not None
-    return thin(len(data.recording), key)
+    run = data.recording.run
+    ends = np.flatnonzero(np.diff(run, prepend=run[:1] - 1, append=run[-1:] + 1))
+    ends = np.unique(np.r_[ends[:-1], ends[1:] - 1])
+    chosen = thin(len(data.recording), key)
+    return np.union1d(chosen, ends) if len(ends) < len(chosen) else chosen
 
 
 def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Iterator[Series]:
@@ -226,7 +259,10 @@ def _with_breaks(
     measured = recording.angle_deg
     assert measured is not None
     torque, run = recording.torque_nm[rows], recording.run[rows]
-    jump = np.abs(np.diff(torque)) > 0.1 * np.ptp(recording.torque_nm)
+    step = np.abs(np.diff(torque))
+    # A dozen readings by hand are far apart, all of them.
+    usual = 3.0 * float(np.median(step)) if len(step) else 0.0
+    jump = step > max(0.1 * float(np.ptp(recording.torque_nm)), usual)
     left_out = np.diff(rows) > reach
     crossing = dead_zone_crossings(torque, measured[rows])
     cut = (run[1:] != run[:-1]) | jump | left_out | crossing

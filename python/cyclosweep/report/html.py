@@ -129,8 +129,9 @@ def _effects(data: ReportData) -> str:
     cards = "".join(
         f'<div class="card"><h3>{escape(name[:1].upper() + name[1:])}</h3>'
         f'<p class="size">{escape(size)}</p><p>{escape(physics)}</p>'
-        f'<p class="soft">{escape(evidence)}</p></div>'
-        for name, size, evidence, physics in sentences.effect_cards(data)
+        + (f"<p><b>Look at</b> {escape(where)}</p>" if where else "")
+        + f'<p class="soft">{escape(evidence)}</p></div>'
+        for name, size, evidence, physics, where in sentences.effect_cards(data)
     )
     return _section(
         "What was left out of the model", f'<div class="cards">{cards}</div>' if cards else ""

@@ -1,15 +1,15 @@
 // Read coordinates under the pointer, and hide or show a series by its legend entry.
 "use strict";
-for (const svg of document.querySelectorAll("figure svg")) {
-  for (const key of svg.querySelectorAll(".key")) {
+for (const figure of document.querySelectorAll("figure")) {
+  for (const key of figure.querySelectorAll(".key")) {
     key.addEventListener("click", () => {
       const off = key.classList.toggle("off");
-      for (const part of svg.querySelectorAll("." + key.dataset.for)) {
+      for (const part of figure.querySelectorAll("." + key.dataset.for)) {
         part.style.display = off ? "none" : "";
       }
     });
   }
-  for (const hit of svg.querySelectorAll(".hit")) {
+  for (const hit of figure.querySelectorAll(".hit")) {
     const at = hit.nextElementSibling;
     const xs = hit.dataset.x.split(" ").map(Number);
     const ys = hit.dataset.y.split(" ").map(Number);

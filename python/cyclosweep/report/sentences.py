@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from cyclosweep.report.data import ReportData
+from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import (
     angle,
     interval,
@@ -15,11 +16,26 @@ from cyclosweep.report.wording import (
 from cyclosweep.result import EffectParameter, FoundEffect, Region
 
 
-def effect_cards(data: ReportData) -> list[tuple[str, str, str, str]]:
-    """Name, size, evidence and physics of every accepted effect."""
+def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
+    """Name, size, evidence, physics and what to look at of every accepted effect."""
     return [
-        (plain(effect.name), _size(effect, data), _evidence(effect), effect.physics)
+        (
+            plain(effect.name),
+            _size(effect, data),
+            _evidence(effect),
+            effect.physics,
+            LOOK_AT.get(effect.name, ""),
+        )
         for effect in data.result.effects
+    ]
+
+
+def look_at(data: ReportData) -> list[str]:
+    """What to look at on the drive, by effect."""
+    return [
+        f"{plain(effect.name)}: {LOOK_AT[effect.name]}"
+        for effect in data.result.effects
+        if effect.name in LOOK_AT
     ]
 
 
@@ -59,6 +75,9 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
         (base.rmse_deg, repaired.rmse_deg, "fit error"),
     ):
         if before is None and after is None:
+            continue
+        if not before and not after:  # as with --quick: no error is exactly zero
+            rows.append(("–", label, "not computed"))
             continue
         if data.is_repaired and after is not None:
             rows.append((f"{number(before)} → {number(after)} deg", label, "before → after"))

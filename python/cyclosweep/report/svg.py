@@ -14,7 +14,6 @@ from cyclosweep.report.charts import (
     LegendEntry,
     Line,
     Panel,
-    Placed,
     Points,
     extent,
     legend,
@@ -29,32 +28,33 @@ WIDTH = 1120.0
 """Width of a figure [px]."""
 
 LEFT, RIGHT, RIGHT_SCALE, TOP, BOTTOM = 66.0, 20.0, 62.0, 30.0, 48.0
-LEGEND_ROW = 22.0
 NAMED_LEFT = 104.0
 
 
 def figure_svg(figure: Figure) -> str:
-    """Draw a figure.
+    """Draw a figure: a legend and a grid of panels, which stack where the page is narrow.
 
     Returns
     -------
     str
-        An ``svg`` element that scales with its container.
+        HTML with an ``svg`` element for each panel, which scales with its container.
     """
-    names, legend_rows = _legend(legend(figure))
-    maps = _first_cells(figure)
-    top = 8 + LEGEND_ROW * max(legend_rows, len(maps))
-    height = top + figure.rows * figure.row_height
-    parts = [
-        f'<svg viewBox="0 0 {WIDTH:g} {height:g}" role="img" aria-label="{escape(figure.title)}" '
-        'xmlns="http://www.w3.org/2000/svg">',
-        names,
-        *(_colour_scale(cells) for cells in maps),
-    ]
+    columns = WIDTH / figure.columns
+    parts = [_legend(legend(figure)), *(_colour_scale(cells) for cells in _first_cells(figure))]
+    parts.append(f'<div class="panels" style="--columns:{figure.columns}">')
     for place, placed in enumerate(figure.panels):
-        parts.append(_panel(figure, placed, top, f"{figure.key}-{place}"))
-    parts.append("</svg>")
-    return "".join(parts)
+        width, height = columns * placed.columns, figure.row_height * placed.rows
+        at = (
+            f"grid-row:{placed.row + 1:g}/span {placed.rows:g};"
+            f"grid-column:{placed.column + 1:g}/span {placed.columns:g}"
+        )
+        parts.append(
+            f'<svg viewBox="0 0 {width:g} {height:g}" style="{at}" role="img" '
+            f'aria-label="{escape(placed.panel.title or figure.title)}" '
+            'xmlns="http://www.w3.org/2000/svg">'
+            f"{_panel(placed.panel, width, height, f'{figure.key}-{place}')}</svg>"
+        )
+    return "".join(parts) + "</div>"
 
 
 class _Scale:
@@ -75,15 +75,11 @@ class _Scale:
         return pixels
 
 
-def _panel(figure: Figure, placed: Placed, top: float, key: str) -> str:
-    """Draw one pair of axes in its place."""
-    panel = placed.panel
-    cell_w, cell_h = WIDTH / figure.columns, figure.row_height
+def _panel(panel: Panel, width: float, height: float, key: str) -> str:
+    """Draw one pair of axes."""
     left = NAMED_LEFT if panel.y_names else LEFT
     right = RIGHT_SCALE if panel.right_factor else RIGHT
-    x0, x1 = placed.column * cell_w + left, (placed.column + placed.columns) * cell_w - right
-    y0 = top + placed.row * cell_h + TOP
-    y1 = top + (placed.row + placed.rows) * cell_h - BOTTOM
+    x0, x1, y0, y1 = left, width - right, TOP, height - BOTTOM
     x = _Scale(*extent(panel, "x"), x0, x1)
     y = _Scale(*extent(panel, "y"), y1, y0)
     clip = f"clip-{key}"
@@ -286,40 +282,35 @@ def diverging(share: float) -> str:
     return "#" + "".join(f"{c:02x}" for c in rgb)
 
 
-def _legend(entries: list[LegendEntry]) -> tuple[str, int]:
-    """Names of the series at the top, and how many rows they take; a click hides a series."""
+def _legend(entries: list[LegendEntry]) -> str:
+    """Names of the series above the panels; a click hides a series."""
     out = []
-    at, row = LEFT, 0
     for entry in entries:
-        width = 31 + 6.5 * len(entry.name) + 24
-        if at + width > WIDTH and at > LEFT:
-            at, row = LEFT, row + 1
-        y = 14 + row * LEGEND_ROW
         match entry.kind:
             case "line" | "dashed":
                 dash = ' stroke-dasharray="6 4"' if entry.kind == "dashed" else ""
                 sign = (
-                    f'<path d="M{at:.0f} {y:g}h24" stroke="{entry.colour}" stroke-width="2.2" '
+                    f'<path d="M0 7h24" stroke="{entry.colour}" stroke-width="2.2" '
                     f'fill="none"{dash}/>'
                 )
             case "points":
-                sign = f'<circle cx="{at + 12:.0f}" cy="{y:g}" r="3.6" fill="{entry.colour}"/>'
+                sign = f'<circle cx="12" cy="7" r="3.6" fill="{entry.colour}"/>'
             case "ring":
                 sign = (
-                    f'<circle cx="{at + 12:.0f}" cy="{y:g}" r="3.6" fill="#fff" '
-                    f'stroke="{entry.colour}" stroke-width="1.6"/>'
+                    f'<circle cx="12" cy="7" r="3.6" fill="#fff" stroke="{entry.colour}" '
+                    'stroke-width="1.6"/>'
                 )
             case "area":
                 sign = (
-                    f'<rect x="{at:.0f}" y="{y - 6:g}" width="24" height="12" '
-                    f'fill="{entry.colour}" fill-opacity="0.28"/>'
+                    f'<rect x="0" y="1" width="24" height="12" fill="{entry.colour}" '
+                    'fill-opacity="0.28"/>'
                 )
         out.append(
-            f'<g class="key" data-for="{_class(entry.name)}">{sign}'
-            f'<text x="{at + 31:.0f}" y="{y + 4:g}">{escape(entry.name)}</text></g>'
+            f'<span class="key" data-for="{_class(entry.name)}"><svg viewBox="0 0 24 14" '
+            f'aria-hidden="true" xmlns="http://www.w3.org/2000/svg">{sign}</svg>'
+            f"{escape(entry.name)}</span>"
         )
-        at += width
-    return "".join(out), row + 1 if entries else 0
+    return f'<div class="legend">{"".join(out)}</div>' if out else ""
 
 
 def _first_cells(figure: Figure) -> list[Cells]:
@@ -329,19 +320,17 @@ def _first_cells(figure: Figure) -> list[Cells]:
 
 
 def _colour_scale(cells: Cells) -> str:
-    """Colours of a map from -limit to +limit, at the top right."""
+    """Colours of a map from -limit to +limit."""
     steps, width = 21, 9.0
-    start = WIDTH - RIGHT - steps * width - 70
     boxes = "".join(
-        f'<rect x="{start + k * width:.1f}" y="8" width="{width:g}" height="12" '
+        f'<rect x="{k * width:g}" y="0" width="{width:g}" height="12" '
         f'fill="{diverging(2 * k / (steps - 1) - 1)}"/>'
         for k in range(steps)
     )
     return (
-        f'<text class="tick" text-anchor="end" x="{start - 6:.1f}" y="18">'
-        f"{number(-cells.limit)}</text>{boxes}"
-        f'<text class="tick" x="{start + steps * width + 6:.1f}" y="18">'
-        f"+{number(cells.limit)} {escape(cells.unit)}</text>"
+        f'<div class="legend scale">{number(-cells.limit)}<svg viewBox="0 0 {steps * width:g} 12" '
+        f'aria-hidden="true" xmlns="http://www.w3.org/2000/svg">{boxes}</svg>'
+        f"+{number(cells.limit)} {escape(cells.unit)}</div>"
     )
 
 

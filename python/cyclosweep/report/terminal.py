@@ -66,6 +66,7 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         yield _effects(result.effects)
     rest = sentences.unknown(data)
     for heading, lines in (
+        ("What to look at on the drive", sentences.look_at(data)),
         ("What the loop shows", sentences.findings(data)),
         ("What remains without a name", [rest] if rest else []),
         ("Where simulation and recording differ", sentences.regions(data)[:3]),

@@ -1,0 +1,276 @@
+"""Diagnosis of every recording of a folder, in parallel and resumable, with a table across them."""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+import cyclosweep._core as _core
+from cyclosweep.atomic import write_text
+from cyclosweep.design.drive import Drive
+from cyclosweep.diagnosis.diagnose import diagnose
+from cyclosweep.diagnosis.series import Row, columns_of, conditions_of, row_of, trends
+from cyclosweep.errors import DesignError, InputError
+from cyclosweep.recording import Recording
+from cyclosweep.recording.metadata import Metadata
+from cyclosweep.recording.reading import stem
+from cyclosweep.report.series_page import write_series_page
+from cyclosweep.result.series import Trend
+
+RECORDING_ENDINGS = (
+    ".csv", ".csv.gz", ".txt", ".lvm", ".tsv", ".parquet", ".xlsx", ".mat", ".tdms", ".json",
+    ".h5", ".hdf5",
+)  # fmt: skip
+"""Endings of the files of a folder that are taken as recordings."""
+ROW_FILE = "row.json"
+"""File of a finished recording's row, with the hash of all that it was made from."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """Diagnoses of the recordings of a folder.
+
+    Attributes
+    ----------
+    table : polars.DataFrame
+        A row for each recording: its conditions, verdict, effects and sizes with 95 % intervals;
+        where there is no diagnosis, ``status`` is ``"failed"`` and ``reason`` says why.
+    conditions : tuple of str
+        Columns of the table that the metadata name.
+    trends : tuple of Trend
+        What rises or falls with which condition.
+    """
+
+    table: pl.DataFrame
+    conditions: tuple[str, ...] = ()
+    trends: tuple[Trend, ...] = field(default=())
+
+    @property
+    def failed(self) -> int:
+        """Number of recordings without a diagnosis."""
+        return int((self.table["status"] != "ok").sum())
+
+
+def recordings_in(folder: str | Path) -> list[Path]:
+    """List the recordings of a folder, by name.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    folder = Path(folder)
+    found = sorted(
+        path
+        for path in folder.iterdir()
+        if path.is_file() and path.name.lower().endswith(RECORDING_ENDINGS)
+    )
+    if not found:
+        endings = ", ".join(RECORDING_ENDINGS)
+        raise InputError(f"{folder}: found no recording, expected files that end in {endings}")
+    return found
+
+
+def diagnose_folder(
+    recordings: str | Path | Sequence[Path],
+    out: str | Path,
+    *,
+    drive: Drive | None = None,
+    meta: str | Path | None = None,
+    workers: int = 1,
+    resume: bool = True,
+    full: bool = True,
+    progress: Callable[[str], None] | None = None,
+    **options: Any,
+) -> Series:
+    """Diagnose every recording of a folder and compare them.
+
+    Each is written into a folder of its name in `out`, as soon as it is done; the table across
+    them is ``table.csv``, ``table.parquet`` and ``index.html``. A recording that cannot be
+    diagnosed keeps its row, with the reason.
+
+    Parameters
+    ----------
+    recordings : path or sequence of paths
+        A folder, or the recordings themselves.
+    out : path
+        Folder of the results.
+    drive : Drive, optional
+        The drive; default: the one in the metadata.
+    meta : path, optional
+        How to read the files; default: the TOML file beside each.
+    workers : int
+        Processes that work at the same time.
+    resume : bool
+        Whether to keep results in `out` that were made from the same recording, metadata, drive,
+        options and version.
+    full : bool
+        False leaves out report, held-out proof, self-check and next experiment.
+    progress : callable, optional
+        Called with a line for each recording that is done.
+    **options
+        Further keyword arguments of :func:`cyclosweep.diagnose`.
+
+    Returns
+    -------
+    Series
+
+    Raises
+    ------
+    InputError
+        There is no recording, two share a name, or `workers` is below one.
+    """
+    paths = recordings_in(recordings) if isinstance(recordings, (str, Path)) else list(recordings)
+    if len({stem(path) for path in paths}) < len(paths):
+        raise InputError("recordings: two of one name, expected a folder for each in DIR")
+    if workers < 1:
+        raise InputError(f"workers: found {workers}, expected 1 or more")
+    target = Path(out)
+    target.mkdir(parents=True, exist_ok=True)
+    task = _Task(
+        drive,
+        None if meta is None else Path(meta),
+        target,
+        resume,
+        full,
+        options,
+    )
+    say = progress if progress is not None else _say_nothing
+    rows: dict[Path, Row] = {}
+    for path, row in _rows(paths, task, workers):
+        rows[path] = row
+        said = row["verdict"] if row["status"] == "ok" else row["reason"]
+        say(f"{len(rows)} of {len(paths)}: {stem(path)}: {said}")
+    ordered = [rows[path] for path in paths]
+    named = {name for path in paths for name in _condition_names(path, task.meta)}
+    series = _series(ordered, named)
+    _write(series, target)
+    return series
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What all recordings of a folder have in common; it travels to the workers."""
+
+    drive: Drive | None
+    meta: Path | None
+    out: Path
+    resume: bool
+    full: bool
+    options: dict[str, Any]
+
+
+def _rows(paths: Sequence[Path], task: _Task, workers: int) -> Iterator[tuple[Path, Row]]:
+    """Rows of the recordings as they are done."""
+    if workers == 1 or len(paths) == 1:
+        for path in paths:
+            yield path, _row(path, task)
+        return
+    with ProcessPoolExecutor(min(workers, len(paths)), mp_context=get_context("spawn")) as pool:
+        waiting = {pool.submit(_row, path, task): path for path in paths}
+        try:
+            for done in as_completed(waiting):
+                yield waiting[done], done.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True, wait=False)
+            raise
+
+
+def _row(path: Path, task: _Task) -> Row:
+    """Diagnose one recording, write its results and return its row; every failure is a row."""
+    row: Row = {"recording": stem(path)}
+    try:
+        meta = _metadata(path, task.meta)
+        row |= conditions_of(stem(path), meta)
+        folder = task.out / stem(path)
+        key = _key(path, task)
+        kept = _kept(folder, key) if task.resume else None
+        if kept is not None:
+            return kept
+        recording: Recording = Recording.read(path, task.meta)
+        found = diagnose(recording, task.drive, full=task.full, **task.options)
+        found.write(folder, report=task.full)
+        row |= row_of(found)
+        write_text(folder / ROW_FILE, json.dumps({"key": key, "row": row}, indent=1))
+    except Exception as error:  # one bad file must not stop the others
+        known = isinstance(error, (InputError, DesignError))
+        named = str(error) if known else f"{type(error).__name__}: {error}"
+        row |= {"status": "failed", "verdict": None, "reason": " ".join(named.split())}
+    return row
+
+
+def _metadata_path(path: Path, meta: Path | None) -> Path | None:
+    """Metadata file of a recording: the one given, or the one beside it."""
+    beside = path.with_name(f"{stem(path)}.toml")
+    return meta if meta is not None else beside if beside.is_file() else None
+
+
+def _metadata(path: Path, meta: Path | None) -> Metadata:
+    """Metadata of a recording."""
+    file = _metadata_path(path, meta)
+    return Metadata() if file is None else Metadata.read(file)
+
+
+def _condition_names(path: Path, meta: Path | None) -> list[str]:
+    """Conditions that a recording has; none where it cannot be read."""
+    try:
+        return list(conditions_of(stem(path), _metadata(path, meta)))
+    except InputError:
+        return []
+
+
+def _key(path: Path, task: _Task) -> str:
+    """Hash of all that a result depends on."""
+    digest = hashlib.sha256(path.read_bytes())
+    file = _metadata_path(path, task.meta)
+    if file is not None:
+        digest.update(file.read_bytes())
+        named = Metadata.read(file).drive
+        beside = None if named is None else file.parent / named
+        if beside is not None and beside.is_file():
+            digest.update(beside.read_bytes())
+    said = (task.drive, task.full, sorted(task.options.items()), _core.__version__)
+    digest.update(repr(said).encode())
+    return digest.hexdigest()
+
+
+def _kept(folder: Path, key: str) -> Row | None:
+    """Row of an earlier diagnosis of the same things; None where there is none."""
+    try:
+        kept = json.loads((folder / ROW_FILE).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    same = isinstance(kept, dict) and kept.get("key") == key
+    whole = same and (folder / "diagnosis.json").is_file()
+    return dict(kept["row"]) if whole else None
+
+
+def _series(rows: list[Row], named: set[str]) -> Series:
+    """Table and trends of all rows."""
+    names = columns_of(rows)
+    conditions = tuple(name for name in names if name in named)
+    varied = [name for name in conditions if len({row.get(name) for row in rows}) > 1]
+    if len({row.get("mean_temperature_c") for row in rows}) > 2:
+        varied.append("mean_temperature_c")
+    table = pl.DataFrame({name: [row.get(name) for row in rows] for name in names}, strict=False)
+    return Series(table=table, conditions=conditions, trends=tuple(trends(rows, varied)))
+
+
+def _write(series: Series, out: Path) -> None:
+    """Write the table and its page, each whole or not at all."""
+    write_text(out / "table.csv", series.table.write_csv())
+    half = out / "table.parquet.part"
+    series.table.write_parquet(half)
+    half.replace(out / "table.parquet")
+    rows = series.table.to_dicts()
+    write_series_page(out / "index.html", rows, series.conditions, series.trends)
+
+
+def _say_nothing(text: str) -> None:
+    """Take the place of a progress display."""

@@ -1,0 +1,247 @@
+"""Table across the recordings of a series, and whether a condition moves what was found."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.errors import InputError
+from cyclosweep.recording.metadata import Metadata
+from cyclosweep.report.straight_lines import straight_lines
+from cyclosweep.result.series import MEASURES, Level, Trend
+
+Row = dict[str, Any]
+
+PERMUTATIONS = 9999
+"""Random orders by which a trend is judged: the smallest probability is one in ten thousand."""
+CONFIDENCE = 0.95
+"""Confidence of the intervals."""
+
+
+def conditions_of(name: str, meta: Metadata) -> dict[str, float | str]:
+    """Return the conditions of a recording: those of its metadata and those in its name.
+
+    Parameters
+    ----------
+    name : str
+        Name of the recording's file without its endings.
+    meta : Metadata
+        With ``conditions`` and ``conditions_from_name``.
+
+    Returns
+    -------
+    dict of str to float or str
+
+    Raises
+    ------
+    InputError
+        The name does not have the form that ``conditions_from_name`` says.
+    """
+    found: dict[str, float | str] = {}
+    if meta.conditions_from_name is not None:
+        match = re.search(meta.conditions_from_name, name)
+        if match is None:
+            raise InputError(
+                f"{name}: the name does not have the form of conditions_from_name, "
+                f"{meta.conditions_from_name}"
+            )
+        found |= {key: _number(text) for key, text in match.groupdict().items() if text}
+    return found | meta.conditions
+
+
+def _number(text: str) -> float | str:
+    """Return the number that a text is, or the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def row_of(found: Diagnosis) -> Row:
+    """Row of one diagnosis in the table, without its conditions.
+
+    Parameters
+    ----------
+    found : Diagnosis
+        What was found.
+
+    Returns
+    -------
+    dict
+        Verdict, effects, sizes and calibrated values with 95 % intervals.
+    """
+    answer, recording = found.answer, found.recording
+    row: Row = {
+        "status": "ok",
+        "verdict": answer.verdict,
+        "effects": " + ".join(effect.name for effect in answer.effects),
+    }
+    if recording.temperature_c is not None:
+        row["mean_temperature_c"] = float(np.mean(recording.temperature_c))
+    lines = straight_lines(recording)
+    for column, values in (
+        ("friction_nm", [line.friction_nm for line in lines]),
+        ("play_deg", [line.play_deg for line in lines]),
+        ("loop_compliance_deg_per_nm", [line.compliance_deg_per_nm for line in lines]),
+    ):
+        mean, interval = mean_and_interval(values)
+        row[column] = mean
+        row[f"{column}_low"], row[f"{column}_high"] = interval or (None, None)
+    for name, value in answer.repaired.parameters.items():
+        row[f"fitted_{name}"] = value.estimate
+        row[f"fitted_{name}_std_error"] = value.std_error
+    row["rmse_deg"] = answer.repaired.rmse_deg
+    row["noise_deg"] = answer.noise.sigma_deg
+    for effect in answer.effects:
+        row[f"{effect.name}_deg"] = effect.size_deg.estimate
+        row[f"{effect.name}_deg_low"], row[f"{effect.name}_deg_high"] = effect.size_deg.ci95
+    row["remarks"] = "; ".join(doubt.text for doubt in answer.plausibility)
+    return row
+
+
+def mean_and_interval(
+    values: Sequence[float],
+) -> tuple[float | None, tuple[float, float] | None]:
+    """Mean with its 95 % interval by Student's t.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Independent readings.
+
+    Returns
+    -------
+    mean : float or None
+        None without values.
+    interval : (float, float) or None
+        None for fewer than two.
+
+    Examples
+    --------
+    >>> mean_and_interval([1.0])
+    (1.0, None)
+    """
+    if not values:
+        return None, None
+    mean = float(np.mean(values))
+    if len(values) < 2:
+        return mean, None
+    quantile = stats.t.ppf(0.5 + 0.5 * CONFIDENCE, len(values) - 1)
+    half = float(quantile * stats.sem(values))
+    return mean, (mean - half, mean + half)
+
+
+def trends(rows: Sequence[Row], conditions: Sequence[str], seed: int = 0) -> list[Trend]:
+    """Test every measure for a monotone trend with every numeric condition.
+
+    The statistic is Kendall's: pairs in rising order less pairs in falling order, counted among
+    recordings that agree in all other conditions (Mann 1945; stratified as by Hirsch and Slack
+    1982). Its probability is that among random orders within those groups.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Rows of the table.
+    conditions : sequence of str
+        Columns that are conditions.
+    seed : int
+        Seed of the random orders.
+
+    Returns
+    -------
+    list of Trend
+        One for each condition with three values or more and measure that six recordings have.
+    """
+    found: list[Trend] = []
+    for condition in conditions:
+        others = [name for name in conditions if name != condition]
+        for measure in MEASURES:
+            known = [
+                row
+                for row in rows
+                if _is_number(row.get(condition)) and _is_number(row.get(measure))
+            ]
+            if len({row[condition] for row in known}) < 3 or len(known) < 6:
+                continue
+            groups: dict[tuple[Any, ...], list[Row]] = {}
+            for row in known:
+                groups.setdefault(tuple(row.get(name) for name in others), []).append(row)
+            found.append(_trend(condition, measure, known, list(groups.values()), seed))
+    return _holm(found)
+
+
+def _trend(
+    condition: str, measure: str, known: Sequence[Row], groups: Sequence[Sequence[Row]], seed: int
+) -> Trend:
+    """One trend, its probability not corrected yet.
+
+    Parameters
+    ----------
+    condition, measure : str
+        Columns.
+    known : sequence of dict
+        Rows that have both.
+    groups : sequence of sequences of dict
+        The same rows, those together that agree in all other conditions.
+    seed : int
+        Seed of the random orders.
+
+    Returns
+    -------
+    Trend
+    """
+    rng = np.random.default_rng(seed)
+    rising = falling = 0
+    drawn = np.zeros(PERMUTATIONS, dtype=np.int64)
+    for group in groups:
+        x = np.array([row[condition] for row in group])
+        y = np.array([row[measure] for row in group])
+        order = np.sign(x[:, None] - x)[np.triu_indices(len(x), 1)]
+        steps = order * np.sign(y[:, None] - y)[np.triu_indices(len(y), 1)]
+        rising += int(np.count_nonzero(steps > 0))
+        falling += int(np.count_nonzero(steps < 0))
+        for k in range(PERMUTATIONS):
+            z = rng.permutation(y)
+            drawn[k] += int((order * np.sign(z[:, None] - z)[np.triu_indices(len(z), 1)]).sum())
+    extreme = np.count_nonzero(np.abs(drawn) >= abs(rising - falling))
+    levels = []
+    for value in sorted({float(row[condition]) for row in known}):
+        values = [float(row[measure]) for row in known if row[condition] == value]
+        mean, interval = mean_and_interval(values)
+        assert mean is not None  # a level has a recording
+        levels.append(Level(value=value, recordings=len(values), mean=mean, ci95=interval))
+    return Trend(
+        condition=condition,
+        measure=measure,
+        pairs=rising + falling,
+        rising=rising,
+        p_value=float((extreme + 1) / (PERMUTATIONS + 1)),
+        levels=tuple(levels),
+    )
+
+
+def _holm(found: Sequence[Trend]) -> list[Trend]:
+    """Correct the probabilities of all trends for their number (Holm 1979)."""
+    order = sorted(range(len(found)), key=lambda k: found[k].p_value)
+    corrected, largest = list(found), 0.0
+    for place, k in enumerate(order):
+        largest = max(largest, min(1.0, found[k].p_value * (len(found) - place)))
+        corrected[k] = replace(found[k], p_value=largest)
+    return corrected
+
+
+def _is_number(value: object) -> bool:
+    """Whether a cell holds a finite number."""
+    return isinstance(value, (int, float)) and math.isfinite(value)
+
+
+def columns_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Columns of all rows, in the order in which they first appear; remarks and reason last."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    last = [name for name in ("remarks", "reason") if name in names]
+    return [name for name in names if name not in last] + last

@@ -1,0 +1,194 @@
+"""The page across the recordings of a series: trends, means by condition, a row for each."""
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cyclosweep.atomic import write_text
+from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
+from cyclosweep.report.svg import figure_svg
+from cyclosweep.report.wording import interval, number, plain
+from cyclosweep.result.series import MEASURES, Trend
+
+Row = Mapping[str, Any]
+
+UNITS = {"friction_nm": "N m", "play_deg": "deg", "loop_compliance_deg_per_nm": "deg/(N m)"}
+"""Unit of each measure."""
+
+
+def write_series_page(
+    path: str | Path, rows: Sequence[Row], conditions: Sequence[str], trends: Sequence[Trend]
+) -> None:
+    """Write the page across the recordings of a series.
+
+    Parameters
+    ----------
+    path : path
+        File to write, beside the folders of the recordings.
+    rows : sequence of mappings
+        Rows of the table.
+    conditions : sequence of str
+        Columns that are conditions.
+    trends : sequence of Trend
+        What rises or falls with which condition.
+    """
+    style = files("cyclosweep.report").joinpath("style.css").read_text(encoding="utf-8")
+    done = sum(row["status"] == "ok" for row in rows)
+    body = [
+        '<header class="top"><h1>Series of recordings</h1><div class="meta">Torque–twist '
+        f"diagnosis<br>{done} of {len(rows)} diagnosed</div></header>",
+        _trends(rows, trends),
+        f"<section><h2>Every recording</h2>{_table(rows, conditions)}</section>",
+        _failed(rows),
+        '<p class="soft">Friction, play and compliance are read by straight lines through the '
+        "middle of each loop, between 20 and 80 % of the largest torque, with 95 % intervals by "
+        "Student's t over the runs of a recording, or over the recordings at one value of a "
+        "condition; friction is half the width of the loop in torque. Sizes of the effects are "
+        'those of the diagnosis. All columns: <a href="table.csv">table.csv</a>.</p>',
+    ]
+    write_text(
+        path,
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<title>Series of recordings</title><link rel="icon" href="data:,"><style>{style}</style>'
+        f"</head><body><main>{''.join(filter(None, body))}</main></body></html>\n",
+    )
+
+
+def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
+    """Sentences, pictures and means of all trends."""
+    parts = []
+    for condition in dict.fromkeys(trend.condition for trend in trends):
+        own = [trend for trend in trends if trend.condition == condition]
+        said = "".join(f"<li>{escape(trend.text)}</li>" for trend in own)
+        panels = tuple(
+            Placed(panel=_panel(rows, trend), row=0, column=k) for k, trend in enumerate(own)
+        )
+        figure = Figure(
+            key=f"trend-{condition}",
+            title=f"By {plain(condition)}",
+            caption="",
+            panels=panels,
+            columns=len(panels),
+            row_height=300,
+        )
+        head = "".join(f"<th>{escape(_named(trend.measure))}</th>" for trend in own)
+        lines = []
+        for k, level in enumerate(own[0].levels):
+            cells = "".join(_mean(trend, level.value) for trend in own)
+            lines.append(f"<tr><td>{number(level.value)}</td>{cells}</tr>")
+            del k
+        parts.append(
+            f"<section><h2>By {escape(plain(condition))}</h2><ul>{said}</ul>"
+            f"<figure>{figure_svg(figure)}<figcaption>Rings: recordings. Line and bars: mean of "
+            "each value with its 95 % interval.</figcaption></figure>"
+            f'<div class="scroll"><table><thead><tr><th>{escape(plain(condition))}</th>{head}'
+            f"</tr></thead><tbody>{''.join(lines)}</tbody></table></div></section>"
+        )
+    return "".join(parts)
+
+
+def _mean(trend: Trend, value: float) -> str:
+    """Cell with the mean at one value of the condition."""
+    level = next((each for each in trend.levels if each.value == value), None)
+    if level is None:
+        return "<td>–</td>"
+    ends = f" ({interval(level.ci95)})" if level.ci95 else ""
+    return f"<td>{escape(number(level.mean) + ends)}</td>"
+
+
+def _named(measure: str) -> str:
+    """Measure with its unit."""
+    return f"{MEASURES.get(measure, plain(measure))} ({UNITS.get(measure, '')})"
+
+
+def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
+    """One measure over one condition."""
+    known = [
+        row
+        for row in rows
+        if isinstance(row.get(trend.condition), float) and row.get(trend.measure) is not None
+    ]
+    x = np.array([row[trend.condition] for row in known], dtype=np.float64)
+    y = np.array([row[trend.measure] for row in known], dtype=np.float64)
+    at = np.array([level.value for level in trend.levels])
+    mean = np.array([level.mean for level in trend.levels])
+    bars_x, bars_y = [], []
+    for level in trend.levels:
+        if level.ci95 is not None:
+            bars_x += [level.value, level.value, np.nan]
+            bars_y += [*level.ci95, np.nan]
+    series: list[Series] = [
+        Points(x, y, "recording", BEFORE, 3.6, hollow=True),
+        Line(at, mean, "mean", AFTER, 1.8),
+    ]
+    if bars_x:
+        series.append(Line(np.array(bars_x), np.array(bars_y), "95 % interval", AFTER, 1.2))
+    return Panel(
+        title=MEASURES.get(trend.measure, plain(trend.measure)).capitalize(),
+        x_label=plain(trend.condition),
+        y_label=_named(trend.measure),
+        series=tuple(series),
+        x_names=tuple((float(value), number(float(value))) for value in at),
+    )
+
+
+def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
+    """Row of each recording: conditions, verdict, measures with intervals, effects with sizes."""
+    head = ["recording", *map(plain, conditions), "verdict", *map(_named, MEASURES), "effects"]
+    words = {0, len(conditions) + 1, len(head) - 1}
+
+    def cell(tag: str, place: int, content: str) -> str:
+        return f"<{tag}{' class=words' if place in words else ''}>{content}</{tag}>"
+
+    lines = []
+    for row in rows:
+        name = escape(str(row["recording"]))
+        link = f'<a href="{name}/report.html">{name}</a>' if row["status"] == "ok" else name
+        cells = [link, *(_value(row.get(condition)) for condition in conditions)]
+        cells.append(escape(str(row.get("verdict") or "no diagnosis")))
+        for measure in MEASURES:
+            low, high = row.get(f"{measure}_low"), row.get(f"{measure}_high")
+            ends = f" ({interval((low, high))})" if low is not None and high is not None else ""
+            cells.append(escape(number(row.get(measure)) + ends))
+        cells.append(escape("; ".join(_sizes(row))))
+        lines.append(
+            "<tr>" + "".join(cell("td", k, text) for k, text in enumerate(cells)) + "</tr>"
+        )
+    top = "".join(cell("th", k, escape(text)) for k, text in enumerate(head))
+    return (
+        f'<div class="scroll"><table><thead><tr>{top}</tr></thead>'
+        f"<tbody>{''.join(lines)}</tbody></table></div>"
+    )
+
+
+def _sizes(row: Row) -> list[str]:
+    """Effects of a recording with their sizes."""
+    names = str(row.get("effects") or "").split(" + ")
+    return [
+        f"{plain(name)} {number(row.get(f'{name}_deg'))} deg "
+        f"({interval((row[f'{name}_deg_low'], row[f'{name}_deg_high']))})"
+        for name in names
+        if name and row.get(f"{name}_deg_low") is not None
+    ]
+
+
+def _value(value: object) -> str:
+    """Value of a condition."""
+    return (
+        number(value) if isinstance(value, float) else escape("–" if value is None else str(value))
+    )
+
+
+def _failed(rows: Sequence[Row]) -> str:
+    """Recordings without a diagnosis, with the reason."""
+    items = "".join(
+        f"<li>{escape(str(row['recording']))}: {escape(str(row.get('reason') or ''))}</li>"
+        for row in rows
+        if row["status"] != "ok"
+    )
+    return f"<section><h2>Not diagnosed</h2><ul>{items}</ul></section>" if items else ""

@@ -1,0 +1,75 @@
+"""What a series of recordings shows: means at each value of a condition, and trends."""
+
+from dataclasses import dataclass
+
+MEASURES = {
+    "friction_nm": "friction",
+    "play_deg": "play",
+    "loop_compliance_deg_per_nm": "compliance",
+}
+"""What straight lines read of every recording, by column of the table."""
+CERTAIN = 0.05
+"""Largest probability, corrected for the number of trends looked at, at which a trend is stated."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Level:
+    """Mean of a measure over the recordings at one value of a condition.
+
+    Attributes
+    ----------
+    value : float
+        Value of the condition.
+    recordings : int
+        How many recordings.
+    mean : float
+        Mean of the measure.
+    ci95 : (float, float) or None
+        Interval of the mean by Student's t over recordings; None for a single one.
+    """
+
+    value: float
+    recordings: int
+    mean: float
+    ci95: tuple[float, float] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trend:
+    """Whether a measure rises or falls with a condition.
+
+    Attributes
+    ----------
+    condition, measure : str
+        Columns of the table.
+    pairs, rising : int
+        Pairs of recordings that differ in this condition and agree in all others, and how many
+        of them rise.
+    p_value : float
+        Probability of so uneven a count if the condition did nothing, both directions, after
+        Holm's correction for all trends of the series.
+    levels : tuple of Level
+        Means at each value.
+    """
+
+    condition: str
+    measure: str
+    pairs: int
+    rising: int
+    p_value: float
+    levels: tuple[Level, ...]
+
+    @property
+    def text(self) -> str:
+        """The trend in one sentence."""
+        falling = self.pairs - self.rising
+        what = MEASURES.get(self.measure, self.measure.replace("_", " "))
+        condition = self.condition.replace("_", " ")
+        counted = (
+            f"{max(self.rising, falling)} of {self.pairs} pairs of recordings that differ in it "
+            f"alone (p = {max(self.p_value, 1e-4):.2g})"
+        )
+        if self.p_value > CERTAIN:
+            return f"No trend of {what} with {condition} can be stated: in one order are {counted}."
+        verb = "rises" if self.rising > falling else "falls"
+        return f"{what.capitalize()} {verb} with {condition}: in this order are {counted}."

@@ -1,0 +1,154 @@
+"""Diagnosis of a folder: every recording has a row, what is done is kept, a dose reads as one."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.series import conditions_of, trends
+from cyclosweep.errors import InputError
+from cyclosweep.recording.metadata import Metadata
+from cyclosweep.report.straight_lines import straight_lines
+
+SHARED = Path(os.environ.get("CYCLOSWEEP_SHARED", Path(__file__).parents[3] / "shared"))
+PRELOAD = SHARED / "recordings" / "cycloidal-13-to-1" / "preload-series"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "measured-13-to-1"
+
+
+def write_loop(path: Path, friction_nm: float, play_deg: float, seed: int) -> None:
+    """Write two runs of a loop with friction and play at the input of the reference drive."""
+    rng = np.random.default_rng(seed)
+    branch = np.r_[0:9:100j, 9:-9:200j, -9:0:100j]
+    direction = np.sign(np.gradient(branch))
+    elastic = branch - friction_nm * direction
+    angle = np.sign(elastic) * play_deg + 2.7 * elastic
+    rows = ["torque_nm,angle_deg,run"]
+    for run in range(2):
+        noise = rng.normal(0.0, 0.1, len(branch))
+        rows += [f"{t:.4f},{a + n:.3f},{run}" for t, a, n in zip(branch, angle, noise, strict=True)]
+    path.write_text("\n".join(rows) + "\n")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Six recordings of three doses, and one that is no recording."""
+    place = tmp_path / "recordings"
+    place.mkdir()
+    for dose in (1, 2, 3):
+        for repeat in (1, 2):
+            name = f"dose{dose}_repeat{repeat}.csv"
+            write_loop(place / name, 0.3 + 0.2 * dose, 30.0 - 2.0 * dose, 10 * dose + repeat)
+    (place / "broken.csv").write_text("torque_nm,angle_deg\n1,2\n2,three\n")
+    (tmp_path / "how.toml").write_text(
+        'drive = "reference-87"\nconditions_from_name = "dose(?P<dose>[0-9])"\n'
+    )
+    return place
+
+
+def test_a_bad_file_keeps_its_row_and_does_not_stop_the_rest(folder: Path) -> None:
+    out = folder.parent / "out"
+    said: list[str] = []
+    series = cs.diagnose_folder(
+        folder, out, meta=folder.parent / "how.toml", full=False, progress=said.append
+    )
+    assert series.table.height == 7
+    assert series.failed == 1
+    broken = series.table.filter(pl.col("recording") == "broken").to_dicts()[0]
+    assert "conditions_from_name" in broken["reason"]
+    assert pl.read_parquet(out / "table.parquet").equals(series.table)
+    assert pl.read_csv(out / "table.csv").columns == series.table.columns
+    assert "Not diagnosed" in (out / "index.html").read_text(encoding="utf-8")
+    assert len(said) == 7
+    by_measure = {trend.measure: trend for trend in series.trends}
+    friction, play = by_measure["friction_nm"], by_measure["play_deg"]
+    assert (friction.rising, friction.pairs) == (12, 12)
+    assert (play.rising, play.pairs) == (0, 12)
+    assert "12 of 12 pairs" in friction.text
+    assert [round(level.mean, 1) for level in friction.levels] == [0.5, 0.7, 0.9]
+    interval = friction.levels[0].ci95
+    assert interval is not None
+    assert interval[0] < friction.levels[0].mean < interval[1]
+    # What is done is kept; what is changed is done again.
+    kept = {path: path.stat().st_mtime_ns for path in out.glob("*/diagnosis.json")}
+    write_loop(folder / "dose3_repeat2.csv", 0.9, 24.0, 99)
+    again = cs.diagnose_folder(folder, out, meta=folder.parent / "how.toml", full=False)
+    changed = [p.parent.name for p, t in kept.items() if p.stat().st_mtime_ns != t]
+    assert changed == ["dose3_repeat2"]
+    assert again.table.height == 7
+
+
+def test_two_workers_give_the_table_of_one(folder: Path) -> None:
+    for path in folder.glob("dose[23]*"):
+        path.unlink()
+    how = folder.parent / "how.toml"
+    one = cs.diagnose_folder(folder, folder.parent / "a", meta=how, full=False)
+    two = cs.diagnose_folder(folder, folder.parent / "b", meta=how, full=False, workers=2)
+    assert one.table.equals(two.table)
+
+
+def test_the_command_says_what_rises(folder: Path) -> None:
+    command = [sys.executable, "-m", "cyclosweep", "diagnose", str(folder), "--quick", "--json"]
+    command += ["--meta", str(folder.parent / "how.toml"), "--out", str(folder.parent / "out")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "1 of 7 recordings have no diagnosis" in done.stderr
+    found = json.loads(done.stdout)
+    assert len(found["table"]) == 7
+    assert any("12 of 12 pairs" in trend["text"] for trend in found["trends"])
+
+
+def test_nothing_rises_by_chance() -> None:
+    rng = np.random.default_rng(0)
+    false = 0
+    for _ in range(40):
+        rows = [
+            {"dose": float(k // 3), "friction_nm": rng.normal(), "play_deg": rng.normal()}
+            for k in range(12)
+        ]
+        false += any(trend.p_value <= 0.05 for trend in trends(rows, ["dose"]))
+    assert false <= 6  # one in twenty is expected
+
+
+def test_a_name_of_another_form_is_said() -> None:
+    meta = Metadata(conditions_from_name="(?P<step>[0-9])pre", conditions={"grease": "NLGI 2"})
+    assert conditions_of("conic_2pre6", meta) == {"step": 2.0, "grease": "NLGI 2"}
+    with pytest.raises(InputError, match="conditions_from_name"):
+        conditions_of("base", meta)
+    with pytest.raises(ValueError, match="named groups"):
+        Metadata(conditions_from_name="[0-9]pre")
+
+
+@pytest.mark.skipif(not PRELOAD.is_dir(), reason="the measured files are not here")
+def test_the_measured_preload_series_is_in_the_makers_order() -> None:
+    meta = Metadata.read(EXAMPLE / "preload-series.toml")
+    rows = []
+    for path in sorted(PRELOAD.glob("*.csv.gz")):
+        recording = cs.Recording.read(path, EXAMPLE / "preload-series.toml")
+        lines = straight_lines(recording)
+        rows.append(
+            {
+                **conditions_of(path.name, meta),
+                "friction_nm": float(np.mean([line.friction_nm for line in lines])),
+                "play_deg": float(np.mean([line.play_deg for line in lines])),
+            }
+        )
+    found = {
+        (trend.condition, trend.measure): trend
+        for trend in trends(rows, ["preload_step", "mesh_position"])
+    }
+    friction = found["preload_step", "friction_nm"]
+    play = found["preload_step", "play_deg"]
+    assert "Friction rises with preload step" in friction.text
+    assert "Play falls with preload step" in play.text
+    assert [level.mean for level in friction.levels] == sorted(x.mean for x in friction.levels)
+    # Steps 1 and 2 differ by less than their intervals; from there on each step takes play away.
+    assert play.levels[1].mean > play.levels[2].mean > play.levels[3].mean
+    assert play.levels[0].mean == pytest.approx(play.levels[1].mean, abs=0.05)
+    assert all(level.ci95 is not None for level in (*friction.levels, *play.levels))
