@@ -28,7 +28,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
-.PHONY: help env demo test test-rust test-python test-grid lint bench bench-ten-million docs golden coverage proof \
+.PHONY: help env demo test test-rust test-python test-grid lint bench bench-ten-million disc docs golden coverage proof \
 	proof-record proof-faint proof-contest proof-contest-poor same-diagnosis scoreboard clean
 .DEFAULT_GOAL := help
 
@@ -40,6 +40,7 @@ help:
 	@echo "make coverage  the Python tests once more, with the share of lines and branches they run"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make bench-ten-million  1e7 variants of the component model to Parquet, interrupted and resumed"
+	@echo "make disc    what a disc's own flexibility adds, by plane finite elements; about five minutes"
 	@echo "make proof   a sample of the proof, with another seed, beside the figures of record; about ten minutes"
 	@echo "make proof-record  the record across both generators and proof/rigs.md; one to three hours, goes on where it stopped"
 	@echo "make proof-faint  the record of faint effects and proof/proof.md; hours, goes on where it stopped"
@@ -99,6 +100,10 @@ bench: env
 # Some minutes; make bench then shows the record in docs/performance.md.
 bench-ten-million: env
 	$(BIN)/python benches/ten_million.py
+
+disc: env
+	$(BIN)/python -m pip install --quiet --group disc
+	cd benches && ../$(BIN)/python -m disc
 
 # The loops of a real drive take part where CYCLOSWEEP_MEASURED names the folder of their files.
 proof: env

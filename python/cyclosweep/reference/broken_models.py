@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import polars as pl
 
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.dynamics.train import Train
@@ -12,6 +15,7 @@ from cyclosweep.reference.model import Model, Results, assembled
 
 if TYPE_CHECKING:
     from cyclosweep.design.drive import Drive
+    from cyclosweep.design.loaded import LoadedState
 
 __all__ = ["BROKEN_MODELS", "broken_model"]
 
@@ -114,6 +118,11 @@ def _stiffness_not_reflected(_: Drive, results: Results) -> Results:
 def _degrees_for_arcminutes(_: Drive, results: Results) -> Results:
     stiffness = results["output_stiffness_nm_per_arcmin"]
     return {**results, "output_stiffness_nm_per_arcmin": 60 * stiffness}
+
+
+def _without_root(drive: Drive, torque: float, crank: float) -> LoadedState:
+    state = drive.loaded(torque, crank)
+    return replace(state, budget=state.budget.filter(pl.col("component") != "pin root"))
 
 
 def _play_taken_for_its_half(train: Train) -> Train:
@@ -243,6 +252,21 @@ BROKEN_MODELS: tuple[Model, ...] = (
         "degrees for arc minutes",
         "the stiffness in N m/deg where N m/arcmin is meant",
         change_results=_degrees_for_arcminutes,
+    ),
+    Model(
+        "crank in degrees",
+        "the crank's angle in rad is taken as one in degrees",
+        solve=lambda drive, torque, crank: drive.loaded(torque, math.radians(crank)),
+    ),
+    Model(
+        "tare left in",
+        "5 N m of tare are left in the torque on a loaded drive",
+        solve=lambda drive, torque, crank: drive.loaded(torque + 5.0, crank),
+    ),
+    Model(
+        "pin root left out",
+        "the parts of a loaded drive's twist without the pins' root",
+        solve=_without_root,
     ),
     Model(
         "play taken for its half",

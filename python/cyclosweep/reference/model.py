@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import cyclosweep._core as _core
 from cyclosweep.design.drive import CRITERIA, Criterion, Drive
+from cyclosweep.design.loaded import LoadedState
 from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import InputError
 
@@ -57,6 +58,8 @@ class Model:
         What is done to a drive's results; takes the drive that was computed and its results.
     change_train : callable
         What is done to every torsional train before it is computed.
+    solve : callable
+        How a drive under a torque [N m] at a crank angle [rad] is solved for.
     """
 
     name: str = "intact"
@@ -64,6 +67,9 @@ class Model:
     change_drive: Callable[[Drive], Drive] = lambda drive: drive
     change_results: Callable[[Drive, Results], Results] = lambda _, results: results
     change_train: Callable[[Train], Train] = lambda train: train
+    solve: Callable[[Drive, float, float], LoadedState] = lambda drive, torque, crank: drive.loaded(
+        torque, crank
+    )
 
     @property
     def broken(self) -> bool:
@@ -100,6 +106,20 @@ class Model:
             return defaultdict(lambda: math.nan)
         results = {name: math.nan if value is None else value for name, value in found.items()}
         return self.change_results(drive, results)
+
+    def loaded(self, drive: Drive, torque_nm: float, crank_rad: float) -> LoadedState:
+        """Equilibrium of a drive by the component model.
+
+        Parameters
+        ----------
+        drive : Drive
+            The drive.
+        torque_nm : float
+            Torque at the output [N m].
+        crank_rad : float
+            Angle of the eccentric [rad].
+        """
+        return self.solve(self.change_drive(drive), torque_nm, crank_rad)
 
     def shaft_compliance(self, drive: Drive) -> float:
         """Torsional compliance C_OS^t of a drive's shaft [rad/(N m)]."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import polars as pl
@@ -13,10 +14,13 @@ from cyclosweep.reference.facts import COUNTED
 from cyclosweep.reference.rows import broken_rows, broken_table, tally, validate
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, ConsoleOptions, RenderableType
     from rich.table import Table
 
 __all__ = ["report_json", "report_tables", "summary", "untouched", "validate"]
+
+NARROW = 90
+"""Columns of a terminal below which words of the tables would be cut."""
 
 
 def report_json(drive: Drive | None = None, *, broken_models: bool = False) -> dict[str, Any]:
@@ -104,20 +108,7 @@ def report_tables(
     """
     table = validate(drive)
     for (group,), rows in table.group_by("group", maintain_order=True):
-        shown = _table(str(group), "fact", ("published", "computed"), ("unit", "kind, basis"))
-        shown.add_column("ok")
-        for row in rows.iter_rows(named=True):
-            shown.add_row(
-                "\n".join(
-                    [row["fact"], *(f"[dim]{row[n]}[/]" for n in ("note", "explanation") if row[n])]
-                ),
-                _number(row["published"]),
-                _number(row["computed"]),
-                row["unit"],
-                row["kind"] + f"\n[dim]{row['mark']}[/]",
-                _outcome(row["ok"], row["counted"], row["explanation"]),
-            )
-        yield shown
+        yield _Group(str(group), rows)
     pulsation = criteria.pulsation(drive or Drive.reference_87())
     names = [name.replace("_", " ") for name in pulsation.columns]
     title = "McIver's claim: (greatest - least) / mean over one turn"
@@ -127,6 +118,56 @@ def report_tables(
     yield shown
     if broken_models:
         yield from _broken_tables()
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Rows of one group: a table, or in a narrow terminal one paragraph a row."""
+
+    title: str
+    rows: pl.DataFrame
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[RenderableType]:
+        if options.max_width < NARROW:
+            yield f"[italic]{self.title}[/]"
+            for row in self.rows.iter_rows(named=True):
+                yield _paragraph(row)
+            yield ""
+            return
+        shown = _table(self.title, "fact", ("published", "computed"), ("unit", "kind, basis"))
+        shown.add_column("ok")
+        for row in self.rows.iter_rows(named=True):
+            shown.add_row(
+                "\n".join([row["fact"], *_remarks(row)]),
+                _number(row["published"]),
+                _number(row["computed"]),
+                row["unit"],
+                row["kind"] + f"\n[dim]{row['mark']}[/]",
+                _outcome(row["ok"], row["counted"], row["explanation"]),
+            )
+        yield shown
+
+
+def _paragraph(row: dict[str, Any]) -> RenderableType:
+    """One row of the validation as lines that wrap between words."""
+    from rich.padding import Padding
+
+    outcome = _outcome(row["ok"], row["counted"], row["explanation"])
+    numbers = f"published {_number(row['published'])}, computed {_number(row['computed'])}"
+    unit = "" if row["unit"] == "1" else f" {row['unit']}"
+    lines = [
+        f"{row['fact']}: {outcome}",
+        f"  {numbers}{unit}",
+        f"  [dim]{row['kind']}, {row['mark']}[/]",
+    ]
+    text = "\n".join([*lines, *(f"  {remark}" for remark in _remarks(row))])
+    return Padding(text, (0, 0, 1, 0))
+
+
+def _remarks(row: dict[str, Any]) -> list[str]:
+    return [f"[dim]{row[name]}[/]" for name in ("note", "explanation") if row[name]]
 
 
 def _broken_tables() -> Iterable[RenderableType]:

@@ -1,0 +1,1 @@
+"""What a cycloidal disc's own flexibility adds to the twist, by plane finite elements."""
