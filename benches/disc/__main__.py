@@ -1,4 +1,4 @@
-"""Twist with rigid and with elastic discs, two drives, several meshes and positions: `make disc`."""
+"""Twist with rigid and with elastic discs, several meshes and positions: `make disc`."""
 
 from __future__ import annotations
 
