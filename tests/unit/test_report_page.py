@@ -184,6 +184,13 @@ def test_poor_recordings_have_a_page_too(recording: cs.Recording, predicted: boo
     svgs(text)
 
 
+def test_a_fault_shows_no_tables_of_nothing(whole: ReportData) -> None:
+    text = page(ReportData(recording=whole.recording, result=FAULTY))
+    assert "<table" not in text
+    assert "– deg" not in text
+    assert "Energy lost" not in text
+
+
 def test_a_programme_alone_has_a_page() -> None:
     program = cs.Recording.from_arrays(np.arange(30.0))
     assert "<svg" not in page(ReportData(recording=program, result=FAULTY))

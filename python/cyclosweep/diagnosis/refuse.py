@@ -96,7 +96,7 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
     likely = _likely(problem, ratio, float(drive.ratio)) if ratio > 0 else ()
     hint = "; check units, side and drive file"
     if likely:
-        hint = f": as where {' or '.join(likely)}"
+        hint = f", as where {' or '.join(likely)}"
     raise NoDiagnosisError(
         "DATA_FAULT",
         f"the compliance at the {problem.recording.side} shaft is {compliance:.4g} deg/(N m), "

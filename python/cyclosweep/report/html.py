@@ -56,7 +56,7 @@ def page(data: ReportData) -> str:
             _effects(data),
             _paragraph("What remains without a name", sentences.unknown(data)),
             _paragraph("Next experiment", sentences.next_experiment(data)),
-            _section("Loop", picture("zoom") + _table(tables.loop_table(data))),
+            _loop(data, picture("zoom")),
             _section("Residuals", picture("profiles")),
             _section("Residual map", picture("map")),
             _section("Parameters", _table(tables.parameter_table(data))),
@@ -138,6 +138,13 @@ def _effects(data: ReportData) -> str:
     )
 
 
+def _loop(data: ReportData, picture: str) -> str:
+    """Figures of the loop; nothing of a faulty recording, whose figures would mislead."""
+    if data.result.verdict == "DATA_FAULT":
+        return ""
+    return _section("Loop", picture + _table(tables.loop_table(data)))
+
+
 def _thinning(thinning: Thinning | None) -> str:
     """How many rows were fitted, and how they were made of the samples."""
     if thinning is None:
@@ -163,8 +170,9 @@ def _recording(data: ReportData) -> str:
         ("resolution of the angle",
          f"{number(recording.angle_resolution_deg)} deg" if recording.angle_resolution_deg
          else "continuous"),
-        ("noise", f"{number(noise.sigma_deg)} deg, lag-one autocorrelation "
-                  f"{number(noise.autocorrelation, 2)}"),
+        ("noise", "not estimated" if noise.sigma_deg is None
+         else f"{number(noise.sigma_deg)} deg, lag-one autocorrelation "
+              f"{number(noise.autocorrelation, 2)}"),
         ("history", "continuous over the runs" if recording.history == "continuous"
          else "play, slip and creep start afresh with each run"),
         ("conditioning runs", ", ".join(map(str, recording.conditioning_runs)) or "none"),
