@@ -41,8 +41,9 @@ def _lines(results: dict[str, Any]) -> list[str]:
     lines = [
         f"Measured on {machine['date']} by `{results['command']}`: {machine['cores']} cores "
         f"({machine['architecture']}), {machine['memory_gib']} GiB, load {machine['load']:.1f} "
-        f"when it began; {versions}. {results['count']:,} variants a run, median of "
-        f"{results['rounds']} alternating runs.",
+        f"when it began; {versions}. {results['count']:,} variants a run, "
+        f"{results['rounds']} alternating runs: the median, the fastest, and the rate of a core in "
+        "the run that took least processor time. Ratios compare the last two.",
         "",
         "![Variants a second](performance.png)",
         "",
@@ -119,7 +120,7 @@ def _rate_table(rates: dict[str, Any], against: str | None) -> list[str]:
         cells = [_millions(row[key]) for key in ("rate", "best", "rate_of_a_core")]
         line = f"| {name} | " + " | ".join(cells) + " |"
         if against is not None:
-            wall, cpu = (rates[against][key] / row[key] for key in ("rate", "rate_of_a_core"))
+            wall, cpu = (rates[against][key] / row[key] for key in ("best", "rate_of_a_core"))
             line += f" {wall:.2f} (by processor time {cpu:.2f}) |"
         lines.append(line)
     return lines
