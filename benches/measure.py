@@ -38,7 +38,7 @@ class Timing:
 
     @property
     def rate_of_a_core(self) -> float:
-        """Variants a second of processor time, from the run that took least: the least disturbed."""
+        """Variants a second of processor time, from the least disturbed run."""
         return self.variants / min(self.cpu_s)
 
 
