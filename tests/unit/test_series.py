@@ -12,7 +12,6 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.diagnosis.series import conditions_of, trends
-from cyclosweep.errors import InputError
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.straight_lines import straight_lines
 
@@ -121,7 +120,7 @@ def test_nothing_rises_by_chance() -> None:
 def test_a_name_of_another_form_is_said() -> None:
     meta = Metadata(conditions_from_name="(?P<step>[0-9])pre", conditions={"grease": "NLGI 2"})
     assert conditions_of("conic_2pre6", meta) == {"step": 2.0, "grease": "NLGI 2"}
-    with pytest.raises(InputError, match="conditions_from_name"):
+    with pytest.raises(cs.InputError, match="conditions_from_name"):
         conditions_of("base", meta)
     with pytest.raises(ValueError, match="named groups"):
         Metadata(conditions_from_name="[0-9]pre")

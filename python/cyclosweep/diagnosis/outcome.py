@@ -139,9 +139,10 @@ class Diagnosis:
         """
         target = Path(folder)
         target.mkdir(parents=True, exist_ok=True)
+        write_text(target / "diagnosis.json", self.to_json())
+        # Not before: where nothing can be written, the earlier answer stays whole.
         for old in [target / "report.html", target / "model.json", *target.glob("pictures/*.png")]:
             old.unlink(missing_ok=True)
-        write_text(target / "diagnosis.json", self.to_json())
         if self.model is not None:
             write_text(target / "model.json", self.model.to_json())
         if report:

@@ -245,6 +245,6 @@ def save_transient(run: Transient, path: Path) -> bool:
         figure = transient_figure(run)
     except InputError:
         return False
-    with unfinished(path) as part, part.open("wb") as file:
-        figure.savefig(file, format="png", dpi=130)
+    with unfinished(path) as part:
+        figure.savefig(part, format="png", dpi=130)
     return True

@@ -40,6 +40,9 @@ MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
 all rows is taken instead; and error of that structure, simulated on all rows, over that of the
 simulation fitted to them, from which the latter is taken whatever it does on the flanks."""
+DECIDED = 6.0
+"""Difference of two costs from which the evidence is strong (Kass and Raftery, J. Am. Stat.
+Assoc. 90, 1995: twice the logarithm of a ratio of 20)."""
 MOST_ADDED = 1
 """Effects added beyond the usual ones."""
 TRIED = 2
@@ -83,8 +86,11 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     if not offered:
         return None
     # Stretches that were left out guard against a structure that explains nothing. Between two of
-    # them they decide badly: one crossing of the dead zone that comes late outweighs all the rest.
-    best, fitted = min(offered, key=lambda pair: _cost(pair[0]))
+    # them they decide badly (one crossing of the dead zone that comes late outweighs all the rest),
+    # so that they are asked only where the likelihood does not decide.
+    least = min(_cost(each) for each, _ in offered)
+    close = [pair for pair in offered if _cost(pair[0]) < least + DECIDED]
+    best, fitted = min(close, key=lambda pair: left_out_error(pair[0]))
     if left_out_error(best) >= (1.0 - LEAST_GAIN) * left_out_error(base):
         return None
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
