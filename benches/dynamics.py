@@ -122,9 +122,7 @@ def _transients() -> dict[str, float]:
         for _ in range(core_calls):
             run(samples)
 
-    from cyclosweep.dynamics.referred import referred
-
-    core = referred(train)
+    core = train.core()
     angles = [sum(t for t, _ in core.static_twists([TORQUE] * 4)[k:]) for k in range(5)]
     times = np.array([0.0, 0.1])
     torques = np.array([[-TORQUE, 0, 0, 0, TORQUE]] * 2)

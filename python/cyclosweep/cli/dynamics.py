@@ -109,7 +109,7 @@ def shock(
 
     Writes transient.parquet, events.csv, shock.json and, where matplotlib is installed, shock.png.
     """
-    from cyclosweep.atomic import write_text
+    from cyclosweep.atomic import unfinished, write_text
     from cyclosweep.design.drive import Drive
     from cyclosweep.design.events import Event, transient
     from cyclosweep.dynamics.figures import save_transient
@@ -132,8 +132,10 @@ def shock(
         "impacts": len(run.impacts),
         "friction_losses_j": run.friction_losses_j,
     }
-    run.table.write_parquet(out / "transient.parquet")
-    run.events.write_csv(out / "events.csv")
+    with unfinished(out / "transient.parquet") as file:
+        run.table.write_parquet(file)
+    with unfinished(out / "events.csv") as file:
+        run.events.write_csv(file)
     write_text(out / "shock.json", json.dumps(content, indent=1) + "\n")
     pictured = save_transient(run, out / "shock.png")
     if as_json:

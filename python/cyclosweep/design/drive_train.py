@@ -9,6 +9,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from cyclosweep.design.loaded import loaded_state
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.dynamics.train import Train
@@ -199,9 +200,10 @@ def _discs(drive: PublishedDrive) -> tuple[float, float]:
 def _component_springs(drive: PublishedDrive) -> tuple[TrainSpring, TrainSpring]:
     """Mesh at the input shaft, and output pins with the shaft at the output."""
     loads = [share * drive.output_torque_nm for share in LOADS]
+    study, parts = drive.accepted("full")
+    states = [loaded_state(study, parts, load, 0.0, "full") for load in loads]
     budgets = [
-        dict(drive.loaded(load).budget.select("component", "twist_arcmin").iter_rows())
-        for load in loads
+        dict(state.budget.select("component", "twist_arcmin").iter_rows()) for state in states
     ]
 
     def twists(names: Sequence[str]) -> list[float]:

@@ -15,8 +15,7 @@ from cyclosweep.design.drive_train import TrainParts
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import NonNegative, Positive
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
-from cyclosweep.dynamics.referred import Brake
-from cyclosweep.dynamics.spring import SlipElement
+from cyclosweep.dynamics.spring import Brake, SlipElement
 from cyclosweep.dynamics.torques import Torques
 from cyclosweep.dynamics.train import Train
 from cyclosweep.dynamics.transient import Transient

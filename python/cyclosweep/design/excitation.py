@@ -7,6 +7,7 @@ import math
 import numpy as np
 import polars as pl
 
+from cyclosweep.design.loaded import loaded_state
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.dynamics.modes import Modes
 
@@ -70,8 +71,11 @@ def _amplitudes(drive: PublishedDrive, orders: list[float], samples: int) -> lis
     """Amplitudes of waves fitted to the loaded twist over one turn of the crank [arcmin]."""
     if drive.part_study().explain(drive.study(), 0) is not None:
         return [None] * len(orders)
+    study, parts = drive.accepted("full")
     crank = np.linspace(0.0, math.tau, samples, endpoint=False)
-    twist = np.array([drive.loaded(crank_rad=float(angle)).twist_arcmin for angle in crank])
+    torque = drive.output_torque_nm
+    states = [loaded_state(study, parts, torque, float(angle), "full") for angle in crank]
+    twist = np.array([state.twist_arcmin for state in states])
     waves = [np.ones(samples)]
     for order in orders:
         waves += [np.cos(order * crank), np.sin(order * crank)]

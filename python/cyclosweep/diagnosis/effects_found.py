@@ -155,9 +155,7 @@ def _strength(search: Search, fitted: FittedStructure, index: int) -> float:
     float
         In units of the noise.
     """
-    use = search.problem.fitted
-    _, weight = search.noise.residual(search.problem.angle_deg[use], fitted.mean_deg[use])
-    signal = search.noise.design(fitted.contribution(index)[use], weight)
+    signal = fitted.whitened_contribution(index, search.noise)
     known = list(range(search.problem.line_columns))
     for k, term in enumerate(fitted.terms):
         if k != index and not term.slips:

@@ -12,14 +12,14 @@ from typing import Any
 import polars as pl
 
 import cyclosweep._core as _core
-from cyclosweep.atomic import write_text
+from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.diagnose import diagnose
 from cyclosweep.diagnosis.series import Row, columns_of, conditions_of, row_of, trends
 from cyclosweep.errors import DesignError, InputError
 from cyclosweep.recording import Recording
+from cyclosweep.recording.columns import metadata_path, stem
 from cyclosweep.recording.metadata import Metadata
-from cyclosweep.recording.reading import stem
 from cyclosweep.report.series_page import write_series_page
 from cyclosweep.result.series import Trend
 
@@ -189,7 +189,7 @@ def _row(path: Path, task: _Task) -> Row:
         meta = _metadata(path, task.meta)
         row |= conditions_of(stem(path), meta)
         folder = task.out / stem(path)
-        key = _key(path, task)
+        key = _key(path, task, meta)
         kept = _kept(folder, key) if task.resume else None
         if kept is not None:
             return kept
@@ -205,15 +205,9 @@ def _row(path: Path, task: _Task) -> Row:
     return row
 
 
-def _metadata_path(path: Path, meta: Path | None) -> Path | None:
-    """Metadata file of a recording: the one given, or the one beside it."""
-    beside = path.with_name(f"{stem(path)}.toml")
-    return meta if meta is not None else beside if beside.is_file() else None
-
-
 def _metadata(path: Path, meta: Path | None) -> Metadata:
     """Metadata of a recording."""
-    file = _metadata_path(path, meta)
+    file = metadata_path(path, meta)
     return Metadata() if file is None else Metadata.read(file)
 
 
@@ -225,14 +219,13 @@ def _condition_names(path: Path, meta: Path | None) -> list[str]:
         return []
 
 
-def _key(path: Path, task: _Task) -> str:
+def _key(path: Path, task: _Task, meta: Metadata) -> str:
     """Hash of all that a result depends on."""
     digest = hashlib.sha256(path.read_bytes())
-    file = _metadata_path(path, task.meta)
+    file = metadata_path(path, task.meta)
     if file is not None:
         digest.update(file.read_bytes())
-        named = Metadata.read(file).drive
-        beside = None if named is None else file.parent / named
+        beside = None if meta.drive is None else file.parent / meta.drive
         if beside is not None and beside.is_file():
             digest.update(beside.read_bytes())
     said = (task.drive, task.full, sorted(task.options.items()), _core.__version__)
@@ -265,9 +258,8 @@ def _series(rows: list[Row], named: set[str]) -> Series:
 def _write(series: Series, out: Path) -> None:
     """Write the table and its page, each whole or not at all."""
     write_text(out / "table.csv", series.table.write_csv())
-    half = out / "table.parquet.part"
-    series.table.write_parquet(half)
-    half.replace(out / "table.parquet")
+    with unfinished(out / "table.parquet") as file:
+        series.table.write_parquet(file)
     rows = series.table.to_dicts()
     write_series_page(out / "index.html", rows, series.conditions, series.trends)
 

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import log, pi
+from math import log
 
 from cyclosweep.recording import Recording
+from cyclosweep.recording.units import factor_of
 from cyclosweep.result import CalibratedParameter, Doubt
 
 FAR_COMPLIANCE = 2.0
@@ -53,30 +54,20 @@ class Mistake:
     rare: bool = False
 
 
-ANGLE_UNITS = {
-    "arcmin": (60.0, "60"),
-    "arcsec": (3600.0, "3600"),
-    "mrad": (1000.0 * pi / 180.0, "17.45"),
-    "rad": (pi / 180.0, "57.3"),
-    "turns": (1.0 / 360.0, "360"),
-}
-"""How many of a unit are one degree, and the factor in words."""
+ANGLE_UNITS = {"arcmin": "60", "arcsec": "3600", "mrad": "17.45", "rad": "57.3", "turns": "360"}
+"""Units that are read as degrees, with the factor in words."""
 TORQUE_UNITS = {
-    "lbf in": (8.8507, "8.85"),
-    "lbf ft": (0.73756, "1.356"),
-    "kgf m": (1.0 / 9.80665, "9.81"),
-    "kgf cm": (10.1972, "10.2"),
-    "N cm": (100.0, "100"),
-    "N mm": (1000.0, "1000"),
-    "kN m": (1e-3, "1000"),
+    "lbf in": "8.85",
+    "lbf ft": "1.356",
+    "kgf m": "9.81",
+    "kgf cm": "10.2",
+    "N cm": "100",
+    "N mm": "1000",
+    "kN m": "1000",
 }
-"""How many of a unit are one newton metre, and the factor in words."""
-TWICE = {
-    "angle": {"rad": (180.0 / pi, "57.3"), "turns": (360.0, "360")},
-    "torque": {"lbf in": (8.8507, "8.85"), "lbf ft": (0.73756, "1.356"), "N mm": (1000.0, "1000")},
-}
-"""Units that are converted by mistake where a file is in deg and N m already, and the factor on
-the compliance."""
+"""Units that are read as newton metres, with the factor in words."""
+TWICE = {"angle": ("rad", "turns"), "torque": ("lbf in", "lbf ft", "N mm")}
+"""Units that are converted by mistake where a file is in deg and N m already."""
 
 
 def mistakes(ratio: float) -> tuple[Mistake, ...]:
@@ -91,19 +82,33 @@ def mistakes(ratio: float) -> tuple[Mistake, ...]:
     -------
     tuple of Mistake
     """
+    degrees = {unit: factor_of(unit, "angle_deg") for unit in ANGLE_UNITS}
+    newton_metres = {unit: factor_of(unit, "torque_nm") for unit in TORQUE_UNITS}
     found = [
-        Mistake(f"the angle is in {unit} and was read as deg (factor {text})", many, many)
-        for unit, (many, text) in ANGLE_UNITS.items()
+        Mistake(
+            f"the angle is in {unit} and was read as deg (factor {text})",
+            1.0 / degrees[unit],
+            1.0 / degrees[unit],
+        )
+        for unit, text in ANGLE_UNITS.items()
     ]
     found += [
-        Mistake(f"the torque is in {unit} and was read as N m (factor {text})", 1.0 / many, 1.0)
-        for unit, (many, text) in TORQUE_UNITS.items()
+        Mistake(
+            f"the torque is in {unit} and was read as N m (factor {text})", newton_metres[unit], 1.0
+        )
+        for unit, text in TORQUE_UNITS.items()
     ]
-    for quantity, unit, (factor, text) in (
-        (quantity, *each) for quantity, units in TWICE.items() for each in units.items()
-    ):
-        words = f"the {quantity} was converted from {unit} and did not need it (factor {text})"
-        found.append(Mistake(words, factor, factor if quantity == "angle" else 1.0, True))
+    twice = "the {} was converted from {} and did not need it (factor {})"
+    found += [
+        Mistake(twice.format("angle", unit, ANGLE_UNITS[unit]), degrees[unit], degrees[unit], True)
+        for unit in TWICE["angle"]
+    ]
+    found += [
+        Mistake(
+            twice.format("torque", unit, TORQUE_UNITS[unit]), 1.0 / newton_metres[unit], 1.0, True
+        )
+        for unit in TWICE["torque"]
+    ]
     at = f"the ratio, {ratio:g}"
     found += [
         Mistake(f"measured at the output, and side says input (the ratio squared, {ratio**2:g})",

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+import cyclosweep._core as _core
 from cyclosweep.dynamics.checks import numbered, same_length, spring_of
-from cyclosweep.dynamics.spring import TrainSpring
+from cyclosweep.dynamics.spring import Brake, TrainSpring
 from cyclosweep.errors import InputError
 
 __all__ = ["Chain"]
@@ -88,6 +89,41 @@ class Chain:
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
+        self.core()
+
+    def core(self, brake: Brake | None = None) -> _core.Train:
+        """Return the core's train, everything referred to the first shaft.
+
+        Parameters
+        ----------
+        brake : Brake, optional
+            Friction between one node and the ground, as one more spring.
+
+        Returns
+        -------
+        cyclosweep._core.Train
+
+        Raises
+        ------
+        InputError
+            For numbers that no train can have.
+        """
+        at_nodes = self.node_ratios
+        last = len(self.inertias_kg_m2) - 1
+        rows = []
+        for k, (spring, ratio) in enumerate(zip(self.springs, self.spring_ratios, strict=True)):
+            rows.append(_row(k, k + 1 if k < last else None, spring.scaled(float(ratio))))
+        if brake is not None:
+            friction = TrainSpring((), (0.0,), 0.0, (brake.element,))
+            rows.append(_row(brake.node, None, friction.scaled(float(at_nodes[brake.node]))))
+        inertias = [
+            inertia / float(ratio) ** 2
+            for inertia, ratio in zip(self.inertias_kg_m2, at_nodes, strict=True)
+        ]
+        try:
+            return _core.Train(inertias, rows, self.damping_s)
+        except ValueError as error:
+            raise InputError(f"train: {error}") from None
 
     @property
     def node_ratios(self) -> Reals:
@@ -141,25 +177,6 @@ class Chain:
             return name % count
         raise InputError(f"node {name!r}: no such node, expected {', '.join(self.names)}")
 
-    def static_torques_nm(self, torques_nm: Mapping[str | int, float]) -> Reals:
-        """Torque of each spring under constant torques.
-
-        Parameters
-        ----------
-        torques_nm : mapping
-            Torque on each node [N m].
-
-        Returns
-        -------
-        ndarray, shape (springs,)
-            On the springs' own shafts [N m]; torques out of balance accelerate a free train as
-            one.
-        """
-        values = np.zeros(len(self.names))
-        for name, torque in torques_nm.items():
-            values[self.node(name)] = torque
-        return self.carried(values / self.node_ratios) * self.spring_ratios
-
     def carried(self, torques_nm: Reals) -> Reals:
         """Torque of each spring under constant torques, all referred to the first shaft.
 
@@ -176,3 +193,16 @@ class Chain:
         inertias = np.array(self.inertias_kg_m2) / self.node_ratios**2
         rate = 0.0 if self.grounded else float(torques_nm.sum() / inertias.sum())
         return np.cumsum(torques_nm - rate * inertias)[: len(self.springs)]
+
+
+def _row(
+    start: int, end: int | None, spring: TrainSpring
+) -> tuple[int, int | None, list[float], list[float], float, list[tuple[float, float, float]]]:
+    return (
+        start,
+        end,
+        list(spring.knees_rad),
+        list(spring.slopes_nm_per_rad),
+        spring.unloaded_rad,
+        [(e.stiffness_nm_per_rad, e.limit_nm, e.load_factor) for e in spring.friction],
+    )

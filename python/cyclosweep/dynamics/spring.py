@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from cyclosweep.errors import InputError
 
-__all__ = ["SlipElement", "TrainSpring"]
+__all__ = ["Brake", "SlipElement", "TrainSpring"]
 
 Reals = npt.NDArray[np.float64]
 
@@ -36,6 +36,21 @@ class SlipElement(NamedTuple):
     stiffness_nm_per_rad: float
     limit_nm: float
     load_factor: float = 0.0
+
+
+class Brake(NamedTuple):
+    """Friction between a node and the ground.
+
+    Attributes
+    ----------
+    node : int
+        Number of the node, from 0.
+    element : SlipElement
+        Its torque and how stiffly it holds, on the node's own shaft.
+    """
+
+    node: int
+    element: SlipElement
 
 
 @dataclass(frozen=True)

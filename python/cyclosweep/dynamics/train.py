@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +11,7 @@ import numpy.typing as npt
 from cyclosweep.dynamics.chain import Chain
 from cyclosweep.dynamics.checks import same_length
 from cyclosweep.dynamics.modes import Modes
-from cyclosweep.dynamics.referred import Brake, referred
-from cyclosweep.dynamics.spring import TrainSpring
+from cyclosweep.dynamics.spring import Brake
 from cyclosweep.dynamics.torques import Torques, knots
 from cyclosweep.dynamics.transient import Transient, follow
 from cyclosweep.errors import InputError
@@ -23,7 +21,6 @@ __all__ = ["Train"]
 Reals = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, init=False)
 class Train(Chain):
     """A chain of inertias joined by springs, frozen and checked.
 
@@ -65,32 +62,6 @@ class Train(Chain):
     [0.0, 123.6658, 202.6583]
     """
 
-    def __init__(
-        self,
-        inertias_kg_m2: Sequence[float],
-        stiffnesses_nm_per_rad: Sequence[float] = (),
-        gaps_rad: Sequence[float] | None = None,
-        grounded: bool = False,
-        *,
-        ratios: Sequence[float] | None = None,
-        names: Sequence[str] | None = None,
-        springs: Sequence[TrainSpring] | None = None,
-        spring_names: Sequence[str] | None = None,
-        damping_s: float = 0.0,
-    ) -> None:
-        super().__init__(
-            inertias_kg_m2,
-            stiffnesses_nm_per_rad,
-            gaps_rad,
-            grounded,
-            ratios=ratios,
-            names=names,
-            springs=springs,
-            spring_names=spring_names,
-            damping_s=damping_s,
-        )
-        referred(self)
-
     def modes(self, torque_nm: float = 0.0, *, locked: bool = False) -> Modes:
         """Natural frequencies around a load that keeps the play closed.
 
@@ -119,7 +90,7 @@ class Train(Chain):
         train = self.locked() if locked else self
         stiffnesses = train.stiffnesses_at(torque_nm)
         at_nodes, at_springs = train.node_ratios, train.spring_ratios
-        squares, shapes, twists = referred(train).modes(list(stiffnesses / at_springs**2))
+        squares, shapes, twists = train.core().modes(list(stiffnesses / at_springs**2))
         angles = np.array(shapes).T
         largest = np.abs(angles).argmax(axis=1)
         scale = angles[np.arange(len(angles)), largest][:, None]

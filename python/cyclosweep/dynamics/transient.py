@@ -10,7 +10,7 @@ import numpy.typing as npt
 import polars as pl
 
 from cyclosweep.dynamics.chain import Chain
-from cyclosweep.dynamics.referred import Brake, referred
+from cyclosweep.dynamics.spring import Brake
 from cyclosweep.errors import InputError
 
 __all__ = ["Transient", "follow"]
@@ -139,7 +139,7 @@ def follow(
     Transient
     """
     nodes, springs = train.node_ratios, train.spring_ratios
-    core = referred(train, brake)
+    core = train.core(brake)
     preload = train.carried(before / nodes)
     extra = [] if brake is None else [0.0]
     start = core.static_twists([*preload, *extra])

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from cyclosweep.errors import InputError
+from cyclosweep.recording.messages import shown
 from cyclosweep.recording.samples import Floats
 
 __all__ = ["MISSING", "clock_seconds", "is_clock", "is_number", "number_in", "spelt_number"]
@@ -83,20 +85,29 @@ def is_clock(cell: object) -> bool:
     return bool(match and (match["date"] or match["h"]))
 
 
-def clock_seconds(cells: list[Any]) -> tuple[Floats, int | None]:
+def clock_seconds(cells: list[Any], rows: str, first: int, column: str) -> Floats:
     """Turn times into seconds since the first.
 
     Parameters
     ----------
     cells : list
         Text or objects of `datetime`; None or empty text is a missing value.
+    rows : str
+        File and the word for its rows, for messages.
+    first : int
+        Number of the first row.
+    column : str
+        Name of the column.
 
     Returns
     -------
-    seconds : ndarray of float, shape (n,)
-        Times of day without a date go on past midnight.
-    bad : int or None
-        Place of the first cell that is no time; None where all are.
+    ndarray of float, shape (n,)
+        Times of day without a date go on past midnight [s].
+
+    Raises
+    ------
+    InputError
+        For a cell that is no time.
     """
     instants: list[float] = []
     dated = True
@@ -106,7 +117,10 @@ def clock_seconds(cells: list[Any]) -> tuple[Floats, int | None]:
             continue
         instant = _instant(cell)
         if instant is None:
-            return np.array([]), place
+            raise InputError(
+                f"{rows} {first + place}, column {column}: found {shown(str(cell))}, "
+                "expected a time as in the rows above"
+            )
         dated &= instant[1]
         instants.append(instant[0])
     seconds = np.array(instants, dtype=np.float64)
@@ -114,7 +128,7 @@ def clock_seconds(cells: list[Any]) -> tuple[Floats, int | None]:
     if not dated and len(known):
         days = np.cumsum(np.diff(seconds[known], prepend=seconds[known[0]]) < -43200.0)
         seconds[known] += 86400.0 * days
-    return (seconds - seconds[known[0]] if len(known) else seconds), None
+    return seconds - seconds[known[0]] if len(known) else seconds
 
 
 def _instant(cell: object) -> tuple[float, bool] | None:

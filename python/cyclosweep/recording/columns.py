@@ -36,6 +36,27 @@ def stem(path: Path) -> str:
     return name or path.name
 
 
+def metadata_path(path: Path, given: Path | None = None) -> Path | None:
+    """Metadata file of a recording: the one given, or the one of its name beside it.
+
+    Parameters
+    ----------
+    path : Path
+        The recording.
+    given : Path, optional
+        What the user names.
+
+    Returns
+    -------
+    Path or None
+        None where there is none.
+    """
+    beside = path.with_name(f"{stem(path)}.toml")
+    if given is None and beside.is_file() and beside != path:
+        return beside
+    return given
+
+
 def file_columns(meta: Metadata) -> dict[str, Column]:
     """File column of each canonical one; its own name where the metadata do not say."""
     return {

@@ -13,7 +13,7 @@ from cyclosweep.recording.cells import MISSING, clock_seconds, is_clock, is_numb
 from cyclosweep.recording.messages import shown
 from cyclosweep.recording.samples import Floats
 
-__all__ = ["FileTable", "GridTable", "seconds_of"]
+__all__ = ["FileTable", "GridTable", "spelling"]
 
 
 class FileTable(Protocol):
@@ -119,7 +119,7 @@ class GridTable:
         cells = list(values)
         first = next((cell for cell in cells if not _is_missing(cell)), None)
         if is_clock(first):
-            return seconds_of(self, name, cells, self.first_row)
+            return self._seconds(name, cells)
         out = np.full(len(cells), np.nan)
         for place, cell in enumerate(cells):
             if _is_missing(cell):
@@ -136,39 +136,11 @@ class GridTable:
             out[place] = number
         return out
 
-
-def seconds_of(table: Any, name: str, cells: list[Any], first_row: int) -> Floats:
-    """Turn a column of dates or times into seconds since the first, with a note.
-
-    Parameters
-    ----------
-    table : FileTable
-        Has ``path`` and ``notes``.
-    name : str
-        The column.
-    cells : list
-        Its values.
-    first_row : int
-        Row of the first value, for messages.
-
-    Returns
-    -------
-    ndarray of float, shape (n,)
-        Time [s].
-
-    Raises
-    ------
-    InputError
-        For a cell that is no time.
-    """
-    seconds, bad = clock_seconds(cells)
-    if bad is not None:
-        raise InputError(
-            f"{table.path}, row {first_row + bad}, column {name}: found {shown(str(cells[bad]))}, "
-            "expected a time as in the rows above"
-        )
-    table.notes.append(f"{name} holds times of day or dates: seconds since the first are taken.")
-    return seconds
+    def _seconds(self, name: str, cells: list[Any]) -> Floats:
+        """Times of a column as seconds since the first, with a note."""
+        seconds = clock_seconds(cells, f"{self.path}, row", self.first_row, name)
+        self.notes.append(f"{name} holds times of day or dates: seconds since the first are taken.")
+        return seconds
 
 
 def spelling(cells: Iterable[str]) -> tuple[str, str]:

@@ -1,7 +1,7 @@
 """What is understood of a recording before it is diagnosed: columns, units, runs, clock, gaps."""
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -101,13 +101,7 @@ class Inspection:
         return {
             "schema": "cyclosweep.inspection/1",
             "file": str(self.path),
-            "columns": [
-                {
-                    name: getattr(column, name)
-                    for name in ("name", "unit", "role", "low", "high", "step", "missing", "rows")
-                }
-                for column in self.columns
-            ],
+            "columns": [asdict(column) for column in self.columns],
             "text_columns": self.text_columns,
             "facts": self.facts,
             "notes": self.notes,

@@ -9,16 +9,13 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.design.nominal_line import Side
 from cyclosweep.errors import DesignError
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.units import factor_of
 
 __all__ = ["Guess", "explain", "slope_of", "unit_by_steps"]
 
 ANGLE_UNITS = {
-    "deg": 1.0,
-    "rad": math.degrees(1.0),
-    "mrad": math.degrees(1e-3),
-    "arcmin": 1 / 60,
-    "arcsec": 1 / 3600,
-    "turns": 360.0,
+    name: factor_of(name, "angle_deg")
+    for name in ("deg", "rad", "mrad", "arcmin", "arcsec", "turns")
 }
 """Degrees in one unit of a column that does not say which."""
 

@@ -15,7 +15,14 @@ from cyclosweep.recording.cleaning import (
     merge_ticks,
     put_angle_right,
 )
-from cyclosweep.recording.columns import Columns, canonical_columns, file_columns, load, stem
+from cyclosweep.recording.columns import (
+    Columns,
+    canonical_columns,
+    file_columns,
+    load,
+    metadata_path,
+    stem,
+)
 from cyclosweep.recording.decimation import merge_neighbours
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import Metadata
@@ -50,9 +57,7 @@ def read(path: Path, meta_path: Path | None, meta: Metadata | None = None) -> di
     """
     if not path.is_file():
         raise InputError(f"{path}: no such file")
-    beside = path.with_name(f"{stem(path)}.toml")
-    if meta_path is None and beside.is_file() and beside != path:
-        meta_path = beside
+    meta_path = metadata_path(path, meta_path)
     if meta is None:
         meta = Metadata() if meta_path is None else Metadata.read(meta_path)
     notes: list[str] = []

@@ -142,12 +142,7 @@ def _clocks_read(
         For a cell that is no time.
     """
     for name in clocks:
-        seconds, bad = clock_seconds(frame[name].to_list())
-        if bad is not None:
-            raise InputError(
-                f"{path}, data row {bad + 1}, column {name}: found {shown(frame[name][bad])}, "
-                "expected a time as in the rows above"
-            )
+        seconds = clock_seconds(frame[name].to_list(), f"{path}, data row", 1, name)
         text.notes.append(f"{name} holds dates or times of day: seconds since the first are taken.")
         frame = frame.with_columns(pl.Series(name, seconds))
     return frame

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["QUANTITIES", "UNIT_EXAMPLES", "Kind", "Unit", "find_unit", "split_name"]
+__all__ = ["QUANTITIES", "UNIT_EXAMPLES", "Kind", "Unit", "factor_of", "find_unit", "split_name"]
 
 Kind = Literal["torque", "force", "current", "angle", "counts", "time", "temperature"]
 
@@ -174,6 +174,36 @@ def find_unit(text: str, column: str | None = None) -> Unit | None:
             elif spelt in _SIMPLE[kind]:
                 return Unit(kind, _SIMPLE[kind][spelt])
     return None
+
+
+def factor_of(text: str, column: str) -> float:
+    """Canonical units in one of a unit that is known.
+
+    Parameters
+    ----------
+    text : str
+        The unit.
+    column : str
+        Canonical column it belongs to.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    KeyError
+        It is no unit of such a column.
+
+    Examples
+    --------
+    >>> factor_of("turns", "angle_deg")
+    360.0
+    """
+    unit = find_unit(text, column)
+    if unit is None:
+        raise KeyError(text)
+    return unit.factor
 
 
 def split_name(header: str) -> tuple[str, str | None, bool]:

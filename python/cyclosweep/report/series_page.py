@@ -78,10 +78,9 @@ def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
         )
         head = "".join(f"<th>{escape(_named(trend.measure))}</th>" for trend in own)
         lines = []
-        for k, level in enumerate(own[0].levels):
+        for level in own[0].levels:
             cells = "".join(_mean(trend, level.value) for trend in own)
             lines.append(f"<tr><td>{number(level.value)}</td>{cells}</tr>")
-            del k
         parts.append(
             f"<section><h2>By {escape(plain(condition))}</h2><ul>{said}</ul>"
             f"<figure>{figure_svg(figure)}<figcaption>Rings: recordings. Line and bars: mean of "

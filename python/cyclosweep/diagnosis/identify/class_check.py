@@ -243,7 +243,9 @@ def _check(
     charged = (amplitudes, len(places) - amplitudes)
     others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
     known = orthonormal(fitted.sensitivity[:, others], 1e-6)
-    single = [classes.scale * _whitened(fitted, index) for index in indices]
+    single = [
+        classes.scale * fitted.whitened_contribution(index, fitted.noise) for index in indices
+    ]
     law = np.sum(single, axis=0)
     cancels = _cancel(fitted, single)
     law = law - known @ (known.T @ law)
@@ -337,27 +339,6 @@ def _amplitudes(fitted: FittedStructure, index: int) -> int:
     int
     """
     return 1 if fitted.terms[index].slips else len(fitted.amplitude_places(index))
-
-
-def _whitened(fitted: FittedStructure, index: int) -> Floats:
-    """Twist of a term on the fitted rows, whitened.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    index : int
-        Which of the structure's terms.
-
-    Returns
-    -------
-    ndarray, shape (fitted,)
-        In units of the noise.
-    """
-    use = fitted.problem.fitted
-    noise = fitted.noise
-    _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
-    return noise.design(fitted.contribution(index)[use], weight)
 
 
 def _law_evidence(residual: Floats, law: Floats, charged: tuple[int, int], freedom: float) -> float:

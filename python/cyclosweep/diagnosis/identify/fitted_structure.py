@@ -281,6 +281,25 @@ class FittedStructure(ABC):
         part = self.column_range(index)
         return term.columns(self.history) @ self.beta[part]
 
+    def whitened_contribution(self, index: int, noise: Noise) -> Floats:
+        """Twist that a term adds on the fitted rows, whitened.
+
+        Parameters
+        ----------
+        index : int
+            Which of the terms.
+        noise : Noise
+            Noise by which it is whitened.
+
+        Returns
+        -------
+        ndarray, shape (fitted,)
+            In units of the noise.
+        """
+        use = self.problem.fitted
+        _, weight = noise.residual(self.problem.angle_deg[use], self.mean_deg[use])
+        return noise.design(self.contribution(index)[use], weight)
+
     def information(self, places: Sequence[int]) -> Floats:
         """Information on some parameters, all others known only by this recording.
 

@@ -6,7 +6,6 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.scan import likelihood_gain
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.result import SelfCheck
-from cyclosweep.simulation.effects.history import Floats
 
 TWINS = 300
 
@@ -74,7 +73,7 @@ def _twins(
     -------
     float, dict of str to float
     """
-    signal = _whitened_signal(search, candidate, index)
+    signal = candidate.fit.whitened_contribution(index, search.noise)
     tangent = parent.fit.tangent
     left = signal - tangent @ (tangent.T @ signal)
     scan = parent.scan
@@ -89,23 +88,3 @@ def _twins(
     row = {str(name): float(np.mean(found & (top == name))) for name in np.unique(top[found])}
     row["nothing"] = float(np.mean(~found))
     return float(np.mean(found)), dict(sorted(row.items(), key=lambda item: -item[1]))
-
-
-def _whitened_signal(search: Search, candidate: Candidate, index: int) -> Floats:
-    """Whitened twist of one term, on the fitted rows.
-
-    Parameters
-    ----------
-    search : Search
-    candidate : Candidate
-    index : int
-        Index of the term.
-
-    Returns
-    -------
-    ndarray, shape (fitted,)
-    """
-    use = search.problem.fitted
-    part = candidate.fit.contribution(index)[use]
-    _, weight = search.noise.residual(search.problem.angle_deg[use], candidate.fit.mean_deg[use])
-    return search.noise.design(part, weight)

@@ -90,9 +90,11 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     # so that they are asked only where the likelihood does not decide.
     least = min(_cost(each) for each, _ in offered)
     close = [pair for pair in offered if _cost(pair[0]) < least + DECIDED]
-    best, fitted = min(close, key=lambda pair: left_out_error(pair[0]))
-    if left_out_error(best) >= (1.0 - LEAST_GAIN) * left_out_error(base):
+    errors = [left_out_error(each) for each, _ in close]
+    first = int(np.argmin(errors))
+    if errors[first] >= (1.0 - LEAST_GAIN) * left_out_error(base):
         return None
+    best, fitted = close[first]
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
     return search.add(fitted, gain)
 

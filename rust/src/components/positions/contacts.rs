@@ -90,10 +90,7 @@ impl Ring {
         let pitch = std::f64::consts::TAU / pins as f64;
         let shift = |lane: usize| (angles[lane] / pitch).floor();
         let rest = Vector::of(simd, |lane| angles[lane] - shift(lane) * pitch);
-        let (mut sin, mut cos) = (rest, rest);
-        for (sin, cos) in sin.as_mut_slice().iter_mut().zip(cos.as_mut_slice()) {
-            (*sin, *cos) = sin.sin_cos();
-        }
+        let (sin, cos) = rest.sin_cos();
         self.first.make_room(lanes);
         for (lane, first) in self.first.get_mut().iter_mut().enumerate() {
             *first = shift(lane);
@@ -200,10 +197,7 @@ impl Ring {
         let zero = Vector::zero(simd);
         let least = Vector::splat(simd, LEAST_DEPTH);
         let [mut fx, mut fy, mut xx, mut xy, mut yy] = [zero; 5];
-        let mut depths = Depths {
-            sum: zero,
-            squares: zero,
-        };
+        let mut depths = Depths::none(simd);
         let normals_x = Vector::<S>::of_slice(self.normal_x.get());
         let normals_y = &Vector::<S>::of_slice(self.normal_y.get())[..normals_x.len()];
         let lengths = &Vector::<S>::of_slice(self.length.get())[..normals_x.len()];
@@ -235,9 +229,7 @@ impl Ring {
             xy += gx * y;
             yy += gy * y;
             if L::FOLLOWS {
-                let depth = touches.keep(depth);
-                depths.sum += depth;
-                depths.squares += depth * depth;
+                depths.add(touches.keep(depth));
             }
             visit.ring(
                 disc,
@@ -285,11 +277,7 @@ impl Pins {
         angles: &[f64],
     ) {
         let count = mechanism.output_pins;
-        let angles = Vector::of(simd, |lane| angles[lane]);
-        let (mut sin, mut cos) = (angles, angles);
-        for (sin, cos) in sin.as_mut_slice().iter_mut().zip(cos.as_mut_slice()) {
-            (*sin, *cos) = sin.sin_cos();
-        }
+        let (sin, cos) = Vector::of(simd, |lane| angles[lane]).sin_cos();
         self.tangent_x.make_room(count * Vector::<S>::LANES);
         self.tangent_y.make_room(count * Vector::<S>::LANES);
         let x = Vector::<S>::of_slice_mut(self.tangent_x.get_mut()).iter_mut();
@@ -336,10 +324,7 @@ impl Pins {
         let least = Vector::splat(simd, LEAST_DEPTH);
         let mut gradient = [zero; 3];
         let mut hessian = [zero; 6];
-        let mut depths = Depths {
-            sum: zero,
-            squares: zero,
-        };
+        let mut depths = Depths::none(simd);
         let [turn, x, y] = motion;
         let apart = x + eccentricity;
         for (pin, ([tx, ty], gap)) in self.rows(simd).enumerate() {
@@ -373,9 +358,7 @@ impl Pins {
             hessian[4] += (slope - stiffening) * mx * my;
             hessian[5] += slope * my * my + stiffening * mx * mx;
             if L::FOLLOWS {
-                let depth = touches.keep(depth);
-                depths.sum += depth;
-                depths.squares += depth * depth;
+                depths.add(touches.keep(depth));
             }
             visit.pin(
                 disc,

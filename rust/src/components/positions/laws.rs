@@ -112,6 +112,23 @@ impl<S: Simd> Secant<S> {
 }
 
 impl<S: Simd> Depths<S> {
+    /// Of no contact.
+    #[inline(always)]
+    pub(crate) fn none(simd: S) -> Self {
+        let zero = Vector::zero(simd);
+        Self {
+            sum: zero,
+            squares: zero,
+        }
+    }
+
+    /// Counts a contact; its depth is zero where it is not loaded.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, depth: Vector<S>) {
+        self.sum += depth;
+        self.squares += depth * depth;
+    }
+
     /// Where contacts are loaded, and their mean penetration (m), each weighed by its own.
     #[inline(always)]
     fn mean(&self, simd: S) -> (Mask<S>, Vector<S>) {

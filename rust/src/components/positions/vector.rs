@@ -48,6 +48,16 @@ impl<S: Simd> Vector<S> {
         vector
     }
 
+    /// Sine and cosine of every lane.
+    #[inline(always)]
+    pub(crate) fn sin_cos(self) -> (Self, Self) {
+        let (mut sin, mut cos) = (self, self);
+        for (sin, cos) in sin.as_mut_slice().iter_mut().zip(cos.as_mut_slice()) {
+            (*sin, *cos) = sin.sin_cos();
+        }
+        (sin, cos)
+    }
+
     /// The vectors that lie one after the other in memory.
     #[inline(always)]
     pub(crate) fn of_slice(memory: &[f64]) -> &[S::f64s] {
