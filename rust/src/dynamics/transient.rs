@@ -2,10 +2,12 @@
 
 use std::rc::Rc;
 
+use nalgebra::DMatrix;
+
 use crate::dynamics::branch::{Cause, EventKind, Range, SpringState, states};
 use crate::dynamics::modes::Modes;
-use crate::dynamics::motion::ModeMotion;
-use crate::dynamics::peaks::{Nearby, Peak};
+use crate::dynamics::motion::{ModeMotion, Motions, Sum};
+use crate::dynamics::peaks::Peak;
 use crate::dynamics::train::{Train, TrainError};
 
 /// Parts into which a step near a standstill divides the shortest period.
@@ -138,6 +140,8 @@ struct Run<'a> {
     states: Vec<SpringState>,
     angles: Vec<f64>,
     speeds: Vec<f64>,
+    /// Angle and speed of every node at a sample.
+    nodes: Vec<[f64; 2]>,
     samples: &'a [f64],
     next_sample: usize,
     record: Record,
@@ -154,6 +158,7 @@ impl<'a> Run<'a> {
             states,
             angles: start.angles.to_vec(),
             speeds: start.speeds.to_vec(),
+            nodes: Vec::with_capacity(start.angles.len()),
             samples,
             next_sample: 0,
             record: Record {
@@ -190,8 +195,9 @@ impl<'a> Run<'a> {
             let length = event.map_or(to - now, |event| event.after);
             self.keep(&path, length, event.is_none());
             let twists = self.train.twists(&self.angles);
-            let state = path.state(length);
-            (self.angles, self.speeds) = path.nodes(&state);
+            path.nodes(length, &mut self.nodes);
+            self.angles = self.nodes.iter().map(|node| node[0]).collect();
+            self.speeds = self.nodes.iter().map(|node| node[1]).collect();
             let reached = self.train.twists(&self.angles);
             for (k, spring) in self.train.springs().iter().enumerate() {
                 let state = &self.states[k];
@@ -227,22 +233,23 @@ impl<'a> Run<'a> {
     }
 
     /// Keeps the samples and peaks of a branch.
-    fn keep(&mut self, path: &Path<'_>, length: f64, closed: bool) {
+    fn keep(&mut self, path: &Path, length: f64, closed: bool) {
+        let before = self.train.twists(&self.angles);
         while let Some(&time) = self.samples.get(self.next_sample) {
             let after = time - path.start;
             if after > length || (after == length && !closed) {
                 break;
             }
-            self.sample(path, after.max(0.0));
+            self.sample(path, &before, after.max(0.0));
             self.next_sample += 1;
         }
         for (k, peak) in self.record.peaks.iter_mut().enumerate() {
             let (offset, slope) = path.lines[k];
-            let torque_at = |after: f64| offset + slope * path.twist(k, after).0;
+            let torque_at = |after: f64| offset + slope * path.twist(k, after)[0];
             peak.take(torque_at(0.0), path.start);
             peak.take(torque_at(length), path.start + length);
             peak.search(path.start, length, |after, radius| {
-                let mut near = path.twist_around(k, after, radius);
+                let mut near = path.motions.around(&path.twists[k], after, radius);
                 for part in &mut near.parabola {
                     *part *= slope;
                 }
@@ -253,31 +260,27 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn sample(&mut self, path: &Path<'_>, after: f64) {
-        let state = path.state(after);
-        let (angles, speeds) = path.nodes(&state);
-        let twists = self.train.twists(&angles);
-        let before = self.train.twists(&self.angles);
-        let springs = self.train.springs();
-        let mut lost: f64 = self.record.lost_in.iter().sum();
+    fn sample(&mut self, path: &Path, before: &[f64], after: f64) {
+        path.nodes(after, &mut self.nodes);
+        let record = &mut self.record;
+        let mut lost: f64 = record.lost_in.iter().sum();
         let mut potential = 0.0;
-        for (k, spring) in springs.iter().enumerate() {
+        for (k, spring) in self.train.springs().iter().enumerate() {
             let state = &self.states[k];
             let (offset, slope) = path.lines[k];
-            self.record.torques.push(offset + slope * twists[k]);
-            self.record
-                .frictions
-                .push(state.friction(spring, twists[k]));
-            potential += spring.energy(twists[k]) + state.slip_energy(spring, twists[k]);
-            lost += state.lost(spring, before[k], twists[k]);
+            let twist = self.nodes[spring.from][0] - spring.to.map_or(0.0, |to| self.nodes[to][0]);
+            record.torques.push(offset + slope * twist);
+            record.frictions.push(state.friction(spring, twist));
+            potential += spring.energy(twist) + state.slip_energy(spring, twist);
+            lost += state.lost(spring, before[k], twist);
         }
-        let inertias = self.train.inertias().iter();
-        let kinetic = inertias.zip(&speeds).map(|(j, v)| 0.5 * j * v * v).sum();
-        self.record.kinetic.push(kinetic);
-        self.record.potential.push(potential);
-        self.record.lost.push(lost);
-        self.record.angles.extend(angles);
-        self.record.speeds.extend(speeds);
+        let nodes = self.train.inertias().iter().zip(&self.nodes);
+        let kinetic = nodes.map(|(j, [_, speed])| 0.5 * j * speed * speed).sum();
+        record.kinetic.push(kinetic);
+        record.potential.push(potential);
+        record.lost.push(lost);
+        record.angles.extend(self.nodes.iter().map(|node| node[0]));
+        record.speeds.extend(self.nodes.iter().map(|node| node[1]));
     }
 
     fn basis(&mut self, stiffnesses: Vec<f64>) -> Rc<Basis> {
@@ -311,19 +314,23 @@ struct Found {
 }
 
 /// Motion on one branch.
-struct Path<'a> {
-    train: &'a Train,
+struct Path {
     start: f64,
-    basis: Rc<Basis>,
-    motions: Vec<ModeMotion>,
+    /// A step within which no twist turns more than once.
+    step: f64,
+    motions: Motions,
+    /// Twist of each spring as a sum of the modes.
+    twists: Vec<Sum>,
+    /// Angle of each node as a sum of the modes.
+    angles: Vec<Sum>,
     /// Torque of each spring as a line of its twist.
     lines: Vec<(f64, f64)>,
     /// Springs whose branch can end, where, and what their acceleration never exceeds.
     watched: Vec<(usize, Range, f64)>,
 }
 
-impl<'a> Path<'a> {
-    fn new(run: &mut Run<'a>, start: f64, torques: &[f64], rates: &[f64], horizon: f64) -> Self {
+impl Path {
+    fn new(run: &mut Run<'_>, start: f64, torques: &[f64], rates: &[f64], horizon: f64) -> Self {
         let train = run.train;
         let springs = train.springs();
         let lines: Vec<(f64, f64)> = springs
@@ -333,7 +340,7 @@ impl<'a> Path<'a> {
             .collect();
         let basis = run.basis(lines.iter().map(|line| line.1).collect());
         let modes = &basis.modes;
-        let motions: Vec<ModeMotion> = (0..modes.omega_squared.len())
+        let motions = (0..modes.omega_squared.len())
             .map(|m| {
                 let shape = modes.shapes.column(m);
                 let twist = modes.twists.column(m);
@@ -352,77 +359,36 @@ impl<'a> Path<'a> {
                 )
             })
             .collect();
-        let bound = |k: usize| {
-            let row = modes.twists.row(k);
-            let parts = row.iter().zip(&motions);
-            parts
-                .map(|(part, motion)| part.abs() * motion.acceleration_bound(horizon))
-                .sum::<f64>()
+        let motions = Motions::new(motions);
+        let sums = |weights: &DMatrix<f64>| -> Vec<Sum> {
+            let rows = 0..weights.nrows();
+            rows.map(|row| motions.sum(|m| weights[(row, m)])).collect()
         };
+        let (twists, angles) = (sums(&modes.twists), sums(&modes.shapes));
+        let bound = |k: usize| motions.acceleration_bound(&twists[k], horizon);
         let watched = (0..springs.len())
             .filter(|&k| springs[k].has_events())
             .map(|k| (k, run.states[k].range(&springs[k]), bound(k)))
             .collect();
         Self {
-            train,
             start,
-            basis,
+            step: basis.step,
             motions,
+            twists,
+            angles,
             lines,
             watched,
         }
     }
 
-    fn state(&self, after: f64) -> Vec<(f64, f64)> {
-        self.motions.iter().map(|motion| motion.at(after)).collect()
+    /// Angle and speed of every node.
+    fn nodes(&self, after: f64, nodes: &mut Vec<[f64; 2]>) {
+        self.motions.all_at(&self.angles, after, nodes);
     }
 
-    fn nodes(&self, state: &[(f64, f64)]) -> (Vec<f64>, Vec<f64>) {
-        let shapes = &self.basis.modes.shapes;
-        let sum = |node: usize, part: fn(&(f64, f64)) -> f64| {
-            let row = shapes.row(node);
-            row.iter().zip(state).map(|(s, q)| s * part(q)).sum::<f64>()
-        };
-        let n = self.train.inertias().len();
-        (
-            (0..n).map(|node| sum(node, |q| q.0)).collect(),
-            (0..n).map(|node| sum(node, |q| q.1)).collect(),
-        )
-    }
-
-    /// Twist of a spring and its speed.
-    fn twist(&self, spring: usize, after: f64) -> (f64, f64) {
-        let row = self.basis.modes.twists.row(spring);
-        let (mut twist, mut speed) = (0.0, 0.0);
-        for (&part, motion) in row.iter().zip(&self.motions) {
-            if part != 0.0 {
-                let (q, v) = motion.at(after);
-                twist += part * q;
-                speed += part * v;
-            }
-        }
-        (twist, speed)
-    }
-
-    /// Twist of a spring around a time.
-    fn twist_around(&self, spring: usize, after: f64, radius: f64) -> Nearby {
-        let row = self.basis.modes.twists.row(spring);
-        let mut near = Nearby {
-            parabola: [0.0; 3],
-            margin: 0.0,
-            touches: true,
-        };
-        for (&part, motion) in row.iter().zip(&self.motions) {
-            if part != 0.0 {
-                let (parabola, margin, touches) = motion.around(after, radius);
-                for (sum, value) in near.parabola.iter_mut().zip(parabola) {
-                    *sum += part * value;
-                }
-                near.margin += part.abs() * margin;
-                near.touches &= touches;
-            }
-        }
-        near
+    /// Twist of a spring and its first two derivatives.
+    fn twist(&self, spring: usize, after: f64) -> [f64; 3] {
+        self.motions.at(&self.twists[spring], after)
     }
 
     /// The first event within a time.
@@ -457,8 +423,8 @@ impl<'a> Path<'a> {
         let mut from = 0.0;
         let mut here = self.twist(spring, 0.0);
         while from < horizon {
-            let (twist, speed) = here;
-            let mut step = (speed.abs() / bound).max(self.basis.step);
+            let [twist, speed, _] = here;
+            let mut step = (speed.abs() / bound).max(self.step);
             let room = (range.high.0 - twist).min(twist - range.low.0);
             if !range.slides && room > 0.0 {
                 let root = (speed * speed + 2.0 * bound * room).sqrt();
@@ -470,7 +436,10 @@ impl<'a> Path<'a> {
                 horizon
             };
             let there = self.twist(spring, to);
-            if let Some(found) = self.within(spring, range, (from, here), (to, there)) {
+            let reach = (to - from) * (speed.abs() + 0.5 * bound * (to - from));
+            if (range.slides || reach >= room)
+                && let Some(found) = self.within(spring, range, (from, here), (to, there))
+            {
                 return Some(found);
             }
             if to <= from {
@@ -486,21 +455,21 @@ impl<'a> Path<'a> {
         &self,
         spring: usize,
         range: Range,
-        (from, here): (f64, (f64, f64)),
-        (to, there): (f64, (f64, f64)),
+        (from, here): (f64, [f64; 3]),
+        (to, there): (f64, [f64; 3]),
     ) -> Option<(f64, Cause)> {
-        if here.1 != 0.0 && here.1 * there.1 <= 0.0 {
-            let turn = root(from, to, here.1 < 0.0, |t| {
-                let (_, speed) = self.twist(spring, t);
-                (speed, f64::NAN)
+        if here[1] != 0.0 && here[1] * there[1] <= 0.0 {
+            let turn = root(from, to, here[1] < 0.0, |t| {
+                let [_, speed, acceleration] = self.twist(spring, t);
+                (speed, acceleration)
             });
             let middle = self.twist(spring, turn);
             return self
-                .crossing(spring, range, (from, here.0), (turn, middle.0))
+                .crossing(spring, range, (from, here[0]), (turn, middle[0]))
                 .or_else(|| range.slides.then_some((turn, Cause::Stop)))
-                .or_else(|| self.crossing(spring, range, (turn, middle.0), (to, there.0)));
+                .or_else(|| self.crossing(spring, range, (turn, middle[0]), (to, there[0])));
         }
-        self.crossing(spring, range, (from, here.0), (to, there.0))
+        self.crossing(spring, range, (from, here[0]), (to, there[0]))
     }
 
     /// Where a twist that only grows or only falls leaves its range.
@@ -523,7 +492,7 @@ impl<'a> Path<'a> {
             return Some((from, cause));
         }
         let at = root(from, to, rises, |t| {
-            let (twist, speed) = self.twist(spring, t);
+            let [twist, speed, _] = self.twist(spring, t);
             (twist - limit, speed)
         });
         Some((at, cause))
@@ -531,7 +500,7 @@ impl<'a> Path<'a> {
 }
 
 /// Zero of a function that only rises or only falls between two times, by Newton steps that never
-/// leave the bracket; where no slope is known, by halving with the secant's help.
+/// leave the bracket.
 fn root(
     mut low: f64,
     mut high: f64,
@@ -539,7 +508,6 @@ fn root(
     mut function: impl FnMut(f64) -> (f64, f64),
 ) -> f64 {
     let mut at = 0.5 * (low + high);
-    let mut last: Option<(f64, f64)> = None;
     for _ in 0..MOST_ROUNDS {
         let (value, slope) = function(at);
         if value == 0.0 {
@@ -550,12 +518,6 @@ fn root(
         } else {
             low = at;
         }
-        let slope = if slope.is_nan() {
-            last.map_or(f64::NAN, |(t, f)| (value - f) / (at - t))
-        } else {
-            slope
-        };
-        last = Some((at, value));
         let newton = at - value / slope;
         if (newton - at).abs() <= RESOLUTION_S + 4.0 * f64::EPSILON * at {
             break;

@@ -5,7 +5,7 @@ mod arrangement;
 pub(crate) mod checks;
 pub mod compliance;
 pub mod design;
-mod elementary;
+pub(crate) mod elementary;
 pub mod error;
 pub mod hypotrochoid;
 pub mod hysteresis;
