@@ -240,14 +240,14 @@ impl Motions {
         };
         for (group, weights) in self.groups.iter().zip(&sum.groups) {
             let slow = weights.rate.map(|rate| rate * radius <= TURNS);
-            for lane in 0..LANES {
-                let wild = weights.jerk[lane] * cube;
-                near.margin += if slow[lane] {
-                    wild
+            for (lane, &slow) in slow.iter().enumerate() {
+                let amplitude = weights.amplitude[lane];
+                near.margin += if slow {
+                    weights.jerk[lane] * cube
                 } else {
-                    weights.amplitude[lane]
+                    amplitude
                 };
-                near.touches &= slow[lane] || weights.amplitude[lane] == 0.0;
+                near.touches &= slow || amplitude == 0.0;
             }
             if slow.contains(&true) {
                 let (cosine, sine) = with_widest(Phase { group, time });
