@@ -1,8 +1,14 @@
 """Errors that end in one clear line: bad input, a design that cannot be built, a failed sweep."""
 
+import difflib
+from collections.abc import Iterable
+
 from cyclosweep._core import DesignError
 
-__all__ = ["DesignError", "InputError", "SweepError"]
+__all__ = ["DesignError", "InputError", "SweepError", "did_you_mean"]
+
+_SHORTEST_PART = 4
+"""Letters of a name that is looked for inside known ones: three are in too many of them."""
 
 
 class InputError(ValueError):
@@ -18,3 +24,41 @@ class SweepError(RuntimeError):
     What was whole stays; the same command goes on from there. The command line turns it into
     exit status 1.
     """
+
+
+def did_you_mean(name: object, known: Iterable[str]) -> str:
+    """End of a message about an unknown name: the known one that was most likely meant.
+
+    Parameters
+    ----------
+    name : object
+        What was found.
+    known : iterable of str
+        Names that exist.
+
+    Returns
+    -------
+    str
+        ``", did you mean NAME?"``; empty where no known name is close. Capitals, hyphens and
+        blanks do not count, and part of a name finds the shortest one that holds it.
+
+    Examples
+    --------
+    >>> did_you_mean("eccentricty_mm", ["eccentricity_mm", "ratio"])
+    ', did you mean eccentricity_mm?'
+    >>> did_you_mean("frequency", ["ratio", "natural_frequency_hz"])
+    ', did you mean natural_frequency_hz?'
+    >>> did_you_mean("colour", ["ratio"])
+    ''
+    """
+    written = {_plain(each): each for each in known}
+    wanted = _plain(str(name))
+    close = difflib.get_close_matches(wanted, written, n=1)
+    if not close and len(wanted) >= _SHORTEST_PART:
+        close = sorted((each for each in written if wanted in each), key=len)
+    return f", did you mean {written[close[0]]}?" if close else ""
+
+
+def _plain(name: str) -> str:
+    """A name as it is compared: small letters, one sign between words."""
+    return name.strip().lower().replace("-", "_").replace(" ", "_")

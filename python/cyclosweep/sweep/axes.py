@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import hashlib
 import math
@@ -19,7 +18,7 @@ from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers, whole_number
 from cyclosweep.design.parts import PART_DEFAULTS
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, did_you_mean
 
 __all__ = [
     "OPTIONAL",
@@ -178,9 +177,7 @@ def known_input(drive: Drive, name: str) -> str:
     """
     known = drive.every_input()
     if name not in known:
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f", did you mean {close[0]}?" if close else ""
-        raise InputError(f"{name}: no such input of this drive{hint}")
+        raise InputError(f"{name}: no such input of this drive{did_you_mean(name, known)}")
     return name
 
 
@@ -189,7 +186,10 @@ def criterion_codes(values: Iterable[object]) -> list[float]:
     codes = []
     for value in values:
         if value not in CRITERIA:
-            raise InputError(f"criterion: found {value!r}, expected one of {', '.join(CRITERIA)}")
+            raise InputError(
+                f"criterion: found {value!r}, expected one of {', '.join(CRITERIA)}"
+                f"{did_you_mean(value, CRITERIA)}"
+            )
         codes.append(float(CRITERIA.index(value)))
     return codes
 
