@@ -22,20 +22,15 @@ from cyclosweep.report.charts import (
     Series,
 )
 from cyclosweep.report.data import ReportData
+from cyclosweep.report.dots import on_the_way_through, residual_dots
 from cyclosweep.report.loops import LOST_MOTION_SHARE, dead_zone_crossings, loop_figures
-from cyclosweep.report.regions import axis_values, located, residual_axis, spans_of
-from cyclosweep.report.residual_figures import map_figure, profiles_figure
+from cyclosweep.report.regions import axis_values, residual_axis, spans_of
+from cyclosweep.report.residual_figures import map_figure, profiles_figures
 from cyclosweep.report.thin import thin
 from cyclosweep.report.wording import ARCMIN, number
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-DEAD_ZONE_SHARE = 0.05
-"""Share of the largest torque below which a reading may be inside the dead zone."""
-FEW_BEYOND = 3.0
-"""Multiple of the residual that all but one in 200 samples keep, above which the largest do not
-set the scale."""
 
 NAME_MEASURED = "measured"
 NAME_BEFORE = "simulation before"
@@ -48,7 +43,7 @@ def all_figures(data: ReportData) -> list[Figure]:
         return []
     figures = [main_figure(data), zoom_figure(data)]
     if data.residual_before_deg is not None:
-        figures += [profiles_figure(data), map_figure(data)]
+        figures += [*profiles_figures(data), map_figure(data)]
     return figures
 
 
@@ -74,13 +69,13 @@ def main_figure(data: ReportData) -> Figure:
         )
     axis = residual_axis(data)
     x, x_label = axis_values(recording, axis)
-    sigma, _ = data.noise
     rows = shown[data.scored[shown]]
-    limit = 1.2 * max(_scale_of(data, rows, before), _scale_of(data, rows, after), 2 * sigma, 1e-9)
+    dots = residual_dots(data, rows, x)
+    limit = dots.limit_deg
     beyond = int(np.count_nonzero(np.maximum(abs(before), abs(after))[data.scored] > limit))
+    beyond = beyond if dots.averaged == 1 else int(np.count_nonzero(on_the_way_through(data)))
     result = data.result
-    chosen = located(data)[rows]
-    inside, outside = rows[chosen], rows[~chosen]
+    inside = dots.located
     panels = [Placed(panel=loop, row=0, column=0, rows=2)]
     change = " with the effects named below" if data.is_repaired else ", as nothing was repaired"
     repair: list[Series] = []
@@ -89,10 +84,10 @@ def main_figure(data: ReportData) -> Figure:
         added = before - after
         line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
         repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
-    for row, (residual, colour, title, model, fitted) in enumerate(
+    for row, (residual, dot, colour, title, model, fitted) in enumerate(
         (
-            (before, BEFORE, "Residual before", repair, result.baseline.rmse_deg),
-            (after, AFTER, after_title, [], result.repaired.rmse_deg),
+            (before, dots.before_deg, BEFORE, "Residual before", repair, result.baseline.rmse_deg),
+            (after, dots.after_deg, AFTER, after_title, [], result.repaired.rmse_deg),
         )
     ):
         rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))
@@ -102,9 +97,9 @@ def main_figure(data: ReportData) -> Figure:
             x_label=x_label,
             y_label="residual (deg)",
             series=(
-                *_noise_band(x[rows], sigma),
-                Points(x[outside], residual[outside], "", FAINT, _dot(len(rows))),
-                Points(x[inside], residual[inside], "", colour, _dot(len(rows))),
+                *_noise_band(x[rows], dots.sigma_deg),
+                Points(dots.x[~inside], dot[~inside], "", FAINT, _dot(len(dots.x))),
+                Points(dots.x[inside], dot[inside], "", colour, _dot(len(dots.x))),
                 *model,
             ),
             spans=tuple(spans_of(data, axis, labelled=row == 0)),
@@ -120,7 +115,12 @@ def main_figure(data: ReportData) -> Figure:
         caption="Before: the published model with calibrated stiffness, free play and datum. "
         f"After: the same{change}. Shaded: where simulation and recording "
         "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
-        f"deviations of the noise ({number(sigma)} deg)."
+        f"deviations of the noise of a dot ({number(dots.sigma_deg)} deg)."
+        + (
+            f" A dot is the mean of {dots.averaged} neighbouring samples, as in the diagnosis."
+            if dots.averaged > 1
+            else ""
+        )
         + (
             f" {beyond} of {np.count_nonzero(data.scored)} samples lie beyond the scale of the "
             "residuals, most of them on the way through the dead zone."
@@ -132,20 +132,6 @@ def main_figure(data: ReportData) -> Figure:
         columns=2,
         row_height=258,
     )
-
-
-def _scale_of(data: ReportData, rows: NDArray[np.int64], residual: Floats) -> float:
-    """Largest residual that the axis has to show: not that of readings inside the dead zone.
-
-    There the twist says nothing of the drive: a crossing that comes a moment early or late is
-    wrong by the whole play.
-    """
-    sizes = np.abs(residual[rows])
-    loaded = np.abs(data.recording.torque_nm[rows])
-    outside = loaded > DEAD_ZONE_SHARE * loaded.max()
-    shown = sizes[outside] if np.count_nonzero(outside) >= len(rows) // 2 else sizes
-    usual, largest = float(np.quantile(shown, 0.995)), float(shown.max())
-    return largest if largest < FEW_BEYOND * usual else usual
 
 
 def zoom_figure(data: ReportData) -> Figure:

@@ -20,6 +20,7 @@ from cyclosweep.report.charts import (
     Series,
 )
 from cyclosweep.report.data import ReportData
+from cyclosweep.report.dots import on_the_way_through
 from cyclosweep.report.profiles import Profile, by_group, profile, residual_map
 from cyclosweep.report.regions import axis_values
 from cyclosweep.report.wording import number
@@ -30,19 +31,24 @@ Mask = NDArray[np.bool_]
 MAX_ROWS = 24
 """Most rows of the residual map."""
 
+LEAST_BINS = 3
+"""Fewest means that show how a residual depends on something."""
+
 NAME_RESIDUAL_BEFORE = "residual before"
 NAME_RESIDUAL_AFTER = "residual after"
 
 
-def profiles_figure(data: ReportData) -> Figure:
-    """Mean residual against everything it may depend on, with simultaneous bands."""
-    panels = list(_profile_panels(data))
+def profiles_figures(data: ReportData) -> list[Figure]:
+    """Mean residual against everything it may depend on; none where readings are too few."""
+    panels = [panel for panel in _profile_panels(data) if _bins(panel) >= LEAST_BINS]
     columns = 2
-    return Figure(
+    if not panels:
+        return []
+    figure = Figure(
         key="profiles",
         title="Residual against torque, angle, run, time, rate and position",
         caption="Means of bins. The band is simultaneous: noise alone leaves all means of a panel "
-        "inside in 99 of 100 cases. Rings lie outside.",
+        "inside in 99 of 100 cases. Rings lie outside." + _left_out(data),
         panels=tuple(
             Placed(panel=panel, row=k // columns, column=k % columns)
             for k, panel in enumerate(panels)
@@ -51,11 +57,12 @@ def profiles_figure(data: ReportData) -> Figure:
         columns=columns,
         row_height=250,
     )
+    return [figure]
 
 
 def map_figure(data: ReportData) -> Figure:
     """Residual map over torque by run and direction, before and after."""
-    recording, scored = data.recording, data.scored
+    recording, scored = data.recording, data.scored & ~on_the_way_through(data)
     before, after = data.residual_before_deg, data.residual_after_deg
     assert before is not None
     assert after is not None
@@ -87,16 +94,27 @@ def map_figure(data: ReportData) -> Figure:
         title="Residual map",
         caption=f"Mean residual by torque, run and direction: orange −{number(limit)} deg, white "
         f"0, blue +{number(limit)} deg. A dot marks a cell that noise does not explain, all cells "
-        "taken together at 99 %.",
+        "taken together at 99 %." + _left_out(data),
         panels=panels,
         columns=2,
         row_height=max(150.0, 17.0 * len(names) + 88),
     )
 
 
+def _bins(panel: Panel) -> int:
+    """Number of means in a panel of profiles."""
+    return sum(len(s.x) for s in panel.series if isinstance(s, Band))
+
+
+def _left_out(data: ReportData) -> str:
+    """Say how many readings the means leave out; nothing where there are none."""
+    count = int(np.count_nonzero(on_the_way_through(data) & data.scored))
+    return f" {count} readings on the way through the dead zone are left out." if count else ""
+
+
 def _profile_panels(data: ReportData) -> Iterator[Panel]:
     """One panel for every quantity that the recording has."""
-    recording, scored = data.recording, data.scored
+    recording, scored = data.recording, data.scored & ~on_the_way_through(data)
     structure = recording.structure
     side = recording.side
     torque_label = f"torque at the {side} shaft (N m)"
@@ -116,7 +134,7 @@ def _profile_panels(data: ReportData) -> Iterator[Panel]:
         data, recording.angle_deg, scored, "Twist", f"twist at the {side} shaft (deg)", split=True
     )
     if len(set(recording.run[scored])) > 1:
-        yield _run_panel(data)
+        yield _run_panel(data, scored)
     if recording.time_s is not None:
         time, label = axis_values(recording, "time")
         yield _profile_panel(data, time, scored, "Time", label, bins=72)
@@ -181,10 +199,9 @@ def _profile_series(profiles: list[tuple[Profile, str, str]]) -> list[Series]:
     return series
 
 
-def _run_panel(data: ReportData) -> Panel:
+def _run_panel(data: ReportData, rows: Mask) -> Panel:
     """Mean residual of every run."""
     sigma, rho = data.noise
-    rows = data.scored
     before, after = data.residual_before_deg, data.residual_after_deg
     assert before is not None
     assert after is not None

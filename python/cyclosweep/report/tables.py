@@ -8,6 +8,7 @@ from cyclosweep.report.data import ReportData
 from cyclosweep.report.loops import LoopFigures, loop_figures
 from cyclosweep.report.wording import (
     ARCMIN,
+    NOTHING,
     angle,
     interval,
     number,
@@ -76,6 +77,9 @@ def loop_table(data: ReportData) -> Table | None:
             ),
         ]
     rows.append(("energy lost in one cycle, mean", *(_mean_energy(f) for f in figures)))
+    rows = [row for row in rows if any(cell != NOTHING for cell in row[1:])]
+    if not rows:
+        return None
     note = f"Stiffness is the slope of the loading branches between 50 % and 100 % of {of} torque."
     lost, gap = figures[0].lost_motion_deg, figures[0].hysteresis_loss_deg
     if lost is not None and gap is not None and gap > lost:
@@ -99,7 +103,7 @@ def parameter_table(data: ReportData) -> Table | None:
     rows = [
         (
             without_unit(name),
-            value.unit or "–",
+            value.unit or NOTHING,
             number(value.nominal, 4),
             _estimate(value),
             _estimate(after.get(name)),
@@ -108,7 +112,7 @@ def parameter_table(data: ReportData) -> Table | None:
         for name, value in before.items()
     ]
     rows += [
-        (without_unit(name), value.unit or "–", "–", "–", _estimate(value), "–")
+        (without_unit(name), value.unit or NOTHING, NOTHING, NOTHING, _estimate(value), NOTHING)
         for name, value in after.items()
         if name not in before
     ]
@@ -134,7 +138,7 @@ def hypothesis_table(data: ReportData) -> Table | None:
             (
                 plain(row.name),
                 row.outcome,
-                "–" if row.absorbed_share is None else f"{100 * row.absorbed_share:.0f} %",
+                NOTHING if row.absorbed_share is None else f"{100 * row.absorbed_share:.0f} %",
                 number(row.size_deg),
                 interval(row.ci95_deg),
                 probability(row.p_value),
@@ -242,7 +246,7 @@ def self_check_table(data: ReportData) -> Table | None:
 def _shift(before: CalibratedParameter, after: CalibratedParameter | None) -> str:
     """How far the repair moved a parameter, in standard errors."""
     if after is None or not before.std_error:
-        return "–"
+        return NOTHING
     shift = (after.estimate - before.estimate) / before.std_error
     return f"{shift:+.1f}".replace("-", "−")
 
@@ -250,7 +254,7 @@ def _shift(before: CalibratedParameter, after: CalibratedParameter | None) -> st
 def _stiffness(nm_per_deg: float | None) -> str:
     """Stiffness in N m/arcmin and N m/rad."""
     if nm_per_deg is None:
-        return "–"
+        return NOTHING
     return f"{number(nm_per_deg / ARCMIN)} N m/arcmin ({number(np.degrees(nm_per_deg))} N m/rad)"
 
 
@@ -268,19 +272,19 @@ def _divided(value_deg: float | None, ratio: float) -> str:
 def _mean_energy(figures: LoopFigures) -> str:
     """Mean energy of the cycles."""
     energy = list(figures.energy_j.values())
-    return f"{number(float(np.mean(energy)))} J" if energy else "–"
+    return f"{number(float(np.mean(energy)))} J" if energy else NOTHING
 
 
 def _percent(share: float | None) -> str:
     """Write a share in percent."""
-    return "–" if share is None else f"{100 * share:.3g} %"
+    return NOTHING if share is None else f"{100 * share:.3g} %"
 
 
 def _count(samples: int | None) -> str:
     """Write a number of samples."""
-    return "–" if samples is None else str(samples)
+    return NOTHING if samples is None else str(samples)
 
 
 def _estimate(value: CalibratedParameter | None) -> str:
     """Estimate of a parameter with its standard error."""
-    return "–" if value is None else with_error(value.estimate, value.std_error)
+    return NOTHING if value is None else with_error(value.estimate, value.std_error)

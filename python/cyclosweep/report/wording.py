@@ -5,6 +5,9 @@ from collections.abc import Sequence
 
 from cyclosweep.result import Answer, Verdict
 
+NOTHING = "–"
+"""What is printed where there is no number."""
+
 ARCMIN = 60.0
 """Minutes of arc in a degree."""
 
@@ -51,9 +54,9 @@ def number(value: float | None, digits: int = 3) -> str:
     ('158 000', '1.20×10⁻⁷')
     """
     if value is None:
-        return "–"
+        return NOTHING
     if value != value:
-        return "–"
+        return NOTHING
     if value in (float("inf"), float("-inf")):
         return "∞" if value > 0 else "−∞"
     if value == 0:
@@ -85,7 +88,7 @@ def angle(value_deg: float | None, digits: int = 3) -> str:
     '0.5 deg (30 arcmin)'
     """
     if value_deg is None:
-        return "–"
+        return NOTHING
     return f"{number(value_deg, digits)} deg ({number(value_deg * ARCMIN, digits)} arcmin)"
 
 
@@ -105,7 +108,7 @@ def interval(ends: Sequence[float] | None, digits: int = 3) -> str:
     '0.8 … 1'
     """
     if ends is None:
-        return "–"
+        return NOTHING
     return f"{number(ends[0], digits)} … {number(ends[1], digits)}"
 
 
@@ -120,7 +123,7 @@ def probability(value: float | None) -> str:
     '> 0.999'
     """
     if value is None:
-        return "–"
+        return NOTHING
     if 0 <= value < 0.001:
         return "< 0.001"
     return "> 0.999" if 0.999 < value <= 1 else number(value, 2)

@@ -1,0 +1,153 @@
+"""The dots of a residual panel: samples, or means of neighbours where the diagnosis averaged."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cyclosweep.report.data import ReportData
+from cyclosweep.report.regions import located
+from cyclosweep.report.thin import DISPLAY_LIMIT
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+DEAD_ZONE_SHARE = 0.05
+"""Share of the largest torque below which a reading may be inside the dead zone."""
+FEW_BEYOND = 3.0
+"""Multiple of the residual that all but one in 200 samples keep, above which the largest do not
+set the scale."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ResidualDots:
+    """What a residual panel draws.
+
+    Attributes
+    ----------
+    x : ndarray of float, shape (k,)
+        Place on the panel's axis.
+    before_deg, after_deg : ndarray of float, shape (k,)
+        Residual of the calibrated published model and of the repaired one [deg].
+    located : ndarray of bool, shape (k,)
+        Whether a dot lies where simulation and recording were found to differ.
+    sigma_deg : float
+        Standard deviation of the noise of a dot [deg].
+    averaged : int
+        Neighbouring samples in a dot.
+    limit_deg : float
+        Residual that the axis ends at [deg].
+    """
+
+    x: Floats
+    before_deg: Floats
+    after_deg: Floats
+    located: Mask
+    sigma_deg: float
+    averaged: int
+    limit_deg: float
+
+
+def residual_dots(data: ReportData, shown: NDArray[np.int64], x: Floats) -> ResidualDots:
+    """Dots of the residual before and after over one axis.
+
+    Parameters
+    ----------
+    data : ReportData
+        Recording with both residuals.
+    shown : ndarray of int
+        Scored samples to draw where none are averaged.
+    x : ndarray of float, shape (n,)
+        Value on the axis of every sample.
+    """
+    before, after = data.residual_before_deg, data.residual_after_deg
+    assert before is not None
+    assert after is not None
+    torque, inside = data.recording.torque_nm, located(data)
+    sigma, _ = data.noise
+    thinning, averaged = data.result.thinning, 1
+    if thinning is not None and thinning.averaged > 1 and data.result.noise.sigma_deg:
+        averaged, sigma = thinning.averaged, data.result.noise.sigma_deg
+        mean = _means_of_neighbours(data, averaged)
+        x, before, after, torque = (mean(values) for values in (x, before, after, torque))
+        inside = mean(inside.astype(np.float64)) > 0.5
+    else:
+        x, before, after, torque = (values[shown] for values in (x, before, after, torque))
+        inside = inside[shown]
+    limit = max(scale_deg(torque, before), scale_deg(torque, after), 2 * sigma, 1e-9)
+    return ResidualDots(
+        x=x,
+        before_deg=before,
+        after_deg=after,
+        located=inside,
+        sigma_deg=sigma,
+        averaged=averaged,
+        limit_deg=1.2 * limit,
+    )
+
+
+def scale_deg(torque_nm: Floats, residual_deg: Floats) -> float:
+    """Largest residual that an axis has to show: not that of readings inside the dead zone.
+
+    There the twist says nothing of the drive: a crossing that comes a moment early or late is
+    wrong by the whole play.
+
+    Parameters
+    ----------
+    torque_nm, residual_deg : ndarray of float, shape (n,)
+        Torque [N m] and residual [deg] of the readings.
+    """
+    sizes, loaded = np.abs(residual_deg), np.abs(torque_nm)
+    outside = loaded > DEAD_ZONE_SHARE * loaded.max()
+    shown = sizes[outside] if np.count_nonzero(outside) >= len(sizes) // 2 else sizes
+    usual, largest = float(np.quantile(shown, 0.995)), float(shown.max())
+    return largest if largest < FEW_BEYOND * usual else usual
+
+
+def on_the_way_through(data: ReportData) -> Mask:
+    """Readings at almost no torque that are wrong by a part of the play.
+
+    Parameters
+    ----------
+    data : ReportData
+        Recording with both residuals.
+    """
+    before, after = data.residual_before_deg, data.residual_after_deg
+    assert before is not None
+    assert after is not None
+    torque, scored = data.recording.torque_nm, data.scored
+    sigma, _ = data.noise
+    scales = [scale_deg(torque[scored], r[scored]) for r in (before, after)]
+    light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque[scored]).max())
+    wrong = [
+        np.abs(r) > 1.2 * max(s, 4 * sigma) for r, s in zip((before, after), scales, strict=True)
+    ]
+    found: Mask = light & (wrong[0] | wrong[1])
+    return found
+
+
+def _means_of_neighbours(data: ReportData, averaged: int) -> Callable[[Floats], Floats]:
+    """Return what averages a quantity over neighbours of one branch and side of the dead zone."""
+    recording = data.recording
+    rows = np.flatnonzero(data.scored & ~on_the_way_through(data))
+    torque = recording.torque_nm[rows]
+    light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque).max())
+    kinds = (recording.run[rows], recording.structure.loading[rows], np.sign(torque), light)
+    changes = np.zeros(len(rows), dtype=bool)
+    for kind in kinds:
+        changes[1:] |= kind[1:] != kind[:-1]
+    starts = np.flatnonzero(np.r_[True, changes[1:]]) if len(rows) else np.zeros(0, dtype=np.int64)
+    lengths = np.diff(np.r_[starts, len(rows)])
+    place = np.arange(len(rows)) - np.repeat(starts, lengths)
+    new = np.r_[True, changes[1:]] | (place % averaged == 0)
+    label = np.cumsum(new) - 1
+    counts = np.bincount(label)
+    whole = np.flatnonzero(counts >= averaged // 2 + 1)
+    whole = whole[:: -(-len(whole) // DISPLAY_LIMIT) or 1]
+
+    def mean(values: Floats) -> Floats:
+        means: Floats = np.bincount(label, values[rows])[whole] / counts[whole]
+        return means
+
+    return mean
