@@ -285,7 +285,9 @@ def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
     scale = parameters["compliance_scale"].estimate
     play = parameters["free_play_deg"]
     datum = parameters["datum_deg"].estimate
-    words = f"Calibration: compliance {100 * (scale - 1):+.1f} % against nominal"
+    # Adding zero turns a negative zero into zero.
+    change = round(100 * (scale - 1), 1) + 0.0
+    words = f"Calibration: compliance {change:+.1f} % against nominal"
     if play.std_error is not None:
         words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
     return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
