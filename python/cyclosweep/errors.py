@@ -1,11 +1,14 @@
 """Errors that end in one clear line: bad input, a design that cannot be built, a failed sweep."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from typing import TypeVar
 
 from cyclosweep._core import DesignError
 
-__all__ = ["DesignError", "InputError", "SweepError", "did_you_mean"]
+__all__ = ["DesignError", "InputError", "SweepError", "did_you_mean", "one_of"]
+
+Name = TypeVar("Name", bound=object)
 
 _SHORTEST_PART = 4
 """Letters of a name that is looked for inside known ones: three are in too many of them."""
@@ -57,6 +60,43 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     if not close and len(wanted) >= _SHORTEST_PART:
         close = sorted((each for each in written if wanted in each), key=len)
     return f", did you mean {written[close[0]]}?" if close else ""
+
+
+def one_of(what: str, found: Name, known: Collection[object]) -> Name:
+    """Return a name that has to be one of several, and refuse another.
+
+    Parameters
+    ----------
+    what : str
+        What is chosen, as a message calls it.
+    found : object
+        The name.
+    known : collection
+        Names that exist.
+
+    Returns
+    -------
+    object
+        The name as it was found.
+
+    Raises
+    ------
+    InputError
+        With all names, and the one that was most likely meant.
+
+    Examples
+    --------
+    >>> one_of("side", "input", ("input", "output"))
+    'input'
+    """
+    # A list or an array is no name, and could not be looked for in a dictionary.
+    if not isinstance(found, (str, int, type(None))) or found not in known:
+        names = [str(name) for name in known]
+        raise InputError(
+            f"{what}: found {found!r}, expected one of {', '.join(names)}"
+            f"{did_you_mean(found, names)}"
+        )
+    return found
 
 
 def _plain(name: str) -> str:

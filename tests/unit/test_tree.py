@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2] / "python"
 FILES = sorted(ROOT.rglob("*.py"))
 LONGEST = 400
 
-BASE = {"errors", "atomic"}
+BASE = {"errors", "atomic", "notebook"}
 DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
@@ -24,6 +24,7 @@ REFERENCE = DIAGNOSIS | {"sweep", "reference"}
 MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
+    "notebook": set(),
     "_moved": set(),
     "dynamics": BASE,
     "design": BASE | {"dynamics"},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from importlib import resources
@@ -14,13 +15,14 @@ from pydantic import ValidationError
 from cyclosweep.atomic import write_text
 from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion
 from cyclosweep.design.drive_train import CalibratedModel, TrainParts, train_of
+from cyclosweep.design.json_files import JsonSource, json_object, name_of
 from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.design.parts import TRAIN_INPUTS
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
 from cyclosweep.design.toml_files import one_line, read_toml
 from cyclosweep.dynamics.train import Train
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, did_you_mean
 
 __all__ = [
     "CRITERIA",
@@ -101,7 +103,10 @@ class Drive(PublishedDrive):
         """
         if name not in _BUILT_IN:
             known = ", ".join(_BUILT_IN)
-            raise InputError(f"drive {name!r}: no such built-in drive, expected {known} or a file")
+            hint = did_you_mean(name, _BUILT_IN)
+            raise InputError(
+                f"drive {name!r}: no such built-in drive, expected {known} or a file{hint}"
+            )
         text = resources.files("cyclosweep.design").joinpath(_BUILT_IN[name]).read_text("utf-8")
         return cls._from_table(tomllib.loads(text), name)
 
@@ -151,7 +156,7 @@ class Drive(PublishedDrive):
         try:
             return cls.model_validate(table)
         except ValidationError as error:
-            raise InputError(f"{source}: {one_line(error)}") from None
+            raise InputError(f"{source}: {one_line(error, cls)}") from None
 
     def to_toml(self, path: str | Path) -> None:
         """Write the drive file that reads back as this drive.
@@ -161,11 +166,49 @@ class Drive(PublishedDrive):
         path : str or Path
             The file.
         """
+        write_text(path, tomli_w.dumps(self._table()))
+
+    def _table(self) -> dict[str, Any]:
+        """What a file holds: every key that is given."""
         table = self.model_dump(exclude_none=True)
         table["shaft"] = list(table["shaft"])
         if not table["shaft"]:
             del table["shaft"]
-        write_text(path, tomli_w.dumps(table))
+        return table
+
+    def to_json(self) -> str:
+        """Return the keys of the drive file as JSON."""
+        return json.dumps(self._table(), indent=1)
+
+    @classmethod
+    def from_json(cls, source: JsonSource) -> Drive:
+        """Read what :meth:`to_json` returned.
+
+        Parameters
+        ----------
+        source : str, Path or mapping
+            The text, a file of it, or its decoded content.
+
+        Returns
+        -------
+        Drive
+
+        Raises
+        ------
+        InputError
+            One line that names the key, what was found and what was expected.
+
+        Examples
+        --------
+        >>> drive = Drive.reference_87()
+        >>> Drive.from_json(drive.to_json()) == drive
+        True
+        """
+        try:
+            table = json_object(source)
+        except InputError as error:
+            raise InputError(f"{name_of(source)}: {error}") from None
+        return cls._from_table(table, name_of(source))
 
     def replace(self, **changes: Any) -> Drive:
         """Return this drive with some inputs changed.
@@ -190,16 +233,18 @@ class Drive(PublishedDrive):
         >>> Drive.reference_87().replace(eccentricity_mm=0.7).eccentricity_mm
         0.7
         """
-        table = self.model_dump()
+        table: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
         for name, value in changes.items():
-            if match := re.fullmatch(r"shaft_(\d+)_(\w+)", name):
-                if name not in self.inputs():
-                    raise InputError(f"{name}: no such input of this drive")
-                table["shaft"][int(match[1]) - 1][match[2]] = value
-            elif name in table:
+            if name in table:
                 table[name] = value
+            elif (match := re.fullmatch(r"shaft_(\d+)_(\w+)", name)) and name in self.inputs():
+                shaft = list(table["shaft"])
+                number = int(match[1]) - 1
+                shaft[number] = {**dict(shaft[number]), match[2]: value}
+                table["shaft"] = shaft
             else:
-                raise InputError(f"{name}: no such input of this drive")
+                hint = did_you_mean(name, [*table, *self.inputs()])
+                raise InputError(f"{name}: no such input of this drive{hint}")
             table["provenance"] = {
                 key: mark
                 for key, mark in table["provenance"].items()
@@ -253,7 +298,10 @@ class Drive(PublishedDrive):
         unknown = [name for name in parts if name not in TrainParts.__dataclass_fields__]
         if unknown:
             known = ", ".join(TrainParts.__dataclass_fields__)
-            raise InputError(f"{unknown[0]}: no such part of a train, expected one of {known}")
+            hint = did_you_mean(unknown[0], TrainParts.__dataclass_fields__)
+            raise InputError(
+                f"{unknown[0]}: no such part of a train, expected one of {known}{hint}"
+            )
         own = {name: getattr(self, name) for name in TRAIN_INPUTS}
         given = {**{name: value for name, value in own.items() if value is not None}, **parts}
         return train_of(self, model, TrainParts(**given), with_efficiency)

@@ -141,7 +141,7 @@ class Event(TomlTable):
         try:
             return cls.model_validate(table)
         except ValidationError as error:
-            raise InputError(f"{path}: {one_line(error)}") from None
+            raise InputError(f"{path}: {one_line(error, cls)}") from None
 
     def of_drive(self, drive: PublishedDrive) -> Self:
         """Return this event with a drive's ratings where it states none.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Self
+from collections import Counter
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -11,6 +12,8 @@ import cyclosweep._core as _core
 from cyclosweep.design.active_pins import CRITERIA, Criterion
 from cyclosweep.design.shaft import NonNegative, Positive, Segment, dimensions
 from cyclosweep.design.toml_files import TomlTable
+from cyclosweep.errors import did_you_mean
+from cyclosweep.notebook import html_table
 
 __all__ = ["MARKS", "DriveInputs"]
 
@@ -64,14 +67,61 @@ class DriveInputs(TomlTable):
             raise ValueError(
                 "neither [[shaft]] nor output_stiffness_nm_per_arcmin, expected one of them"
             )
+        known = frozenset(self.marked()) if self.provenance else frozenset()
         for key, mark in self.provenance.items():
-            if key not in self.marked():
-                raise ValueError(f"provenance.{key}: no such input of this drive")
+            if key not in known:
+                hint = did_you_mean(key, known)
+                raise ValueError(f"provenance.{key}: no such input of this drive{hint}")
             if mark.partition(":")[0].strip() not in MARKS:
                 raise ValueError(
                     f"provenance.{key}: found {mark!r}, expected one of {', '.join(MARKS)}"
+                    f"{did_you_mean(mark.partition(':')[0], MARKS)}"
                 )
         return self
+
+    def __hash__(self) -> int:
+        """Hash of every number and name; equal drives have equal hashes, marks left out."""
+        given = (getattr(self, name) for name in type(self).model_fields if name != "provenance")
+        return hash(tuple(given))
+
+    def __repr__(self) -> str:
+        discs = "1 disc" if self.disc_count == 1 else f"{self.disc_count} discs"
+        return (
+            f"<Drive {self.name}: {self.ratio}:1, {discs}, {self.output_pin_count} output pins, "
+            f"eccentricity {self.eccentricity_mm:g} mm, {self.output_torque_nm:g} N m>"
+        )
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        marks = Counter(mark.partition(":")[0].strip() for mark in self.provenance.values())
+        kinds = ", ".join(segment.kind for segment in self.shaft)
+        stiffness = self.output_stiffness_nm_per_arcmin
+        rows = {
+            "ratio": f"{self.ratio}:1, {self.disc_count} discs",
+            "eccentricity": f"{self.eccentricity_mm:g} mm",
+            "ring pins": f"{self.ratio + 1} on radius {self.ring_pin_circle_radius_mm:g} mm",
+            "output pins": f"{self.output_pin_count} of {self.output_pin_diameter_mm:g} mm "
+            f"on radius {self.output_pin_circle_radius_mm:g} mm",
+            "rating": f"{self.output_torque_nm:g} N m at the output, {self.input_power_kw:g} kW at "
+            f"{self.input_speed_rpm:g} rpm",
+            "free play": f"{self.free_play_deg:g} deg at the input",
+            "shaft": kinds,
+            "output stiffness": None if stiffness is None else f"{stiffness:g} N m/arcmin",
+            "criterion": self.criterion,
+            "numbers": ", ".join(f"{marks[mark]} {mark}" for mark in MARKS if marks[mark]),
+        }
+        return html_table(f"Drive {self.name}", rows)
+
+    if not TYPE_CHECKING:  # so that a wrong name stays an error to a type checker
+
+        def __getattr__(self, name: str) -> Any:
+            try:
+                return super().__getattr__(name)
+            except AttributeError:
+                known = () if name.startswith("_") else (*type(self).model_fields, *dir(type(self)))
+                hint = did_you_mean(name, known)
+                raise AttributeError(f"{name}: no such attribute of a drive{hint}") from None
 
     def inputs(self) -> tuple[str, ...]:
         """Names of every input of the published model, in order; each can be an axis of a study."""

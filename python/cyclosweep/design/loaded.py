@@ -10,6 +10,7 @@ import numpy.typing as npt
 import polars as pl
 
 import cyclosweep._core as _core
+from cyclosweep.design.numbers import finite_number
 from cyclosweep.errors import InputError
 
 __all__ = ["LoadedState", "loaded_state"]
@@ -100,10 +101,10 @@ def loaded_state(
     InputError
         For a torque that is zero or no finite number, or an angle that is no finite number.
     """
-    if not math.isfinite(torque_nm) or torque_nm == 0:
-        raise InputError(f"output_torque_nm: found {torque_nm:g}, expected a number but zero")
-    if not math.isfinite(crank_rad):
-        raise InputError(f"crank_rad: found {crank_rad:g}, expected a finite number")
+    torque_nm = finite_number("output_torque_nm", torque_nm)
+    if torque_nm == 0:
+        raise InputError("output_torque_nm: found 0, expected a number but zero")
+    crank_rad = finite_number("crank_rad", crank_rad)
     found = part_study.state(study, 0, torque_nm, crank_rad, engine)
     shaft = torque_nm * found["shaft_compliance"]
     discs = np.array(found["discs"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from cyclosweep.errors import InputError
 
-__all__ = ["checked_loads", "plain", "real_numbers", "whole_number"]
+__all__ = ["checked_loads", "finite_number", "plain", "real_numbers", "whole_number"]
 
 
 def plain(value: object) -> object:
@@ -66,6 +66,36 @@ def real_numbers(name: str, values: Iterable[object]) -> list[float]:
         except OverflowError:
             raise InputError(f"{name}: found an integer beyond the range of floats") from None
     return numbers
+
+
+def finite_number(name: str, value: object) -> float:
+    """Return a value as a float, and refuse what is no finite number.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in a message.
+    value : object
+        A number, plain or of NumPy.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        For NaN, an infinity, a truth value, a text or anything else that is no number.
+
+    Examples
+    --------
+    >>> finite_number("crank_rad", np.float32(0.5))
+    0.5
+    """
+    number = real_numbers(name, [value])[0]
+    if not math.isfinite(number):
+        raise InputError(f"{name}: found {number:g}, expected a finite number")
+    return number
 
 
 def whole_number(name: str, value: object, *, least: int = 0, most: int | None = None) -> int:

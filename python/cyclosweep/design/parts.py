@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, get_args
 
 import polars as pl
 from pydantic import Field, field_validator
@@ -16,6 +16,7 @@ from cyclosweep.design.numbers import checked_loads
 from cyclosweep.design.pin_loads import THICK_FLANGE, Pin, pin_load_table, root_flexibility
 from cyclosweep.design.shaft import NonNegative, Positive
 from cyclosweep.design.torque_twist import Rig, TorqueTwist, torque_twist_curve
+from cyclosweep.errors import one_of
 
 __all__ = ["PART_DEFAULTS", "TRAIN_INPUTS", "Engine", "PartInputs"]
 
@@ -281,7 +282,10 @@ class PartInputs(DriveInputs):
         ------
         DesignError
             When the drive cannot be built or has no component model.
+        InputError
+            For another engine.
         """
+        one_of("engine", engine, get_args(Engine))
         study = self.study()
         if (reason := study.explain(0)) is not None:
             raise _core.DesignError(f"{self.name}: {reason}")

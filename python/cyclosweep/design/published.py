@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import cyclosweep._core as _core
 from cyclosweep.design.hole_paths import HolePaths
 from cyclosweep.design.nominal_line import NominalLine, Side
 from cyclosweep.design.numbers import checked_loads
+from cyclosweep.errors import one_of
 
 __all__ = ["PublishedDrive"]
 
@@ -73,6 +75,8 @@ class PublishedDrive(HolePaths):
 
         Raises
         ------
+        InputError
+            For another side.
         DesignError
             When the drive cannot be built and gives no stiffness of its own, or when its criterion
             is ``statics`` and it has more than two discs.
@@ -84,6 +88,7 @@ class PublishedDrive(HolePaths):
         >>> line.free_play_deg
         28.0
         """
+        one_of("side", side, get_args(Side))
         if self.output_stiffness_nm_per_arcmin is not None:
             at_output = 1.0 / (60.0 * self.output_stiffness_nm_per_arcmin)
             at_input = at_output * self.ratio**2

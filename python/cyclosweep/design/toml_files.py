@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
 from cyclosweep.design.numbers import plain
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, did_you_mean
 
 __all__ = ["TomlTable", "one_line", "read_toml"]
 
@@ -29,6 +33,25 @@ class TomlTable(BaseModel):
             return {key: plain(value) for key, value in table.items()}
         return table
 
+    if not TYPE_CHECKING:  # a type checker sees the fields
+
+        def __init__(self, **given: Any) -> None:
+            try:
+                super().__init__(**given)
+            except ValidationError as error:
+                line = one_line(error, type(self))
+                raise InputError(f"{type(self).__name__}: {line}") from None
+
+        # Reading a file does not come through here: pydantic's own mark of a plain constructor.
+        __init__.__pydantic_base_init__ = True
+
+        def __setattr__(self, name: str, value: object) -> None:
+            if name.startswith("_"):
+                super().__setattr__(name, value)
+            else:
+                kind = type(self).__name__
+                raise InputError(f"{name}: a {kind} does not change, expected a new {kind}")
+
 
 def read_toml(path: str | Path) -> dict[str, Any]:
     """Read a TOML file.
@@ -47,6 +70,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     InputError
         When it is not there, not text or not TOML.
     """
+    if not isinstance(path, (str, Path)):
+        raise InputError(f"file: found {path!r}, expected the path of a TOML file")
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
@@ -59,13 +84,30 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"{path}: nested too deeply, expected a flat TOML file") from None
 
 
-def one_line(error: ValidationError) -> str:
+_EXPECTED = {
+    "float_type": "a number",
+    "bool_type": "true or false",
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "dict_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+}
+"""What a key takes, in the words of a TOML file rather than of Python."""
+
+
+_QUOTE = "'"
+
+
+def one_line(error: ValidationError, *tables: type[BaseModel]) -> str:
     """Put a validation error into one line: key, what was found, what was expected.
 
     Parameters
     ----------
     error : pydantic.ValidationError
         What pydantic refused.
+    *tables : type
+        The table that was read, or all that it could be: by their keys a misspelt one is known.
 
     Returns
     -------
@@ -77,19 +119,61 @@ def one_line(error: ValidationError) -> str:
     where = _path(first["loc"])
     kind = first["type"]
     more = len(problems) - 1
+    unknown = [_unknown(other, tables) for other in problems if other["type"] == "extra_forbidden"]
     if kind == "missing":
         missing = [_path(other["loc"]) for other in problems if other["type"] == "missing"]
-        text = f"{', '.join(missing)}: missing"
-        more = len(problems) - len(missing)
+        # A key is missing because it is misspelt, where an unknown one is close to a known one.
+        misspelt = [text for text in unknown if text.endswith("?")]
+        text = "; ".join([f"{', '.join(missing)}: missing", *misspelt])
+        more = len(problems) - len(missing) - len(misspelt)
     elif kind == "extra_forbidden":
-        text = f"{where}: unknown key"
+        text = unknown[0]
     elif kind == "value_error":
         text = first["msg"].removeprefix("Value error, ")
         text = f"{where}: {text}" if where else text
+    elif kind == "union_tag_not_found":
+        text = f"{where}.{first['ctx']['discriminator'].strip(_QUOTE)}: missing"
+    elif kind == "union_tag_invalid":
+        choices = first["ctx"]["expected_tags"]
+        where = f"{where}.{first['ctx']['discriminator'].strip(_QUOTE)}"
+        text = f"{where}: {_not_of(first['ctx']['tag'], choices)}"
     else:
         wanted = first["msg"].removeprefix("Input should be ").removeprefix("a valid ")
-        text = f"{where}: found {_shortened(repr(first['input']))}, expected {wanted}"
+        wanted = _EXPECTED.get(kind, wanted)
+        text = f"{where}: {_not_of(first['input'], wanted)}"
     return f"{text} (and {more} more)" if more else text
+
+
+def _unknown(problem: ErrorDetails, tables: Sequence[type[BaseModel]]) -> str:
+    """What is said of a key that no table has."""
+    steps = problem["loc"]
+    return f"{_path(steps)}: unknown key{did_you_mean(steps[-1], _keys(tables, steps))}"
+
+
+def _not_of(found: object, wanted: str) -> str:
+    """What was found and what was expected, with the one of several choices that was meant."""
+    hint = did_you_mean(found, re.findall(r"'([^']+)'", wanted))
+    return f"found {_shortened(repr(found))}, expected {wanted}{hint}"
+
+
+def _keys(tables: Sequence[type[BaseModel]], steps: tuple[int | str, ...]) -> list[str]:
+    """Keys of the table in which the last step of a path stands."""
+    for step in steps[:-1]:
+        fields = [field for each in tables for key, field in _by_key(each).items() if key == step]
+        # An index of a list, or the kind of a segment, stays in the same tables.
+        tables = [each for field in fields for each in _tables(field.annotation)] or tables
+    return [key for each in tables for key in _by_key(each)]
+
+
+def _by_key(table: type[BaseModel]) -> dict[str, FieldInfo]:
+    return {field.alias or name: field for name, field in table.model_fields.items()}
+
+
+def _tables(annotation: Any) -> list[type[BaseModel]]:
+    """Every kind of table in a type, however deep."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [table for inner in get_args(annotation) for table in _tables(inner)]
 
 
 def _path(steps: tuple[int | str, ...]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,8 @@ import polars as pl
 
 import cyclosweep._core as _core
 from cyclosweep.design.nominal_line import NominalLine, Side
-from cyclosweep.errors import InputError
+from cyclosweep.design.numbers import finite_number, whole_number
+from cyclosweep.errors import InputError, one_of
 
 __all__ = ["Rig", "TorqueTwist", "torque_twist_curve"]
 
@@ -187,14 +188,12 @@ def torque_twist_curve(study: _core.Study, parts: _core.PartStudy, rig: Rig) -> 
         For another side, an angle or a load that is no such number, or fewer than two points.
     """
     side, crank_deg, nominal, to_load_tn, points = rig
-    if side not in ("input", "output"):
-        raise InputError(f"side: found {side!r}, expected 'input' or 'output'")
-    if not math.isfinite(crank_deg):
-        raise InputError(f"crank_deg: found {crank_deg:g}, expected a finite number")
-    if not (math.isfinite(to_load_tn) and to_load_tn > 0):
+    one_of("side", side, get_args(Side))
+    crank_deg = finite_number("crank_deg", crank_deg)
+    to_load_tn = finite_number("to_load_tn", to_load_tn)
+    if to_load_tn <= 0:
         raise InputError(f"to_load_tn: found {to_load_tn:g}, expected a number above zero")
-    if not 2 <= points <= 1_000_000:
-        raise InputError(f"points: found {points}, expected 2 to 1000000")
+    points = whole_number("points", points, least=2, most=1_000_000)
     plays, reached, tables = [], True, []
     for sense in (-1.0, 1.0):
         rows, converged, play, far_enough = _core.torque_twist(

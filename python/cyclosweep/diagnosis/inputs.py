@@ -4,7 +4,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects import effects as all_effects
@@ -62,6 +62,5 @@ def considered_effects(without: Collection[str]) -> tuple[Effect, ...]:
     known = all_effects()
     names = {effect.name for effect in known}
     for name in without:
-        if name not in names:
-            raise InputError(f"without: found {name!r}, expected one of {', '.join(sorted(names))}")
+        one_of("without", name, sorted(names))
     return tuple(effect for effect in known if effect.name not in without)

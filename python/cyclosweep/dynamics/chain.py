@@ -12,7 +12,7 @@ import numpy.typing as npt
 import cyclosweep._core as _core
 from cyclosweep.dynamics.checks import numbered, same_length, spring_of
 from cyclosweep.dynamics.spring import Brake, TrainSpring
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, did_you_mean
 
 __all__ = ["Chain"]
 
@@ -175,7 +175,8 @@ class Chain:
             return self.names.index(name)
         if isinstance(name, int) and -count <= name < count:
             return name % count
-        raise InputError(f"node {name!r}: no such node, expected {', '.join(self.names)}")
+        hint = did_you_mean(name, self.names)
+        raise InputError(f"node {name!r}: no such node, expected {', '.join(self.names)}{hint}")
 
     def carried(self, torques_nm: Reals) -> Reals:
         """Torque of each spring under constant torques, all referred to the first shaft.

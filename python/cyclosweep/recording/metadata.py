@@ -284,4 +284,4 @@ class Metadata(_Strict):
         try:
             return cls.model_validate(read_toml(path))
         except ValidationError as error:
-            raise InputError(f"{path}: {one_line(error)}") from None
+            raise InputError(f"{path}: {one_line(error, cls)}") from None

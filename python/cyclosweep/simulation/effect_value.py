@@ -6,7 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, did_you_mean
 from cyclosweep.simulation.effects import Effect, find
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.json_fields import number_of, object_of, text_of
@@ -107,7 +107,8 @@ def _amplitudes(
     names = [parameter.name for parameter in effect.amplitudes(shape)]
     for name in given:
         if name not in names:
-            raise InputError(f"amplitude {name!r}: unknown, expected {', '.join(names)}")
+            hint = did_you_mean(name, names)
+            raise InputError(f"amplitude {name!r}: unknown, expected {', '.join(names)}{hint}")
     count = len(names) if not effect.fewer_amplitudes(shape) else max(len(given), 1)
     return tuple(number_of(given, name) for name in names[:count])
 

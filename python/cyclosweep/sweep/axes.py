@@ -18,7 +18,7 @@ from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers, whole_number
 from cyclosweep.design.parts import PART_DEFAULTS
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, one_of
 
 __all__ = [
     "OPTIONAL",
@@ -185,12 +185,7 @@ def criterion_codes(values: Iterable[object]) -> list[float]:
     """Numbers by which the core knows criteria; InputError for a name that is none."""
     codes = []
     for value in values:
-        if value not in CRITERIA:
-            raise InputError(
-                f"criterion: found {value!r}, expected one of {', '.join(CRITERIA)}"
-                f"{did_you_mean(value, CRITERIA)}"
-            )
-        codes.append(float(CRITERIA.index(value)))
+        codes.append(float(CRITERIA.index(one_of("criterion", str(value), CRITERIA))))
     return codes
 
 

@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from typing import Literal
 
 from cyclosweep.design.numbers import whole_number
-from cyclosweep.errors import InputError, SweepError
+from cyclosweep.errors import InputError, SweepError, did_you_mean
 
 __all__ = ["ENGINES", "Engine", "MakeExecutor", "dask_executor", "executor_of", "lend"]
 
@@ -66,7 +66,10 @@ def executor_of(
         return lambda: _process_pool(workers or os.cpu_count() or 1)
     if engine == "dask":
         return lambda: dask_executor(workers, scheduler)
-    raise InputError(f"engine: found {engine!r}, expected one of {', '.join(ENGINES)}")
+    raise InputError(
+        f"engine: found {engine!r}, expected one of {', '.join(ENGINES)}"
+        f"{did_you_mean(engine, ENGINES)}"
+    )
 
 
 @contextlib.contextmanager

@@ -18,7 +18,7 @@ from cyclosweep.design.numbers import checked_loads, real_numbers
 from cyclosweep.design.part_units import TRAIN_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS, TRAIN_INPUTS, Engine
 from cyclosweep.design.units import quantity
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, did_you_mean, one_of
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study_file import read_study_file
@@ -118,7 +118,10 @@ class Study:
         axes = {axis.name for axis in space.axes}
         for name, _, _ in bounds:
             if name not in columns or name in ("criterion", "solver_status"):
-                raise InputError(f"limits.{name}: no such column, expected an input or a result")
+                hint = did_you_mean(name, columns)
+                raise InputError(
+                    f"limits.{name}: no such column, expected an input or a result{hint}"
+                )
             if name in TRAIN_OUTPUTS:
                 raise InputError(f"limits.{name}: found a train column, filter by it instead")
             if name in PART_DEFAULTS and name not in axes:
@@ -126,7 +129,8 @@ class Study:
         if objective is not None:
             dtype = study.schema().get(objective.column)
             if dtype is None:
-                raise InputError(f"objective: no column {objective.column} in this study")
+                hint = did_you_mean(objective.column, study.schema())
+                raise InputError(f"objective: no column {objective.column} in this study{hint}")
             if isinstance(dtype, pl.Enum):
                 raise InputError(f"objective: {objective.column} is no number, expected one")
         return study
@@ -255,13 +259,8 @@ _PART_KINDS = dict(_core.part_output_table())
 
 def _known(model: StudyModel, solver: Engine) -> tuple[StudyModel, Engine]:
     """Return the names of a model and a solver; InputError for one that is not known."""
-    for name, value, known in (
-        ("model", model, get_args(StudyModel)),
-        ("solver", solver, get_args(Engine)),
-    ):
-        if value not in known:
-            raise InputError(f"{name}: found {value!r}, expected one of {', '.join(known)}")
-    return model, solver
+    one_of("model", model, get_args(StudyModel))
+    return model, one_of("solver", solver, get_args(Engine))
 
 
 def _bounds(name: str, low: float | None, high: float | None) -> tuple[str, float, float]:

@@ -39,7 +39,7 @@ def read_study_file(path: str | Path) -> StudyFile:
     try:
         return StudyFile.model_validate(table)
     except ValidationError as error:
-        raise InputError(f"{path}: {one_line(error)}") from None
+        raise InputError(f"{path}: {one_line(error, StudyFile)}") from None
 
 
 class _Sample(TomlTable):
@@ -141,7 +141,7 @@ class StudyFile(TomlTable):
                 return list(_Values.model_validate(spec).values)
             parsed = _Range.model_validate(spec)
         except ValidationError as error:
-            raise InputError(f"axes.{name}.{one_line(error)}") from None
+            raise InputError(f"axes.{name}.{one_line(error, _Range, _Values)}") from None
         if parsed.steps is not None:
             return Linspace(parsed.start, parsed.stop, parsed.steps)
         if is_grid:

@@ -1,5 +1,6 @@
 """Physics that the published model leaves out: thirteen effects, and users' own."""
 
+from cyclosweep.errors import InputError, did_you_mean
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape
 from cyclosweep.simulation.effects.clearance_takeup import ClearanceTakeup
 from cyclosweep.simulation.effects.contact_stiffening import ContactStiffening
@@ -47,11 +48,13 @@ def find(name: str) -> Effect:
 
     Raises
     ------
-    ValueError
+    InputError
         No effect of this name is registered.
     """
     if name not in _REGISTERED:
-        raise ValueError(f"effect {name!r}: expected one of {', '.join(_REGISTERED)}")
+        known = ", ".join(_REGISTERED)
+        hint = did_you_mean(name, _REGISTERED)
+        raise InputError(f"effect {name!r}: expected one of {known}{hint}")
     return _REGISTERED[name]
 
 
@@ -60,10 +63,13 @@ def register(effect: Effect) -> Effect:
 
     Raises
     ------
-    ValueError
-        The name is taken.
+    InputError
+        It is no effect, or its name is taken.
     """
+    if not isinstance(effect, Effect):
+        found = f"the class {effect.__name__}" if isinstance(effect, type) else repr(effect)
+        raise InputError(f"effect: found {found}, expected an instance of Effect")
     if effect.name in _REGISTERED:
-        raise ValueError(f"effect {effect.name!r} is registered already")
+        raise InputError(f"effect {effect.name!r} is registered already")
     _REGISTERED[effect.name] = effect
     return effect
