@@ -36,9 +36,9 @@ def files(folder: Path) -> dict[str, bytes]:
 def assert_whole(folder: Path, expected: pl.DataFrame = WHOLE) -> None:
     names = sorted(path.name for path in folder.iterdir())
     parts = -(-expected.height // ROWS)
-    assert names == ["manifest.json", *(f"part-{k:06d}.parquet" for k in range(parts))]
+    assert names == ["_manifest.json", *(f"part-{k:06d}.parquet" for k in range(parts))]
     assert_frame_equal(cs.scan_dataset(folder).collect(), expected, check_exact=True)
-    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest = json.loads((folder / "_manifest.json").read_text())
     assert manifest["complete"] is True
     assert manifest["rows"] == manifest["variants"] == expected.height
     assert [part["file"] for part in manifest["parts"]] == names[1:]
@@ -129,7 +129,7 @@ def test_a_part_says_what_it_is(tmp_path: Path) -> None:
         assert footer["columns"]["reflected_compliance_rad_per_nm"]["unit"] == "rad/(N m)"
         assert all(c["meaning"] and c["unit"] for c in footer["columns"].values())
         assert footer["record"]["stop"] - footer["record"]["start"] in (ROWS, 30)
-    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    manifest = json.loads((tmp_path / "_manifest.json").read_text())
     assert manifest["study"] == STUDY.hash
     assert manifest["version"] == cs.__version__
     assert manifest["definition"]["method"] == "sobol"
@@ -205,7 +205,7 @@ def test_a_part_in_another_s_place_is_written_again(tmp_path: Path) -> None:
 @pytest.mark.parametrize("damage", ["deleted", "emptied", "halved"])
 def test_a_damaged_manifest_is_made_again(tmp_path: Path, damage: str) -> None:
     sink(tmp_path)
-    DAMAGE[damage](tmp_path / "manifest.json")
+    DAMAGE[damage](tmp_path / "_manifest.json")
     sink(tmp_path)
     assert_whole(tmp_path)
 
@@ -219,7 +219,7 @@ OTHER = cs.Study.of(
 def test_another_study_is_refused_and_left_untouched(tmp_path: Path, damage: str) -> None:
     sink(tmp_path, study=OTHER)
     if "manifest" in damage:
-        (tmp_path / "manifest.json").unlink()
+        (tmp_path / "_manifest.json").unlink()
     if "first part" in damage:
         DAMAGE["truncated"](tmp_path / "part-000000.parquet")
     before = files(tmp_path)
@@ -232,7 +232,7 @@ def test_another_study_is_refused_and_left_untouched(tmp_path: Path, damage: str
 
 def test_a_garbled_manifest_is_not_deleted_before_the_folder_is_refused(tmp_path: Path) -> None:
     sink(tmp_path, study=OTHER)
-    (tmp_path / "manifest.json").write_text("{")
+    (tmp_path / "_manifest.json").write_text("{")
     before = files(tmp_path)
     with pytest.raises(cs.InputError, match="holds another study"):
         sink(tmp_path)
@@ -386,7 +386,7 @@ def test_a_part_that_always_fails_is_named_and_the_others_are_kept(
     assert tried.count(2) == tried.count(5) == 3
     names = {path.name for path in tmp_path.glob("part-*")}
     assert names == {f"part-{k:06d}.parquet" for k in (0, 1, 3, 4, 6, 7)}
-    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    manifest = json.loads((tmp_path / "_manifest.json").read_text())
     assert manifest["complete"] is False
     assert manifest["rows"] == 530
     monkeypatch.undo()

@@ -106,7 +106,7 @@ def test_interrupted_from_the_keyboard(tmp_path: Path, whole: pl.DataFrame) -> N
         found = whole_parts(folder)
         assert 4 <= found < PARTS
         # An interrupted sweep has time to say what it left.
-        manifest = json.loads((folder / "manifest.json").read_text())
+        manifest = json.loads((folder / "_manifest.json").read_text())
         assert len(manifest["parts"]) == found
         assert not list(folder.glob("*.tmp"))
     go_on(folder)

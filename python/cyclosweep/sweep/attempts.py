@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from itertools import islice
 
 import polars as pl
 
@@ -82,11 +83,12 @@ def _study_of_this_process(study: Study) -> Study:
 
 def run_shards(
     dataset: Dataset,
-    parts: Sequence[Part],
+    parts: Iterable[Part],
     make_executor: Callable[[], AbstractContextManager[Executor]],
     on_done: Callable[[PartSummary], None] = lambda summary: None,
     *,
     parts_per_task: int = 1,
+    count: int | None = None,
 ) -> list[PartSummary]:
     """Write parts through any executor, each attempted up to three times.
 
@@ -94,14 +96,16 @@ def run_shards(
     ----------
     dataset : Dataset
         Where they belong.
-    parts : sequence of Part
-        Which ones.
+    parts : iterable of Part
+        Which ones; taken one by one as there is room for them.
     make_executor : callable
         Gives a context manager of an executor; called again when a worker's death broke it.
     on_done : callable
         Called with each part's summary.
     parts_per_task : int
         Parts that travel to a worker together.
+    count : int, optional
+        How many parts there are, for messages; needed where `parts` does not know.
 
     Returns
     -------
@@ -113,13 +117,8 @@ def run_shards(
         When parts failed for good, naming the first; the others are written before. When the
         scheduler of the executor is gone.
     """
-    run = _Run(dataset, on_done)
-    tasks = [
-        list(parts[first : first + parts_per_task])
-        for first in range(0, len(parts), parts_per_task)
-    ]
-    run.waiting.extend(tasks)
-    while run.waiting or run.suspects:
+    run = _Run(dataset, on_done, iter(parts), parts_per_task)
+    while run.has_waiting() or run.suspects:
         # Parts that ran while a worker died are tried one at a time, to find the one at fault.
         alone = not run.waiting
         if alone:
@@ -128,10 +127,10 @@ def run_shards(
             run.drain(executor, window=1 if alone else None)
     if run.failed:
         first = min(run.failed)
+        total = len(parts) if isinstance(parts, Sized) else count or run.begun
         raise SweepError(
             f"{dataset.folder}: part {first} failed: {_reason(run.failed[first])}; "
-            f"{len(run.summaries)} of {len(parts)} parts written, "
-            "the same command goes on from there"
+            f"{len(run.summaries)} of {total} parts written, the same command goes on from there"
         )
     return run.summaries
 
@@ -139,14 +138,30 @@ def run_shards(
 class _Run:
     """The state of one `run_shards`: tasks that wait, attempts, failures and summaries."""
 
-    def __init__(self, dataset: Dataset, on_done: Callable[[PartSummary], None]) -> None:
+    def __init__(
+        self,
+        dataset: Dataset,
+        on_done: Callable[[PartSummary], None],
+        parts: Iterator[Part],
+        parts_per_task: int,
+    ) -> None:
         self.dataset = dataset
         self.on_done = on_done
+        self.parts = parts
+        self.parts_per_task = parts_per_task
+        self.begun = 0
         self.waiting: deque[list[Part]] = deque()
         self.suspects: deque[Part] = deque()
         self.attempts: Counter[int] = Counter()
         self.failed: dict[int, BaseException] = {}
         self.summaries: list[PartSummary] = []
+
+    def has_waiting(self) -> bool:
+        """Whether a task waits; takes the next parts of the study where none does."""
+        if not self.waiting and (task := list(islice(self.parts, self.parts_per_task))):
+            self.begun += len(task)
+            self.waiting.append(task)
+        return bool(self.waiting)
 
     def drain(self, executor: Executor, window: int | None) -> None:
         """Run what waits, at most ``window`` tasks at a time, until the executor breaks."""
@@ -155,8 +170,8 @@ class _Run:
         running: dict[Future[list[PartSummary | Exception]], list[Part]] = {}
         broken = False
         try:
-            while (self.waiting and not broken) or running:
-                while self.waiting and not broken and len(running) < window:
+            while running or (not broken and self.has_waiting()):
+                while not broken and len(running) < window and self.has_waiting():
                     task = self.waiting.popleft()
                     self.attempts.update(part.index for part in task)
                     try:
@@ -199,6 +214,7 @@ class _Run:
                 self.failed[part.index] = error
                 self.waiting.clear()
                 self.suspects.clear()
+                self.parts = iter(())
             elif self.attempts[part.index] >= _ATTEMPTS:
                 self.failed[part.index] = error
             elif crashed:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,7 @@ __all__ = [
     "SOLVED_ROWS_PER_PART",
     "Dataset",
     "Part",
+    "read_manifest",
     "scan_dataset",
 ]
 
@@ -34,7 +36,10 @@ SOLVED_ROWS_PER_PART = 2**14
 COMPRESSION: Literal["lz4"] = "lz4"
 _FOOTER = "cyclosweep"
 _FORMAT = "cyclosweep.dataset/1"
-_MANIFEST = "manifest.json"
+_MANIFEST = "_manifest.json"
+# Programs that read a folder of Parquet files pass over names with a leading underscore.
+_FORMER_MANIFEST = "manifest.json"
+_PART_NAME = re.compile(r"part-(\d+)\.parquet")
 
 
 @dataclass(frozen=True)
@@ -96,6 +101,12 @@ class Dataset:
         """All parts in order."""
         return (self.part(index) for index in range(self.part_count))
 
+    def present(self) -> list[Part]:
+        """Parts of which there is a file, whole or not, in order."""
+        names = (path.name for path in self.folder.glob("part-*.parquet"))
+        numbers = {int(match[1]) for name in names if (match := _PART_NAME.fullmatch(name))}
+        return [self.part(number) for number in sorted(numbers) if number < self.part_count]
+
     def prepare(self, *, resume: bool, fresh: bool) -> None:
         """Make the folder ready, or refuse it before anything in it is touched.
 
@@ -115,23 +126,24 @@ class Dataset:
             raise InputError(f"{self.folder}: is a file, expected a folder")
         self.folder.mkdir(parents=True, exist_ok=True)
         found = sorted(self.folder.glob("part-*.parquet"))
-        manifest = self.folder / _MANIFEST
+        manifests = [self.folder / _MANIFEST, self.folder / _FORMER_MANIFEST]
         for path in found:
             if _is_foreign(path):
                 raise InputError(f"{path}: not written by cyclosweep, expected an empty folder")
         if fresh:
-            for path in [*found, *self.folder.glob("part-*.tmp"), manifest]:
+            for path in [*found, *self.folder.glob("part-*.tmp"), *manifests]:
                 path.unlink(missing_ok=True)
-        elif (found or manifest.exists()) and not resume:
+        elif (found or any(path.exists() for path in manifests)) and not resume:
             raise InputError(f"{self.folder}: holds a study, expected an empty folder")
         else:
-            self._refuse_another_study(found, manifest)
-        if read_manifest(manifest) is None:
+            self._refuse_another_study(found)
+        if read_manifest(self.folder) is None:
             self.write_manifest([])
 
-    def _refuse_another_study(self, found: list[Path], manifest: Path) -> None:
+    def _refuse_another_study(self, found: list[Path]) -> None:
         # Broken files are passed over; the first whole part stands for the others.
-        identities = [read_manifest(manifest), next(filter(None, map(read_footer, found)), None)]
+        footer = next(filter(None, map(read_footer, found)), None)
+        identities = [read_manifest(self.folder), footer]
         for identity in filter(None, identities):
             if identity.get("study") != self.study.hash:
                 self._refuse_another_stretch(identity)
@@ -261,7 +273,7 @@ class Dataset:
 
     def summaries(self) -> list[PartSummary]:
         """Return the summaries of all whole parts, in order."""
-        return [summary for part in self.parts() if (summary := self.summary(part)) is not None]
+        return [summary for part in self.present() if (summary := self.summary(part)) is not None]
 
     def finish(self, summaries: list[PartSummary]) -> None:
         """Write the manifest of the parts that are there and delete what killed writers left."""
@@ -287,6 +299,7 @@ class Dataset:
             ],
         }
         write_text(self.folder / _MANIFEST, json.dumps(manifest, indent=1))
+        (self.folder / _FORMER_MANIFEST).unlink(missing_ok=True)
 
 
 def read_footer(path: Path) -> dict[str, Any] | None:
@@ -299,13 +312,14 @@ def read_footer(path: Path) -> dict[str, Any] | None:
     return footer if isinstance(footer, dict) and footer.get("format") == _FORMAT else None
 
 
-def read_manifest(path: Path) -> dict[str, Any] | None:
-    """Read a manifest; None where there is none or it is broken."""
-    try:
-        manifest = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return manifest if isinstance(manifest, dict) else None
+def read_manifest(folder: Path) -> dict[str, Any] | None:
+    """Read a study's manifest, also under its former name; None where it is missing or broken."""
+    for name in (_MANIFEST, _FORMER_MANIFEST):
+        with contextlib.suppress(OSError, ValueError):
+            manifest = json.loads((folder / name).read_text(encoding="utf-8"))
+            if isinstance(manifest, dict):
+                return manifest
+    return None
 
 
 def _is_foreign(path: Path) -> bool:

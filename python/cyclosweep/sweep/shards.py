@@ -113,14 +113,9 @@ def sink(
             1, min(_VARIANTS_PER_DASK_TASK // dataset.rows_per_part, dataset.part_count // 8)
         )
     with _exclusive(dataset, resume=resume, fresh=fresh):
-        summaries = []
-        missing = []
-        for part in dataset.parts():
-            summary = dataset.summary(part)
-            if summary is None:
-                missing.append(part)
-            else:
-                summaries.append(summary)
+        summaries = dataset.summaries()
+        whole = {summary.start for summary in summaries}
+        missing = (part for part in dataset.parts() if part.start not in whole)
         done = sum(summary.stop - summary.start for summary in summaries)
         with Progress("sweep", len(study), done=done, show=progress) as bar:
 
@@ -129,7 +124,12 @@ def sink(
 
             try:
                 summaries += run_shards(
-                    dataset, missing, make, advance, parts_per_task=parts_per_task
+                    dataset,
+                    missing,
+                    make,
+                    advance,
+                    parts_per_task=parts_per_task,
+                    count=dataset.part_count - len(whole),
                 )
             except BaseException:
                 with contextlib.suppress(OSError):
@@ -183,14 +183,17 @@ def shard(
     study = Study.of(space)
     dataset = _dataset(study, folder, rows_per_part)
     dataset.prepare(resume=True, fresh=False)
-    parts = [dataset.part(k) for k in range(index, dataset.part_count, of)]
-    total = sum(part.stop - part.start for part in parts)
+    numbers = range(index, dataset.part_count, of)
+    parts = (dataset.part(number) for number in numbers)
+    total = len(numbers) * dataset.rows_per_part
+    if numbers and numbers[-1] == dataset.part_count - 1:
+        total -= dataset.part_count * dataset.rows_per_part - len(study)
     with Progress(f"shard {index} of {of}", total, show=progress) as bar:
 
         def advance(summary: PartSummary) -> None:
             bar.advance(summary.stop - summary.start)
 
-        summaries = run_shards(dataset, parts, executor_of("threads"), advance)
+        summaries = run_shards(dataset, parts, executor_of("threads"), advance, count=len(numbers))
     # Whichever task ends last finds every part there.
     with FileLock(dataset.folder / ".manifest.lock"):
         dataset.write_manifest(dataset.summaries())
