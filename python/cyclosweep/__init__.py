@@ -14,6 +14,7 @@ from cyclosweep.sweep.dataset import scan_dataset
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
 from cyclosweep.sweep.shards import shard, sink
 from cyclosweep.sweep.space import Space, linspace
+from cyclosweep.sweep.stored import StoredStudy, open_study
 from cyclosweep.sweep.study import Objective, Study
 
 if _TYPE_CHECKING:
@@ -57,6 +58,7 @@ __all__ = [
     "Recording",
     "Series",
     "Space",
+    "StoredStudy",
     "Study",
     "SweepError",
     "Train",
@@ -65,6 +67,7 @@ __all__ = [
     "diagnose_folder",
     "kernel_evaluations",
     "linspace",
+    "open_study",
     "scan",
     "scan_dataset",
     "shard",

@@ -288,6 +288,8 @@ class Dataset:
         manifest = {
             **self._identity(),
             "definition": self.study.definition(),
+            "drive": json.loads(self.study.space.drive.to_json()),
+            "objective": self._objective(),
             "variants": len(self.study),
             "rows": rows,
             "complete": rows == len(self.study),
@@ -330,6 +332,17 @@ def _is_foreign(path: Path) -> bool:
         return False
 
 
+def manifest_of(folder: Path) -> dict[str, Any] | None:
+    """Read the manifest of a study's folder; None where there is none or it is broken."""
+    return read_manifest(folder / _MANIFEST)
+
+
+def parts_of(folder: Path) -> list[Path]:
+    """All whole parts in a folder, in order of their variants."""
+    found = sorted(folder.glob("part-*.parquet"), key=lambda path: (len(path.name), path))
+    return [path for path in found if read_footer(path) is not None]
+
+
 def scan_dataset(folder: str | Path) -> pl.LazyFrame:
     """Read a finished or unfinished study lazily.
 
@@ -348,8 +361,7 @@ def scan_dataset(folder: str | Path) -> pl.LazyFrame:
     InputError
         When the folder holds no part of a study.
     """
-    found = sorted(Path(folder).glob("part-*.parquet"), key=lambda path: (len(path.name), path))
-    paths = [path for path in found if read_footer(path) is not None]
+    paths = parts_of(Path(folder))
     if not paths:
         raise InputError(f"{folder}: no parts of a study there")
     return pl.scan_parquet(paths)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -14,9 +14,10 @@ from cyclosweep.design.units import quantity
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from cyclosweep.sweep.objective import Objective
     from cyclosweep.sweep.study import Study
 
-__all__ = ["BEST", "PartSummary", "Summary", "summarise", "summary_of_part"]
+__all__ = ["BEST", "PartSummary", "Summary", "merge", "summarise", "summary_of_part"]
 
 BEST = 10
 
@@ -184,6 +185,27 @@ def summarise(summaries: Iterable[PartSummary], study: Study) -> Summary:
     -------
     Summary
     """
+    return merge(summaries, list(study.outputs), study.objective)
+
+
+def merge(
+    summaries: Iterable[PartSummary], columns: Sequence[str], objective: Objective | None
+) -> Summary:
+    """Put the summaries of parts together without the study that they belong to.
+
+    Parameters
+    ----------
+    summaries : iterable of PartSummary
+        One for each part.
+    columns : sequence of str
+        Results in the order in which their ranges are listed.
+    objective : Objective, optional
+        What the best variants are best in; a part summarised for another one gives none.
+
+    Returns
+    -------
+    Summary
+    """
     rows = 0
     status: dict[str, int] = {}
     ranges: dict[str, tuple[float, float]] = {}
@@ -195,13 +217,14 @@ def summarise(summaries: Iterable[PartSummary], study: Study) -> Summary:
         for name, (low, high) in summary.ranges.items():
             seen = ranges.get(name, (low, high))
             ranges[name] = (min(low, seen[0]), max(high, seen[1]))
-        best.extend(summary.best)
-    order = {name: k for k, name in enumerate(study.outputs)}
+        if objective is not None:
+            best.extend(row for row in summary.best if objective.column in row)
+    order = {name: k for k, name in enumerate(columns)}
     ranges = dict(sorted(ranges.items(), key=lambda item: order[item[0]]))
     status = dict(sorted(status.items(), key=lambda item: -item[1]))
-    objective = None
-    if study.objective is not None:
-        column, sign = study.objective.column, -1 if study.objective.maximise else 1
+    wanted = None
+    if objective is not None:
+        column, sign = objective.column, -1 if objective.maximise else 1
         best = heapq.nsmallest(BEST, best, key=lambda row: (sign * row[column], row["variant"]))
-        objective = f"{'maximise' if study.objective.maximise else 'minimise'} {column}"
-    return Summary(rows, status, ranges, best, objective)
+        wanted = f"{'maximise' if objective.maximise else 'minimise'} {column}"
+    return Summary(rows, status, ranges, best, wanted)
