@@ -11,7 +11,8 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.series import conditions_of, trends
+from cyclosweep.atomic import write_text
+from cyclosweep.diagnosis.series import conditions_of, small_loops_of, trends
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.straight_lines import straight_lines
 
@@ -138,6 +139,7 @@ def test_the_measured_preload_series_is_in_the_makers_order() -> None:
                 **conditions_of(path.name, meta),
                 "friction_nm": float(np.mean([line.friction_nm for line in lines])),
                 "play_deg": float(np.mean([line.play_deg for line in lines])),
+                **small_loops_of(path, meta, EXAMPLE / "preload-series.toml"),
             }
         )
     found = {
@@ -153,3 +155,30 @@ def test_the_measured_preload_series_is_in_the_makers_order() -> None:
     assert play.levels[1].mean > play.levels[2].mean > play.levels[3].mean
     assert play.levels[0].mean == pytest.approx(play.levels[1].mean, abs=0.05)
     assert all(level.ci95 is not None for level in (*friction.levels, *play.levels))
+    # The makers read their play from the small ramps: there every step takes some away.
+    lost = found["preload_step", "lost_motion_deg"]
+    assert "Lost motion falls with preload step" in lost.text
+    means = [level.mean for level in lost.levels]
+    assert means == sorted(means, reverse=True)
+
+
+def test_small_loops_are_read_for_lost_motion_and_nothing_else(tmp_path: Path) -> None:
+    wave = np.sin(np.linspace(0, 2 * np.pi, 200))
+    rows = ["torque_nm,angle_deg,run"]
+    for run, top in ((0, 2.0), (1, 2.0), (2, 30.0)):
+        torque = top * wave
+        angle = 0.1 * torque + 0.4 * np.sign(torque)
+        rows += [f"{t:.6f},{a:.6f},{run}" for t, a in zip(torque, angle, strict=True)]
+    path = tmp_path / "loop.csv"
+    write_text(path, "\n".join(rows))
+    meta = Metadata.model_validate(
+        {"side": "output", "select": {"run": [2]}, "holdout_runs": [2], "lost_motion_runs": [0, 1]}
+    )
+    row = small_loops_of(path, meta, None)
+    assert row["lost_motion_torque_nm"] == pytest.approx(2.0, abs=1e-3)
+    # From one end to the other: twice the flank's 0.2 deg, less the end's width, and the play.
+    assert row["lost_motion_deg"] == pytest.approx(2 * (0.4 + 0.1 * 1.95), abs=0.02)
+    assert row["lost_motion_deg_low"] <= row["lost_motion_deg"] <= row["lost_motion_deg_high"]
+    assert small_loops_of(path, Metadata(), None) == {}
+    with pytest.raises(cs.InputError, match="no row"):
+        small_loops_of(path, meta.model_copy(update={"lost_motion_runs": [7]}), None)

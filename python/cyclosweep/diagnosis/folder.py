@@ -15,7 +15,14 @@ import cyclosweep._core as _core
 from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.diagnose import diagnose
-from cyclosweep.diagnosis.series import Row, columns_of, conditions_of, row_of, trends
+from cyclosweep.diagnosis.series import (
+    Row,
+    columns_of,
+    conditions_of,
+    row_of,
+    small_loops_of,
+    trends,
+)
 from cyclosweep.errors import DesignError, InputError
 from cyclosweep.recording import Recording
 from cyclosweep.recording.columns import metadata_path, stem
@@ -196,7 +203,7 @@ def _row(path: Path, task: _Task) -> Row:
         recording: Recording = Recording.read(path, task.meta)
         found = diagnose(recording, task.drive, full=task.full, **task.options)
         found.write(folder, report=task.full)
-        row |= row_of(found)
+        row |= row_of(found) | small_loops_of(path, meta, metadata_path(path, task.meta))
         write_text(folder / ROW_FILE, json.dumps({"key": key, "row": row}, indent=1))
     except Exception as error:  # one bad file must not stop the others
         known = isinstance(error, (InputError, DesignError))

@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ from scipy import stats
 
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.errors import InputError
+from cyclosweep.recording import Recording
 from cyclosweep.recording.metadata import Metadata
+from cyclosweep.report.lost_motion import lost_motion_deg
 from cyclosweep.report.straight_lines import straight_lines
 from cyclosweep.result.series import MEASURES, Level, Trend
 
@@ -60,6 +63,49 @@ def _number(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
+
+
+def small_loops_of(path: Path, meta: Metadata, meta_path: Path | None) -> Row:
+    """Lost motion of the runs of small loops, for the table.
+
+    Parameters
+    ----------
+    path : Path
+        The recording's file.
+    meta : Metadata
+        With ``lost_motion_runs``; nothing is read where there are none.
+    meta_path : Path or None
+        Its file, for messages.
+
+    Returns
+    -------
+    dict
+        ``lost_motion_deg`` with its 95 % interval by Student's t over the runs, and the torque of
+        the loops' ends.
+
+    Raises
+    ------
+    InputError
+        The file has none of these runs, or none that is loaded in both directions.
+    """
+    if not meta.lost_motion_runs:
+        return {}
+    where = meta_path or path
+    recording = Recording.read_as(path, meta.of_small_loops(), where)
+    angles, torques = lost_motion_deg(recording)
+    if not angles:
+        raise InputError(
+            f"{path}: lost_motion_runs: found runs loaded in one direction only, expected small "
+            "loops through zero"
+        )
+    mean, interval = mean_and_interval(angles)
+    low, high = interval or (None, None)
+    return {
+        "lost_motion_deg": mean,
+        "lost_motion_deg_low": low,
+        "lost_motion_deg_high": high,
+        "lost_motion_torque_nm": float(np.mean(torques)),
+    }
 
 
 def row_of(found: Diagnosis) -> Row:

@@ -195,6 +195,8 @@ class Metadata(_Strict):
         What was set or varied in the test, by name: a step of preload, a lubricant.
     conditions_from_name : str or None
         Regular expression with named groups that reads conditions from the name of the file.
+    lost_motion_runs : list of int
+        Runs of small loops that are not diagnosed: in a series their lost motion is read.
     table : TableOptions
         Where the table stands in its file, and how numbers are spelt.
     columns : dict
@@ -217,6 +219,7 @@ class Metadata(_Strict):
     holdout_runs: list[int] = Field(default_factory=list)
     conditions: dict[str, float | str] = Field(default_factory=dict)
     conditions_from_name: str | None = None
+    lost_motion_runs: list[int] = Field(default_factory=list)
     table: TableOptions = Field(default_factory=TableOptions)
     columns: dict[CanonicalName, Annotated[Column, BeforeValidator(_named_column)]] = Field(
         default_factory=dict
@@ -265,6 +268,18 @@ class Metadata(_Strict):
     def keep(self) -> dict[str, list[SelectValue]]:
         """Values to keep, by column."""
         return {key: value for key, value in self.select.items() if isinstance(value, list)}
+
+    def of_small_loops(self) -> Self:
+        """The same file, of which the runs of small loops are read and nothing else."""
+        runs: list[SelectValue] = list(self.lost_motion_runs)
+        return self.model_copy(
+            update={
+                "select": {**self.select, "run": runs},
+                "score": Score(),
+                "conditioning_runs": [],
+                "holdout_runs": [],
+            }
+        )
 
     @property
     def abs_max(self) -> Mapping[str, float]:

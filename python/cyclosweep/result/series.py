@@ -5,9 +5,10 @@ from dataclasses import dataclass
 MEASURES = {
     "friction_nm": "friction",
     "play_deg": "play",
+    "lost_motion_deg": "lost motion",
     "loop_compliance_deg_per_nm": "compliance",
 }
-"""What straight lines read of every recording, by column of the table."""
+"""What is read of every recording without a model, by column of the table."""
 CERTAIN = 0.05
 """Largest probability, corrected for the number of trends looked at, at which a trend is stated."""
 
