@@ -48,7 +48,7 @@ def json_object(source: JsonSource) -> dict[str, Any]:
     except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
         raise InputError(f"cannot be read as JSON: {error}") from error
     if not isinstance(content, dict):
-        raise InputError("expected a JSON object")
+        raise InputError("schema: expected an object")
     return content
 
 

@@ -5,11 +5,17 @@ from pathlib import Path
 from typing import Any
 
 from cyclosweep.atomic import write_text
+from cyclosweep.design.json_files import JsonSource, json_object, name_of
+from cyclosweep.errors import InputError
+from cyclosweep.notebook import html_table
 from cyclosweep.recording import Recording
 from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_report
-from cyclosweep.result import Answer, content_of, json_text
+from cyclosweep.result import Answer, Size, answer_of, content_of, json_text
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
+
+_NOT_READ = "recording not read"
+"""Name of the empty recording of a diagnosis that was read without one."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,6 +86,63 @@ class Diagnosis:
         """Return the text of ``diagnosis.json``."""
         return json_text(self.answer)
 
+    @classmethod
+    def from_json(
+        cls,
+        source: JsonSource,
+        recording: Recording | None = None,
+        model: Model | None = None,
+    ) -> "Diagnosis":
+        """Read ``diagnosis.json``, or what :meth:`to_json` returned.
+
+        Parameters
+        ----------
+        source : str, Path or mapping
+            The file, its text, or its decoded content.
+        recording : Recording, optional
+            What was diagnosed; without it there is no report.
+        model : Model, optional
+            The repaired model, by default ``model.json`` where the file names it and it lies
+            beside.
+
+        Returns
+        -------
+        Diagnosis
+            With its answer; the hypotheses and the simulated twists are not in the file.
+
+        Raises
+        ------
+        InputError
+            It is no answer of a diagnosis; one line says which key.
+        """
+        try:
+            answer = answer_of(json_object(source))
+        except InputError as error:
+            raise InputError(f"{name_of(source)}: {error}") from error
+        if model is None and answer.model is not None and name_of(source) == str(source):
+            beside = Path(str(source)).parent / answer.model
+            model = Model.from_json(beside) if beside.exists() else None
+        if recording is None:
+            recording = Recording.from_arrays([], name=_NOT_READ)
+        return cls(recording=recording, answer=answer, model=model)
+
+    def __repr__(self) -> str:
+        found = ", ".join(f"{e.name} {_sized(e.size_deg)}" for e in self.answer.effects)
+        error = _before_and_after(self.answer)
+        parts = "; ".join(part for part in (found, error and f"error {error}") if part)
+        return f"<Diagnosis of {self.recording.name}: {self.verdict}{parts and f', {parts}'}>"
+
+    def _repr_html_(self) -> str:
+        sigma = self.answer.noise.sigma_deg
+        rows: dict[str, object] = {"recording": self.recording.name}
+        rows |= {effect.name: _sized(effect.size_deg) for effect in self.answer.effects}
+        rows |= {
+            "error, published to repaired model": _before_and_after(self.answer),
+            "noise": None if sigma is None else f"{sigma:.3g} deg",
+            "not testable": ", ".join(each.name for each in self.answer.not_testable),
+        }
+        return html_table(f"Diagnosis: {self.verdict}", rows, self.statement)
+
     def report_data(self) -> ReportData:
         """Everything the report shows."""
         return ReportData(
@@ -111,8 +174,12 @@ class Diagnosis:
         Raises
         ------
         InputError
-            The name has another ending.
+            The name has another ending, or the diagnosis was read without its recording.
         """
+        if self.recording.name == _NOT_READ:
+            raise InputError(
+                "report: no recording, expected Diagnosis.from_json(file, recording=...)"
+            )
         return write_report(self.report_data(), path)
 
     def write(self, folder: str | Path, *, report: bool = True) -> Path:
@@ -148,3 +215,17 @@ class Diagnosis:
         if report:
             self.report(target / "report.html")
         return target
+
+
+def _sized(size: Size) -> str:
+    """Size of an effect with its interval, in words."""
+    low, high = size.ci95
+    return f"{size.estimate:.3g} deg [{low:.3g}, {high:.3g}]"
+
+
+def _before_and_after(answer: Answer) -> str:
+    """Errors of the published and the repaired model, in words; empty where there is none."""
+    before, after = answer.baseline.rmse_deg, answer.repaired.rmse_deg
+    if before is None:
+        return ""
+    return f"{before:.3g} deg" if after is None else f"{before:.3g} to {after:.3g} deg"

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import DesignError, InputError
+from cyclosweep.notebook import html_table
 from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.cleaning import drop_missing
 from cyclosweep.recording.faults import Fault
@@ -243,6 +244,34 @@ class Recording(Samples):
             return None  # a diagnosis says what is wrong with the drive
         play = 2.0 * drive.free_play_deg
         return play if self.side == "input" else play / drive.ratio
+
+    def __repr__(self) -> str:
+        kind = "programme of" if self.is_program else "twist and torque of"
+        runs = "1 run" if len(self.runs) == 1 else f"{len(self.runs)} runs"
+        span = f", {self._torques()}" if len(self) else ""
+        faults = f", {len(self.faults)} faults" if self.faults else ""
+        return (
+            f"<Recording {self.name}: {kind} {len(self):,} samples in {runs}{span} at the "
+            f"{self.side}{faults}>"
+        )
+
+    def _torques(self) -> str:
+        return f"{self.torque_nm.min():.4g} to {self.torque_nm.max():.4g} N m"
+
+    def _repr_html_(self) -> str:
+        rows: dict[str, object] = {"samples": f"{len(self):,} in {len(self.runs)} runs"}
+        if len(self):
+            rows["torque"] = f"{self._torques()} at the {self.side}"
+        if self.angle_deg is not None and len(self):
+            rows["angle"] = f"{self.angle_deg.min():.4g} to {self.angle_deg.max():.4g} deg"
+        if self.time_s is not None and len(self):
+            rows["time"] = f"{self.time_s.max() - self.time_s.min():.4g} s"
+        rows |= {
+            "drive": self.drive,
+            "notes": " ".join(self.notes),
+            "faults": " ".join(fault.reason for fault in self.faults),
+        }
+        return html_table(f"Recording {self.name}", rows)
 
     @property
     def counts(self) -> NDArray[np.bool_]:

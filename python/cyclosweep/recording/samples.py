@@ -8,6 +8,8 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
+from cyclosweep.errors import InputError
+
 __all__ = ["COLUMNS", "Floats", "Ints", "Samples"]
 
 Floats = NDArray[np.float64]
@@ -63,13 +65,20 @@ class Samples:
                 continue
             array: NDArray[Any] = np.asarray(given, dtype=kind)
             if array.ndim != 1 or len(array) != len(self.torque_nm):
-                raise ValueError(
+                raise InputError(
                     f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
                 )
             if array.flags.writeable:
                 array = array.copy()
                 array.flags.writeable = False
             object.__setattr__(self, name, array)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        for name in COLUMNS:  # arrays come out of a pickle writeable
+            array = state.get(name)
+            if array is not None:
+                array.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self.torque_nm)

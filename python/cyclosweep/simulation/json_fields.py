@@ -3,53 +3,11 @@
 import json
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, TypeVar
 
 from cyclosweep.errors import InputError
 
 T = TypeVar("T")
-
-
-def read_object(path: Path) -> dict[str, Any]:
-    """Read a JSON file that holds one object.
-
-    Parameters
-    ----------
-    path : Path
-        File to read; UTF-8.
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, is no JSON, repeats a key, or holds NaN or Infinity.
-    """
-    try:
-        text = path.read_text(encoding="utf-8")
-        content = json.loads(text, object_pairs_hook=_distinct, parse_constant=_refuse)
-    except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"cannot be read as a model: {error}") from error
-    if not isinstance(content, dict):
-        raise InputError("schema: expected an object")
-    return content
-
-
-def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Object of these pairs, each key once."""
-    found: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in found:
-            raise ValueError(f"{key}: given twice")
-        found[key] = value
-    return found
-
-
-def _refuse(constant: str) -> float:
-    raise ValueError(f"{constant}: expected a finite number")
 
 
 def number_of(content: Mapping[str, Any], key: str, default: float | None = None) -> float:

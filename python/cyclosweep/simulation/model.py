@@ -3,12 +3,13 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, Literal, Self
 
 from cyclosweep.design.drive import Drive
+from cyclosweep.design.json_files import JsonSource, json_object, name_of
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.errors import InputError
+from cyclosweep.notebook import html_table
 from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.elastic_curve import ElasticCurve
@@ -17,7 +18,6 @@ from cyclosweep.simulation.json_fields import (
     list_of,
     number_of,
     object_of,
-    read_object,
     text_of,
 )
 from cyclosweep.simulation.train_spring import drag_time_s, spring_of
@@ -194,6 +194,25 @@ class Model:
         """Damping time of a train with this model's drag [s]."""
         return drag_time_s(self)
 
+    def __repr__(self) -> str:
+        effects = ", ".join(value.name for value in self.effects) or "no effects"
+        return (
+            f"<Model of {self.drive or 'a drive'} at the {self.side}: "
+            f"{self.compliance_deg_per_nm:.4g} deg/(N m), play {self.free_play_deg:.4g} deg, "
+            f"{effects}>"
+        )
+
+    def _repr_html_(self) -> str:
+        rows: dict[str, object] = {
+            "compliance": f"{self.compliance_deg_per_nm:.5g} deg/(N m) at the {self.side}",
+            "free play": f"{self.free_play_deg:.5g} deg",
+            "datum": f"{self.datum_deg:.5g} deg",
+        }
+        for value in self.effects:
+            named = zip(value.effect.amplitudes(value.shape), value.amplitudes, strict=False)
+            rows[value.name] = ", ".join(f"{p.name} {a:.4g} {p.unit}" for p, a in named)
+        return html_table(f"Model of {self.drive or 'a drive'}", rows, " ".join(self.notes))
+
     def to_json(self) -> str:
         """Return the content of ``model.json``."""
         content = {
@@ -215,13 +234,14 @@ class Model:
         return json.dumps(content, indent=1)
 
     @classmethod
-    def from_json(cls, path: str | Path) -> Self:
-        """Read ``model.json``.
+    def from_json(cls, path: JsonSource) -> Self:
+        """Read ``model.json``, or what `to_json` returned.
 
         Parameters
         ----------
-        path : str or Path
-            File as `to_json` writes it. The order of its keys does not matter.
+        path : str, Path or mapping
+            File as `to_json` writes it, its text, or its decoded content. The order of its keys
+            does not matter.
 
         Returns
         -------
@@ -233,16 +253,17 @@ class Model:
             The file is no model, or holds an effect, a shape parameter or an amplitude that is
             unknown, missing or no finite number; one line says which.
         """
+        name = name_of(path)
         try:
-            content = read_object(Path(path))
+            content = json_object(path)
         except InputError as error:
-            raise InputError(f"{path}: {error}") from error
+            raise InputError(f"{name}: {error}") from error
         if content.get("schema") != SCHEMA:
-            raise InputError(f"{path}: schema: expected {SCHEMA!r}")
+            raise InputError(f"{name}: schema: expected {SCHEMA!r}")
         try:
             return cls._of(content)
         except InputError as error:
-            raise InputError(f"{path}: not a model: {error}") from error
+            raise InputError(f"{name}: not a model: {error}") from error
 
     @classmethod
     def _of(cls, content: Mapping[str, Any]) -> Self:

@@ -46,7 +46,11 @@ _LONGEST_COUNT = 2**16
 _MOST_STEPS = 2**63
 
 
-@dataclass(frozen=True)
+_SHOWN = 6
+"""Values of a list that a representation shows; a longer one is cut."""
+
+
+@dataclass(frozen=True, eq=False)
 class Axis:
     """One axis as the core knows it.
 
@@ -63,6 +67,24 @@ class Axis:
     name: str
     form: Literal["list", "linspace", "interval", "whole"]
     numbers: npt.NDArray[np.float64]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Axis) and self.definition() == other.definition()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.form, len(self.numbers)))
+
+    def __str__(self) -> str:
+        """What the axis takes, in words."""
+        if self.form == "linspace":
+            start, stop, steps = self.numbers
+            return f"{start:g} to {stop:g}, {int(steps):,} steps"
+        if self.form != "list":
+            return f"{self.numbers[0]:g} to {self.numbers[-1]:g}"
+        shown = self.numbers[:_SHOWN]
+        names = [CRITERIA[int(v)] if self.name == "criterion" else f"{v:g}" for v in shown]
+        more = f", ... ({len(self.numbers):,})" if len(self.numbers) > _SHOWN else ""
+        return f"{', '.join(names)}{more}"
 
     def values(self) -> npt.NDArray[np.float64] | None:
         """All values in order; None for an interval or whole numbers of a range."""

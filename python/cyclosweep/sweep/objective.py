@@ -21,3 +21,6 @@ class Objective:
 
     column: str
     maximise: bool = False
+
+    def __str__(self) -> str:
+        return f"{'maximise' if self.maximise else 'minimise'} {self.column}"

@@ -16,7 +16,9 @@ import cyclosweep._core as _core
 from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
+from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError
+from cyclosweep.notebook import html_table
 from cyclosweep.sweep.axes import (
     OPTIONAL,
     WHOLE,
@@ -35,7 +37,7 @@ Method = Literal["grid", "sobol", "latin-hypercube", "random", "table"]
 MAX_VARIANTS = 2**63
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Space:
     """A space of variants around a drive, up to 2^63 of them, in constant memory.
 
@@ -273,6 +275,15 @@ class Space:
         axes = ", ".join(axis.name for axis in self.axes)
         count = self.stop - self.start  # len() ends at 2^63 - 1
         return f"<Space: {count:,} variants of {self.drive.name}, {self.method} over {axes}>"
+
+    def _repr_html_(self) -> str:
+        drive = self.drive
+        rows = {
+            "variants": f"{self.stop - self.start:,} of {drive.name} ({drive.ratio}:1)",
+            "method": self.method if self.method == "grid" else f"{self.method}, seed {self.seed}",
+            **{f"{axis.name} [{quantity(axis.name).unit}]": axis for axis in self.axes},
+        }
+        return html_table("Space", rows)
 
     def definition(self) -> dict[str, Any]:
         """Return what identifies this space in the study's hash and in the manifest."""

@@ -19,6 +19,7 @@ from cyclosweep.design.part_units import TRAIN_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS, TRAIN_INPUTS, Engine
 from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError, did_you_mean, one_of
+from cyclosweep.notebook import html_table
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study_file import read_study_file
@@ -42,7 +43,7 @@ StudyModel = Literal["published", "components"]
 Limits = Mapping[str, tuple[float | None, float | None]]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Study:
     """A space with everything else that decides what a sweep computes.
 
@@ -180,6 +181,22 @@ class Study:
     def __getstate__(self) -> dict[str, Any]:
         cores = ("core", "part_core")
         return {key: value for key, value in self.__dict__.items() if key not in cores}
+
+    def __repr__(self) -> str:
+        limits = f", limits on {', '.join(name for name, *_ in self.limits)}" if self.limits else ""
+        goal = "" if self.objective is None else f", {self.objective}"
+        return f"<Study: {self.model} model of {self.space!r}{limits}{goal}>"
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "model": self.model,
+            "loads": f"{', '.join(f'{load:g}' for load in self.loads_tn)} T_N",
+            **{f"limit on {name}": f"{low:g} to {most:g}" for name, low, most in self.limits},
+            "objective": self.objective,
+            "columns": len(self.schema()),
+            "hash": self.hash[:12],
+        }
+        return html_table("Study", rows) + self.space._repr_html_()
 
     def __len__(self) -> int:
         return len(self.space)

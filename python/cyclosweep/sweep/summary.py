@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
+from cyclosweep.design.json_files import JsonSource, json_object, name_of
+from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.units import quantity
+from cyclosweep.errors import InputError
+from cyclosweep.notebook import html_table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -138,6 +142,48 @@ class Summary:
             "best": self.best,
         }
 
+    @classmethod
+    def from_json(cls, source: JsonSource) -> Summary:
+        """Read what :meth:`to_json` returned, or a file or text of it.
+
+        Parameters
+        ----------
+        source : str, Path or mapping
+            The decoded content, its text or a file; ``cyclosweep sweep --json`` prints one.
+
+        Returns
+        -------
+        Summary
+
+        Raises
+        ------
+        InputError
+            It is no summary.
+        """
+        value = json_object(source)
+        try:
+            ranges = {name: (low, high) for name, (low, high) in value["ranges"].items()}
+            rows, objective = whole_number("rows", value["rows"]), value["objective"]
+            return cls(rows, dict(value["status"]), ranges, list(value["best"]), objective)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise InputError(f"{name_of(source)}: not a summary of a sweep: {error}") from None
+
+    def __repr__(self) -> str:
+        best = self.best[0] if self.best else None
+        found = f", {self.objective}: variant {best['variant']}" if best else ""
+        return f"<Summary: {self.rows:,} variants, {self._share('ok')} ok{found}>"
+
+    def _share(self, status: str) -> str:
+        return f"{self.status.get(status, 0) / max(self.rows, 1):.1%}"
+
+    def _repr_html_(self) -> str:
+        rows: dict[str, object] = {"variants": f"{self.rows:,}"}
+        rows |= {status: f"{self._share(status)} ({n:,})" for status, n in self.status.items()}
+        if self.best:
+            axes = ", ".join(f"{name} {_short(value)}" for name, value in self.best[0].items())
+            rows[f"{self.objective}, best"] = axes
+        return html_table("Sweep", rows)
+
     def renderables(self) -> Iterable[RenderableType]:
         """Tables for a terminal."""
         from rich import box
@@ -226,5 +272,5 @@ def merge(
     if objective is not None:
         column, sign = objective.column, -1 if objective.maximise else 1
         best = heapq.nsmallest(BEST, best, key=lambda row: (sign * row[column], row["variant"]))
-        wanted = f"{'maximise' if objective.maximise else 'minimise'} {column}"
+        wanted = str(objective)
     return Summary(rows, status, ranges, best, wanted)
