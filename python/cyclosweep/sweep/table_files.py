@@ -11,7 +11,7 @@ from typing import Any
 
 import polars as pl
 
-from cyclosweep.atomic import unfinished
+from cyclosweep.atomic import unfinished, write_bytes
 from cyclosweep.errors import InputError
 
 __all__ = ["MOST_EXCEL_ROWS", "read_table", "row_in_file", "writable", "write_table"]
@@ -92,16 +92,17 @@ def write_table(frame: pl.DataFrame, path: str | Path) -> None:
     words = [name for name, dtype in frame.schema.items() if isinstance(dtype, pl.Enum)]
     if ending != ".parquet":
         frame = frame.with_columns(pl.col(words).cast(pl.String))
-    with unfinished(path) as temporary, temporary.open("wb") as file:
+    if ending == ".xlsx":
+        sheet = io.BytesIO()
+        # As many digits as a number has, not the three that polars would show.
+        frame.write_excel(sheet, dtype_formats={pl.Float64: "General"}, autofit=True)
+        write_bytes(path, sheet.getvalue())
+        return
+    with unfinished(path) as temporary:
         if ending == ".parquet":
-            frame.write_parquet(file)
-        elif ending == ".csv":
-            frame.write_csv(file)
+            frame.write_parquet(temporary)
         else:
-            sheet = io.BytesIO()
-            # As many digits as a number has, not the three that polars would show.
-            frame.write_excel(sheet, dtype_formats={pl.Float64: "General"}, autofit=True)
-            file.write(sheet.getbuffer())
+            frame.write_csv(temporary)
 
 
 def writable(path: str | Path) -> str:
