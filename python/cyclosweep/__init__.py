@@ -19,6 +19,7 @@ from cyclosweep.sweep.study import Objective, Study
 
 if _TYPE_CHECKING:
     from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
+    from cyclosweep.explore import nearest_variants, pareto_front
     from cyclosweep.recording import Recording
     from cyclosweep.reference.rows import validate
     from cyclosweep.simulation.simulate import Model, simulate
@@ -31,10 +32,12 @@ _LATER = {
     "Series": "diagnosis",
     "diagnose": "diagnosis",
     "diagnose_folder": "diagnosis",
+    "nearest_variants": "explore",
+    "pareto_front": "explore",
     "simulate": "simulation.simulate",
     "validate": "reference.rows",
 }
-_FOLDERS = {"diagnosis", "recording", "reference", "report", "result", "simulation"}
+_FOLDERS = {"diagnosis", "explore", "recording", "reference", "report", "result", "simulation"}
 
 __version__ = _core.__version__
 _moved.register()
@@ -67,7 +70,9 @@ __all__ = [
     "diagnose_folder",
     "kernel_evaluations",
     "linspace",
+    "nearest_variants",
     "open_study",
+    "pareto_front",
     "scan",
     "scan_dataset",
     "shard",

@@ -18,7 +18,7 @@ BASE = {"errors", "atomic", "notebook"}
 DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
-REFERENCE = DIAGNOSIS | {"sweep", "reference"}
+REFERENCE = DIAGNOSIS | {"sweep", "explore", "reference"}
 
 # What each folder or file of cyclosweep may import from; each also from itself.
 MAY_IMPORT: dict[str, set[str]] = {
@@ -29,6 +29,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "dynamics": BASE,
     "design": BASE | {"dynamics"},
     "sweep": DESIGN,
+    "explore": DESIGN | {"sweep"},
     "recording": DESIGN,
     "simulation": DESIGN | {"recording"},
     "result": SIMULATION,
