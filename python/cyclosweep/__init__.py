@@ -11,6 +11,7 @@ from cyclosweep.design.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.sweep.dataset import scan_dataset
+from cyclosweep.sweep.evaluator import Evaluator
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
 from cyclosweep.sweep.shards import shard, sink
 from cyclosweep.sweep.space import Space, linspace
@@ -53,6 +54,7 @@ __all__ = [
     "DesignError",
     "Diagnosis",
     "Drive",
+    "Evaluator",
     "Frustum",
     "InputError",
     "Keyway",
