@@ -19,6 +19,7 @@ from cyclosweep.sweep.stored import StoredStudy, open_study
 from cyclosweep.sweep.study import Objective, Study
 
 if _TYPE_CHECKING:
+    from cyclosweep.choose.comparison import Comparison, compare
     from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
     from cyclosweep.explore import nearest_variants, pareto_front
     from cyclosweep.recording import Recording
@@ -27,7 +28,9 @@ if _TYPE_CHECKING:
 
 # Imported when first asked for: SciPy takes longer to load than all a worker of a sweep needs.
 _LATER = {
+    "Comparison": "choose.comparison",
     "Diagnosis": "diagnosis",
+    "compare": "choose.comparison",
     "Model": "simulation.simulate",
     "Recording": "recording",
     "Series": "diagnosis",
@@ -38,7 +41,16 @@ _LATER = {
     "simulate": "simulation.simulate",
     "validate": "reference.rows",
 }
-_FOLDERS = {"diagnosis", "explore", "recording", "reference", "report", "result", "simulation"}
+_FOLDERS = {
+    "choose",
+    "diagnosis",
+    "explore",
+    "recording",
+    "reference",
+    "report",
+    "result",
+    "simulation",
+}
 
 __version__ = _core.__version__
 _moved.register()
@@ -50,6 +62,7 @@ if _core.DEBUG_BUILD:
     )
 
 __all__ = [
+    "Comparison",
     "Cylinder",
     "DesignError",
     "Diagnosis",
@@ -68,6 +81,7 @@ __all__ = [
     "SweepError",
     "Train",
     "__version__",
+    "compare",
     "diagnose",
     "diagnose_folder",
     "kernel_evaluations",

@@ -18,7 +18,7 @@ BASE = {"errors", "atomic", "notebook"}
 DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
-REFERENCE = DIAGNOSIS | {"sweep", "explore", "reference"}
+REFERENCE = DIAGNOSIS | {"sweep", "explore", "choose", "reference"}
 
 # What each folder or file of cyclosweep may import from; each also from itself.
 MAY_IMPORT: dict[str, set[str]] = {
@@ -30,6 +30,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "design": BASE | {"dynamics"},
     "sweep": DESIGN,
     "explore": DESIGN | {"sweep"},
+    "choose": DESIGN | {"sweep", "explore"},
     "recording": DESIGN,
     "simulation": DESIGN | {"recording"},
     "result": SIMULATION,

@@ -13,6 +13,7 @@ from cyclosweep.cli import (
     diagnose,
     dynamics,
     inspect,
+    show,
     simulate,
     sweep,
     torque_twist,
@@ -35,6 +36,7 @@ app = typer.Typer(
 app.command()(validate.validate)
 app.command()(sweep.sweep)
 app.command()(sweep.shard)
+app.command()(show.show)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)
 app.command()(inspect.inspect)

@@ -1,0 +1,1 @@
+"""From a study to a drive: compare drives side by side, best variants, templates of files."""
