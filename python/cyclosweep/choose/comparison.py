@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import polars as pl
 
@@ -25,11 +25,6 @@ from cyclosweep.notebook import html_table
 from cyclosweep.sweep.scan import sweep
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Study
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rich.console import RenderableType
 
 __all__ = ["Comparison", "DriveFigures", "compare"]
 
@@ -154,12 +149,6 @@ class Comparison:
             for each in self.figures
         ]
 
-    def renderables(self, *, everything: bool = False) -> Iterable[RenderableType]:
-        """Tables for a terminal; of several drives only the inputs that differ, unless asked."""
-        from cyclosweep.choose.comparison_text import renderables
-
-        return renderables(self, everything=everything)
-
     def __repr__(self) -> str:
         names = ", ".join(each.label for each in self.figures)
         warnings = sum(r.level != "note" for each in self.figures for r in each.remarks)
@@ -199,7 +188,7 @@ def compare(drives: Sequence[Drive | str | Path] | Drive | str | Path) -> Compar
     >>> import cyclosweep as cs
     >>> found = cs.compare([cs.Drive.reference_87(), cs.Drive.reference_87().replace(ratio=43)])
     >>> found.inputs.height, found.budget["part"][0]
-    (36, 'shaft segment 1, keyway')
+    (35, 'shaft segment 1, keyway')
     """
     given = [drives] if isinstance(drives, (Drive, str, Path)) else list(drives)
     if not given:

@@ -11,11 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from cyclosweep.choose.budget import BudgetItem
+from cyclosweep.choose.comparison import Comparison
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-
-    from cyclosweep.choose.comparison import Comparison
 
 __all__ = ["renderables"]
 

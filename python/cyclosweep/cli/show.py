@@ -30,6 +30,7 @@ def show(
     computed by both models.
     """
     from cyclosweep.choose.comparison import compare
+    from cyclosweep.choose.comparison_text import renderables
     from cyclosweep.sweep.table_files import writable, write_table
 
     if out is not None:
@@ -40,6 +41,6 @@ def show(
     if as_json:
         print_json(json.loads(found.to_json()))
         return
-    print_tables(found.renderables(everything=everything))
+    print_tables(renderables(found, everything=everything))
     if out is not None:
         print(f"Written: {out}")

@@ -332,11 +332,6 @@ def _is_foreign(path: Path) -> bool:
         return False
 
 
-def manifest_of(folder: Path) -> dict[str, Any] | None:
-    """Read the manifest of a study's folder; None where there is none or it is broken."""
-    return read_manifest(folder / _MANIFEST)
-
-
 def parts_of(folder: Path) -> list[Path]:
     """All whole parts in a folder, in order of their variants."""
     found = sorted(folder.glob("part-*.parquet"), key=lambda path: (len(path.name), path))

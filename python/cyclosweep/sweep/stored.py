@@ -18,7 +18,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError
-from cyclosweep.sweep.dataset import manifest_of, parts_of, read_footer
+from cyclosweep.sweep.dataset import parts_of, read_footer, read_manifest
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.study import StudyModel
 from cyclosweep.sweep.summary import PartSummary, Summary, merge
@@ -200,7 +200,7 @@ def open_study(folder: str | Path) -> StoredStudy:
     if not folder.is_dir():
         found = "is a file" if folder.exists() else "no such folder"
         raise InputError(f"{folder}: {found}, expected the folder of a study")
-    manifest = manifest_of(folder)
+    manifest = read_manifest(folder)
     if manifest is None:
         raise InputError(f"{folder}: no study there, expected a folder that a sweep was written to")
     parts = parts_of(folder)
