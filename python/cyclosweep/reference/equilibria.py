@@ -39,6 +39,14 @@ _CASES: tuple[tuple[str, dict[str, float], float, float, float | None, float | N
     ("no clearance, 292.5 N m", {}, 292.5, 1.15440, None, None),
     ("no clearance, 17.55 N m", {}, 17.55, 0.07903, None, None),
     ("with clearance, 585 N m", _GAPS, 585.0, 8.24617, 5902.888, 467.6715),
+    (
+        "with clearance and rigid bearings, 585 N m",
+        {**_GAPS, "eccentric_bearing_stiffness_n_per_mm": 1e12},
+        585.0,
+        0.09039018 / 45.0 / _ARCMIN,
+        6152.067,
+        615.3406,
+    ),
 )
 """Twist [arcmin], largest output and ring force [N], crank at 0.3 rad."""
 
