@@ -1,6 +1,7 @@
 """Sweep, validate and diagnose the torsional compliance of cycloidal gear drives."""
 
 import importlib as _importlib
+import logging as _logging
 import warnings as _warnings
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
@@ -53,6 +54,8 @@ _FOLDERS = {
 }
 
 __version__ = _core.__version__
+# Silent until a program asks: logging.basicConfig(level=logging.INFO) shows what long work does.
+_logging.getLogger(__name__).addHandler(_logging.NullHandler())
 _moved.register()
 
 if _core.DEBUG_BUILD:

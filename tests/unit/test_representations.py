@@ -15,7 +15,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cyclosweep as cs
-from cyclosweep.diagnosis import Diagnosis
 from cyclosweep.notebook import html_table
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep.sweep.summary import PartSummary, Summary
@@ -41,7 +40,7 @@ LONGEST = 200
 
 
 @pytest.fixture(scope="module")
-def found() -> Diagnosis:
+def found() -> cs.Diagnosis:
     """A diagnosis of a made loop."""
     rng = np.random.default_rng(3)
     ends = (0.4, 20.0, -20.0, 20.0, 0.4)
@@ -107,7 +106,7 @@ def test_recording_and_model() -> None:
         assert word in both
 
 
-def test_diagnosis(found: Diagnosis) -> None:
+def test_diagnosis(found: cs.Diagnosis) -> None:
     both = shown(found)
     for word in (found.verdict, "loop", "noise", found.answer.effects[0].name):
         assert word in both
@@ -157,26 +156,28 @@ def test_a_recording_pickles_with_its_samples_read_only() -> None:
         assert not other.torque_nm.flags.writeable
 
 
-def test_a_diagnosis_pickles(found: Diagnosis) -> None:
+def test_a_diagnosis_pickles(found: cs.Diagnosis) -> None:
     for other in (pickle.loads(pickle.dumps(found)), copy.copy(found), copy.deepcopy(found)):
         assert other.to_json() == found.to_json()
         assert other.model == found.model
 
 
-def test_a_diagnosis_comes_back_from_its_json(found: Diagnosis, tmp_path: Path) -> None:
+def test_a_diagnosis_comes_back_from_its_json(found: cs.Diagnosis, tmp_path: Path) -> None:
     text = found.to_json()
     for source in (text, json.loads(text)):
-        assert Diagnosis.from_json(source).to_json() == text
+        assert cs.Diagnosis.from_json(source).to_json() == text
     found.write(tmp_path, report=False)
-    other = Diagnosis.from_json(tmp_path / "diagnosis.json", recording=found.recording)
+    other = cs.Diagnosis.from_json(tmp_path / "diagnosis.json", recording=found.recording)
     assert other.to_json() == text
     assert other.model == found.model
     assert repr(other) == repr(found)
     other.report(tmp_path / "report.html")
 
 
-def test_a_diagnosis_without_its_recording_has_no_report(found: Diagnosis, tmp_path: Path) -> None:
-    other = Diagnosis.from_json(found.to_json())
+def test_a_diagnosis_without_its_recording_has_no_report(
+    found: cs.Diagnosis, tmp_path: Path
+) -> None:
+    other = cs.Diagnosis.from_json(found.to_json())
     with pytest.raises(cs.InputError, match="report: no recording"):
         other.report(tmp_path / "report.html")
 
@@ -222,7 +223,7 @@ def test_every_model_comes_back(
 
 
 @pytest.mark.parametrize("source", ["{", "[1]", "{}", "nowhere.json", 5, None, {"verdict": 3}])
-@pytest.mark.parametrize("kind", [cs.Drive, cs.Model, Diagnosis, Summary])
+@pytest.mark.parametrize("kind", [cs.Drive, cs.Model, cs.Diagnosis, Summary])
 def test_what_is_no_such_json_is_one_line(kind: Any, source: Any) -> None:
     with pytest.raises(cs.InputError) as caught:
         kind.from_json(source)

@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2] / "python"
 FILES = sorted(ROOT.rglob("*.py"))
 LONGEST = 400
 
-BASE = {"errors", "atomic", "notebook"}
+BASE = {"errors", "atomic", "notebook", "display"}
 DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
@@ -25,6 +25,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
     "notebook": set(),
+    "display": {"errors"},
     "_moved": set(),
     "dynamics": BASE,
     "design": BASE | {"dynamics"},

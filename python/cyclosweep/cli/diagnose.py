@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -21,6 +19,7 @@ from cyclosweep.cli.output import (
     print_tables,
     refuse_file,
 )
+from cyclosweep.display import shown_steps
 from cyclosweep.errors import DesignError, InputError
 
 
@@ -144,7 +143,7 @@ def _diagnose_one(path: Path, folder: Path, job: _Job) -> dict[str, Any]:
     from cyclosweep.recording import Recording
 
     recording: Recording = Recording.read(path, job.meta)
-    with _status(recording.name) as show:
+    with shown_steps(recording.name, sys.stderr.isatty()) as show:
         found = run(recording, progress=show, full=not job.quick, **job.options)
         if job.quick:
             found.write(folder, report=False)
@@ -216,15 +215,3 @@ def _diagnose_folder(
             f"{out / 'table.csv'}",
             2,
         )
-
-
-@contextmanager
-def _status(name: str) -> Iterator[Callable[[str], None]]:
-    """Show the step at work on standard error when that is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda text: None
-        return
-    from rich.console import Console
-
-    with Console(stderr=True).status(name) as status:
-        yield lambda text: status.update(f"{name}: {text}")

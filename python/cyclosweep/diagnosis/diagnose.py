@@ -1,5 +1,6 @@
 """The diagnosis from beginning to end, a line for each stage."""
 
+import logging
 from collections.abc import Callable, Collection
 
 from threadpoolctl import threadpool_limits
@@ -23,10 +24,11 @@ from cyclosweep.diagnosis.refuse import (
 from cyclosweep.diagnosis.repair import repair
 from cyclosweep.diagnosis.sliding import find_sliding, sliding_diagnosis
 from cyclosweep.diagnosis.verification import verify
+from cyclosweep.display import Steps, shown_steps
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 
-Progress = Callable[[str], None]
+_LOG = logging.getLogger(__name__)
 
 
 def diagnose(
@@ -37,7 +39,7 @@ def diagnose(
     seed: int = 0,
     full: bool = True,
     without: Collection[str] = (),
-    progress: Progress | None = None,
+    progress: Steps = None,
 ) -> Diagnosis:
     """Locate where recording and simulation differ, name what is missing, model and verify it.
 
@@ -55,8 +57,8 @@ def diagnose(
         False leaves out the held-out proof, the self-check and the next experiment.
     without : collection of str
         Effects that are not considered, as if nobody had listed them.
-    progress : callable, optional
-        Called with a few words before each long step.
+    progress : bool or callable, optional
+        True shows the step at work; a callable is called with a few words before each long step.
 
     Returns
     -------
@@ -70,14 +72,18 @@ def diagnose(
     check_measured(recording)
     drive = drive if drive is not None else drive_of(recording)
     effects = considered_effects(without)
-    say = progress if progress is not None else _say_nothing
-    try:
-        # The matrices are small: a second thread of the linear algebra costs several times the
-        # time, and the last digits would depend on the machine.
-        with threadpool_limits(limits=1, user_api="blas"):
-            return _run_stages(recording, drive, effects, tolerance_deg, seed, full, say)
-    except NoDiagnosisError as refusal:
-        return refused(recording, drive, refusal, seed)
+    # The matrices are small: a second thread of the linear algebra costs several times the time,
+    # and the last digits would depend on the machine.
+    with (
+        shown_steps(recording.name, progress, _LOG) as say,
+        threadpool_limits(limits=1, user_api="blas"),
+    ):
+        try:
+            found = _run_stages(recording, drive, effects, tolerance_deg, seed, full, say)
+        except NoDiagnosisError as refusal:
+            found = refused(recording, drive, refusal, seed)
+    _LOG.info("%s", found)
+    return found
 
 
 def _run_stages(
@@ -87,7 +93,7 @@ def _run_stages(
     tolerance_deg: float | None,
     seed: int,
     full: bool,
-    say: Progress,
+    say: Callable[[str], None],
 ) -> Diagnosis:
     """Run one stage after the other.
 
@@ -112,7 +118,3 @@ def _run_stages(
     repaired = repair(concluded, drive)
     verified = verify(concluded, full=full, say=say)
     return compose(drive, concluded, regions, repaired, verified)
-
-
-def _say_nothing(text: str) -> None:
-    """Take the place of a progress display."""

@@ -2,7 +2,8 @@
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
+import logging
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from multiprocessing import get_context
@@ -23,12 +24,15 @@ from cyclosweep.diagnosis.series import (
     small_loops_of,
     trends,
 )
+from cyclosweep.display import Steps, shown_steps
 from cyclosweep.errors import DesignError, InputError
 from cyclosweep.recording import Recording
 from cyclosweep.recording.columns import metadata_path, stem
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.series_page import write_series_page
 from cyclosweep.result.series import Trend
+
+_LOG = logging.getLogger(__name__)
 
 RECORDING_ENDINGS = (
     ".csv", ".csv.gz", ".txt", ".lvm", ".tsv", ".parquet", ".xlsx", ".mat", ".tdms", ".json",
@@ -93,7 +97,7 @@ def diagnose_folder(
     workers: int = 1,
     resume: bool = True,
     full: bool = True,
-    progress: Callable[[str], None] | None = None,
+    progress: Steps = None,
     **options: Any,
 ) -> Series:
     """Diagnose every recording of a folder and compare them.
@@ -119,8 +123,8 @@ def diagnose_folder(
         options and version.
     full : bool
         False leaves out report, held-out proof, self-check and next experiment.
-    progress : callable, optional
-        Called with a line for each recording that is done.
+    progress : bool or callable, optional
+        True shows the recording that was done last; a callable is called with a line for each.
     **options
         Further keyword arguments of :func:`cyclosweep.diagnose`.
 
@@ -148,12 +152,13 @@ def diagnose_folder(
         full,
         options,
     )
-    say = progress if progress is not None else _say_nothing
     rows: dict[Path, Row] = {}
-    for path, row in _rows(paths, task, workers):
-        rows[path] = row
-        said = row["verdict"] if row["status"] == "ok" else row["reason"]
-        say(f"{len(rows)} of {len(paths)}: {stem(path)}: {said}")
+    with shown_steps(f"{len(paths)} recordings", progress, _LOG) as say:
+        for path, row in _rows(paths, task, workers):
+            rows[path] = row
+            said = row["verdict"] if row["status"] == "ok" else row["reason"]
+            say(f"{len(rows)} of {len(paths)}: {stem(path)}: {said}")
+    _LOG.info("%d recordings diagnosed, written to %s", len(rows), target)
     ordered = [rows[path] for path in paths]
     named = {name for path in paths for name in _condition_names(path, task.meta)}
     series = _series(ordered, named)
@@ -269,7 +274,3 @@ def _write(series: Series, out: Path) -> None:
         series.table.write_parquet(file)
     rows = series.table.to_dicts()
     write_series_page(out / "index.html", rows, series.conditions, series.trends)
-
-
-def _say_nothing(text: str) -> None:
-    """Take the place of a progress display."""

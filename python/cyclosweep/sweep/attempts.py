@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
@@ -19,6 +20,8 @@ from cyclosweep.sweep.study import Study
 from cyclosweep.sweep.summary import PartSummary
 
 __all__ = ["run_shards", "write_parts"]
+
+_LOG = logging.getLogger(__name__)
 
 _ATTEMPTS = 3
 # The study of the latest task in this process, which most often is that of the next one.
@@ -210,6 +213,10 @@ class _Run:
     def again(self, task: list[Part], error: BaseException, *, crashed: bool) -> None:
         """Put parts in line for another attempt, or give them up."""
         for part in task:
+            _LOG.warning(
+                "part %d: attempt %d of %d failed: %s",
+                part.index, self.attempts[part.index], _ATTEMPTS, _reason(error),
+            )  # fmt: skip
             if _is_hopeless(error):
                 self.failed[part.index] = error
                 self.waiting.clear()

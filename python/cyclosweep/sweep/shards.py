@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import logging
+import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -17,12 +19,14 @@ from cyclosweep.sweep.attempts import run_shards
 from cyclosweep.sweep.dataset import ROWS_PER_PART, SOLVED_ROWS_PER_PART, Dataset
 from cyclosweep.sweep.executors import Engine, executor_of, lend
 from cyclosweep.sweep.objective import Objective
-from cyclosweep.sweep.progress import Progress
+from cyclosweep.sweep.progress import Progress, ShowProgress
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Limits, Study, StudyModel
 from cyclosweep.sweep.summary import PartSummary, Summary, summarise
 
 __all__ = ["Engine", "run_shards", "shard", "sink"]
+
+_LOG = logging.getLogger(__name__)
 
 # Variants of one task on Dask, each of which costs a message.
 _VARIANTS_PER_DASK_TASK = 2**20
@@ -44,7 +48,7 @@ def sink(
     workers: int | None = None,
     scheduler: str | None = None,
     executor: Executor | None = None,
-    progress: bool | None = None,
+    progress: ShowProgress = None,
 ) -> Summary:
     """Sweep a space to a folder of Parquet parts; safe to kill and repeat.
 
@@ -73,8 +77,9 @@ def sink(
         Address of a running Dask scheduler; a local cluster is started without one.
     executor : concurrent.futures.Executor, optional
         Computes the parts instead of an engine of our own.
-    progress : bool, optional
-        Show a progress bar; by default when standard error is a terminal.
+    progress : bool or callable, optional
+        Show a progress bar; by default when standard error is a terminal or in a notebook. A
+        callable is called with the variants done and all that there are.
 
     Returns
     -------
@@ -117,10 +122,14 @@ def sink(
         whole = {summary.start for summary in summaries}
         missing = (part for part in dataset.parts() if part.start not in whole)
         done = sum(summary.stop - summary.start for summary in summaries)
+        began = time.monotonic()
+        _LOG.info("sweep of %s to %s: %s variants, %s of them there", study, dataset.folder,
+                  f"{len(study):,}", f"{done:,}")  # fmt: skip
         with Progress("sweep", len(study), done=done, show=progress) as bar:
 
             def advance(summary: PartSummary) -> None:
                 bar.advance(summary.stop - summary.start)
+                _LOG.debug("variants %d to %d written", summary.start, summary.stop - 1)
 
             try:
                 summaries += run_shards(
@@ -136,7 +145,9 @@ def sink(
                     dataset.finish(dataset.summaries())
                 raise
             _finish(dataset, summaries)
-    return summarise(summaries, study)
+    found = summarise(summaries, study)
+    _LOG.info("sweep to %s ended after %.1f s: %s", dataset.folder, time.monotonic() - began, found)
+    return found
 
 
 def shard(
@@ -146,7 +157,7 @@ def shard(
     index: int,
     of: int,
     rows_per_part: int | None = None,
-    progress: bool | None = None,
+    progress: ShowProgress = None,
 ) -> Summary:
     """Compute every ``of``-th part of a study, beginning with part ``index``.
 
@@ -163,8 +174,9 @@ def shard(
         Number of the task from 0, and how many there are.
     rows_per_part : int, optional
         Variants a part, the same for every task.
-    progress : bool, optional
-        Show a progress bar; by default when standard error is a terminal.
+    progress : bool or callable, optional
+        Show a progress bar; by default when standard error is a terminal or in a notebook. A
+        callable is called with the variants done and all that there are.
 
     Returns
     -------
