@@ -38,7 +38,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "report": SIMULATION | {"result"},
     "diagnosis": SIMULATION | {"result", "report"},
     "reference": DIAGNOSIS | {"sweep"},
-    "cli": REFERENCE | {"__init__"},
+    "figures": DESIGN | {"sweep"},
+    "cli": REFERENCE | {"figures", "__init__"},
     "__init__": REFERENCE | {"_moved"},
     "__main__": {"cli"},
 }

@@ -13,6 +13,7 @@ from cyclosweep.cli import (
     diagnose,
     dynamics,
     inspect,
+    plot,
     show,
     simulate,
     sweep,
@@ -39,6 +40,7 @@ app.command()(sweep.shard)
 app.command()(show.show)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)
+app.command()(plot.plot)
 app.command()(inspect.inspect)
 app.command()(diagnose.diagnose)
 app.command()(dynamics.modes)

@@ -10,6 +10,7 @@ import polars as pl
 
 import cyclosweep._core as _core
 from cyclosweep.design.active_pins import ActivePins, Criterion, count_active_pins
+from cyclosweep.design.hole_windows import hole_windows
 from cyclosweep.design.parts import PartInputs
 
 __all__ = ["HolePaths"]
@@ -53,17 +54,59 @@ class HolePaths(PartInputs):
         >>> cs.Drive.reference_87().active_pins().minimum
         4
         """
-        half_sine = self.eccentricity_mm / (2 * self.output_pin_circle_radius_mm)
-        if half_sine >= 1:
-            raise _core.DesignError(f"{self.name}: {self.study().explain(0)}")
         return count_active_pins(
             criterion or self.criterion,
             ratio=self.ratio,
             disc_count=self.disc_count,
             output_pin_count=self.output_pin_count,
-            half_sine=half_sine,
+            half_sine=self._half_sine(),
             clocking_deg=self.hole_clocking_deg,
         )
+
+    def hole_windows(self, criterion: Criterion | None = None) -> pl.DataFrame:
+        """Stretches of the mesh zone's turn over which each hole counts as active.
+
+        Parameters
+        ----------
+        criterion : {"published-map", "inside", "statics"}, optional
+            The rule, see :meth:`active_pins`; this drive's own by default.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``disc`` from 1; ``hole`` from 1, H1 the hole of the left half nearest ring pin 0, H2
+            the next one away from it against the mesh zone's travel; ``index`` of that hole in
+            :meth:`hole_locus`; ``half``, left or right; ``start_deg``, ``end_deg`` [deg]. A hole
+            that is active in two stretches of the turn has two rows. By ``published-map`` every
+            disc has the windows of the first.
+
+        Raises
+        ------
+        DesignError
+            When no hole ever crosses the pins' pitch circle.
+
+        Examples
+        --------
+        >>> import cyclosweep as cs
+        >>> windows = cs.Drive.reference_87().hole_windows()
+        >>> round(windows.row(0, named=True)["start_deg"], 1)  # "almost 66 deg" in print
+        65.9
+        """
+        return hole_windows(
+            criterion or self.criterion,
+            ratio=self.ratio,
+            disc_count=self.disc_count,
+            output_pin_count=self.output_pin_count,
+            delta_deg=math.degrees(math.asin(self._half_sine())),
+            clocking_deg=self.hole_clocking_deg,
+        )
+
+    def _half_sine(self) -> float:
+        """Eccentricity over the diameter of the pins' circle [1]."""
+        half_sine = self.eccentricity_mm / (2 * self.output_pin_circle_radius_mm)
+        if half_sine >= 1:
+            raise _core.DesignError(f"{self.name}: {self.study().explain(0)}")
+        return half_sine
 
     def hole_locus(self, theta_deg: npt.ArrayLike, hole: int = 0) -> pl.DataFrame:
         """Path of a hole's centre, a hypotrochoid that crosses the pins' pitch circle.

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import cyclosweep._core as _core
 from cyclosweep.design.drive import CRITERIA, Drive
+from cyclosweep.design.published_figures import LINE_DEG, LINE_LOAD_TN, LINE_START_DEG
 from cyclosweep.reference.facts import Fact, Kind, Mark
 from cyclosweep.reference.model import Model
 
@@ -23,8 +24,6 @@ PRINTED_SECTORS = (None, None, 8, None, None, None, None, None)
 """What the paper prints of those sectors: near 90 deg all four on each of both discs."""
 
 _CHOSEN = "the dimensions were chosen so that it fits: no evidence"
-_LINE_LOAD_TN = 2.5
-_LINE_DEG = (75.0, 80.0)
 _PUBLISHED_EFFICIENCY = 0.84375
 
 
@@ -207,7 +206,7 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
     note = "the loading curve starts at the free play, which is typed in"
     yield _fact(
         "twist at the start of loading",
-        28,
+        LINE_START_DEG,
         drive.free_play_deg,
         "deg",
         "published",
@@ -215,8 +214,8 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
         0,
         note,
     )
-    results = model.evaluate(drive, (1.0, _LINE_LOAD_TN))
-    low, high = _LINE_DEG
+    results = model.evaluate(drive, (1.0, LINE_LOAD_TN))
+    low, high = LINE_DEG
     yield _fact(
         "twist at 2.5 T_N, 75 to 80 deg",
         0.5 * (low + high),
@@ -238,7 +237,8 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
         0.0024,
         _CHOSEN,
     )
-    slopes = [math.radians(at - 28) / (_LINE_LOAD_TN * drive.nominal_torque_nm) for at in _LINE_DEG]
+    torque = LINE_LOAD_TN * drive.nominal_torque_nm
+    slopes = [math.radians(at - LINE_START_DEG) / torque for at in LINE_DEG]
     named = (("from", 0.0452, 0.0536, 7.1e-6), ("to", 0.0500, 0.0593, 7.8e-6))
     for (word, at_input, without_eta, at_output), slope in zip(named, slopes, strict=True):
         note = "arithmetic with the published line alone: no model in it"
