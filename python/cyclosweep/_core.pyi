@@ -29,6 +29,7 @@ __all__ = [
     "play",
     "profile_radii",
     "remembered_datum",
+    "sample",
     "sectors",
     "slip_state",
     "solve_slip",
@@ -136,6 +137,14 @@ class PartStudy:
         self, study: Study, variant: int, torque: float, crank: float, engine: str
     ) -> _State: ...
 
+def sample(
+    axes: Sequence[tuple[str, str, _Reals]],
+    layout: str,
+    count: int,
+    seed: int,
+    start: int,
+    stop: int,
+) -> _Reals: ...
 def torque_twist(
     part_study: PartStudy,
     study: Study,

@@ -7,7 +7,7 @@ import hashlib
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers, whole_number
 from cyclosweep.design.parts import PART_DEFAULTS
 from cyclosweep.errors import InputError, did_you_mean, one_of
+from cyclosweep.sweep.distributions import Distribution, Form
 
 __all__ = [
     "OPTIONAL",
@@ -58,14 +59,15 @@ class Axis:
     ----------
     name : str
         The input that varies.
-    form : {"list", "linspace", "interval", "whole"}
-        How ``numbers`` are meant: the values; (from, to, steps); (low, high); (low, high).
+    form : {"list", "linspace", "interval", "whole", "normal", "triangular", "log-uniform"}
+        How ``numbers`` are meant: the values; (from, to, steps); (low, high); (low, high); (mean,
+        standard deviation, low, high, shares below low and high); (low, mode, high); (low, high).
     numbers : ndarray
         float64, in the input's unit.
     """
 
     name: str
-    form: Literal["list", "linspace", "interval", "whole"]
+    form: Form
     numbers: npt.NDArray[np.float64]
 
     def __eq__(self, other: object) -> bool:
@@ -79,15 +81,20 @@ class Axis:
         if self.form == "linspace":
             start, stop, steps = self.numbers
             return f"{start:g} to {stop:g}, {int(steps):,} steps"
+        if self.form == "normal":
+            mean, sd, low, high = self.numbers[:4]
+            ends = "" if low == -math.inf and high == math.inf else f", {low:g} to {high:g}"
+            return f"normal, {mean:g} +- {sd:g}{ends}"
         if self.form != "list":
-            return f"{self.numbers[0]:g} to {self.numbers[-1]:g}"
+            shape = f", {self.form}" if self.form in ("triangular", "log-uniform") else ""
+            return f"{self.numbers[0]:g} to {self.numbers[-1]:g}{shape}"
         shown = self.numbers[:_SHOWN]
         names = [CRITERIA[int(v)] if self.name == "criterion" else f"{v:g}" for v in shown]
         more = f", ... ({len(self.numbers):,})" if len(self.numbers) > _SHOWN else ""
         return f"{', '.join(names)}{more}"
 
     def values(self) -> npt.NDArray[np.float64] | None:
-        """All values in order; None for an interval or whole numbers of a range."""
+        """All values in order; None for a range and for a distribution."""
         if self.form == "list":
             return self.numbers
         if self.form == "linspace":
@@ -252,8 +259,9 @@ def sampled_axis(drive: Drive, name: str, values: object) -> Axis:
         What the axis belongs to.
     name : str
         The input that varies.
-    values : tuple of two numbers, Linspace or iterable
-        ``(low, high)`` in the input's unit, whole numbers for counts; or as for a grid.
+    values : tuple of two numbers, Distribution, Linspace or iterable
+        ``(low, high)`` in the input's unit, whole numbers for counts; a distribution, as
+        ``normal(0.5, 0.01)``; or as for a grid.
 
     Returns
     -------
@@ -265,6 +273,10 @@ def sampled_axis(drive: Drive, name: str, values: object) -> Axis:
         For an unknown input, a range from high to low, or values that are no numbers.
     """
     known_input(drive, name)
+    if isinstance(values, Distribution):
+        if is_count(name) or name == "criterion":
+            raise InputError(f"{name}: found a distribution, expected a range or list of values")
+        return Axis(name, *values.core())
     if isinstance(values, tuple) and len(values) == 2 and name != "criterion":
         low, high = real_numbers(name, values)
         if not (math.isfinite(low) and math.isfinite(high) and low <= high):

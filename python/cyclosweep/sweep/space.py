@@ -30,20 +30,23 @@ from cyclosweep.sweep.axes import (
     listed_axis,
     sampled_axis,
 )
+from cyclosweep.sweep.space_makers import SpaceMakers
 
 __all__ = ["Axis", "Linspace", "Method", "Space", "linspace"]
 
 Method = Literal["grid", "sobol", "latin-hypercube", "random", "table"]
+Layout = Method | Literal["saltelli"]
+"""How variants are laid out; the last for Sobol indices alone, which no study file asks for."""
 MAX_VARIANTS = 2**63
 
 
 @dataclass(frozen=True)
-class Space:
+class Space(SpaceMakers):
     """A space of variants around a drive, up to 2^63 of them, in constant memory.
 
-    Make one with :meth:`grid`, :meth:`sobol`, :meth:`latin_hypercube`, :meth:`random` or
-    :meth:`table`. ``space[a:b]`` is the space of those variants, which keep their values;
-    ``space[k]`` is the drive of variant k.
+    Make one with :meth:`grid`, :meth:`sobol`, :meth:`latin_hypercube`, :meth:`random`,
+    :meth:`table`, :meth:`around` or :meth:`from_salib`. ``space[a:b]`` is the space of those
+    variants, which keep their values; ``space[k]`` is the drive of variant k.
 
     Examples
     --------
@@ -53,7 +56,7 @@ class Space:
     """
 
     drive: Drive
-    method: Method
+    method: Layout
     axes: tuple[Axis, ...]
     total: int
     seed: int = 0
@@ -93,8 +96,8 @@ class Space:
         seed : int
             Seed of the scrambling.
         **axes
-            For each input that varies a range ``(low, high)``, whole numbers for counts, or a
-            list of values.
+            For each input that varies a range ``(low, high)``, whole numbers for counts, a
+            distribution (:mod:`cyclosweep.sweep.distributions`), or a list of values.
 
         Raises
         ------
@@ -183,7 +186,7 @@ class Space:
 
     @classmethod
     def _sampled(
-        cls, drive: Drive, method: Method, count: int, seed: int, axes: Mapping[str, Any]
+        cls, drive: Drive, method: Layout, count: int, seed: int, axes: Mapping[str, Any]
     ) -> Space:
         count = whole_number("count", count, least=1)
         seed = whole_number("seed", seed, most=2**64 - 1)
@@ -194,7 +197,7 @@ class Space:
 
     @classmethod
     def _made(
-        cls, drive: Drive, method: Method, axes: tuple[Axis, ...], count: int, seed: int
+        cls, drive: Drive, method: Layout, axes: tuple[Axis, ...], count: int, seed: int
     ) -> Space:
         if count > MAX_VARIANTS:
             raise InputError(f"count: found {count}, expected at most 2^63 variants")

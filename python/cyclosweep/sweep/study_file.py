@@ -12,6 +12,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.axes import Linspace, is_count
+from cyclosweep.sweep.distributions import distribution_from
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Method, Space
 
@@ -136,6 +137,10 @@ class StudyFile(TomlTable):
         return make(drive, self.sample.count, seed=self.sample.seed, **axes)
 
     def _axis(self, name: str, spec: dict[str, Any], is_grid: bool) -> Any:
+        if "distribution" in spec:
+            if is_grid:
+                raise InputError(f"axes.{name}: found a distribution, not for a grid")
+            return distribution_from(f"axes.{name}", spec)
         try:
             if "values" in spec:
                 return list(_Values.model_validate(spec).values)

@@ -73,6 +73,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("DesignError", module.py().get_type::<DesignError>())?;
     module.add_class::<study::PyStudy>()?;
     module.add_function(wrap_pyfunction!(study::kernel_evaluations, module)?)?;
+    module.add_function(wrap_pyfunction!(study::sample, module)?)?;
     module.add_function(wrap_pyfunction!(input_table, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;
     module.add_function(wrap_pyfunction!(status_labels, module)?)?;

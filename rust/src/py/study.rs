@@ -60,6 +60,23 @@ fn values_of(form: &str, numbers: &[f64]) -> PyResult<Values> {
             low: *low,
             high: *high,
         }),
+        ("normal", [mean, sd, low, high, below_low, below_high]) => Ok(Values::Normal {
+            mean: *mean,
+            sd: *sd,
+            low: *low,
+            high: *high,
+            below_low: *below_low,
+            below_high: *below_high,
+        }),
+        ("triangular", [low, mode, high]) => Ok(Values::Triangular {
+            low: *low,
+            mode: *mode,
+            high: *high,
+        }),
+        ("log-uniform", [low, high]) => Ok(Values::LogUniform {
+            low: *low,
+            high: *high,
+        }),
         _ => Err(PyValueError::new_err(format!("unknown axis form {form}"))),
     }
 }
@@ -71,6 +88,7 @@ fn layout_of(name: &str) -> PyResult<Layout> {
         "latin-hypercube" => Ok(Layout::LatinHypercube),
         "random" => Ok(Layout::Random),
         "table" => Ok(Layout::Table),
+        "saltelli" => Ok(Layout::Saltelli),
         _ => Err(PyValueError::new_err(format!(
             "unknown sampling method {name}"
         ))),
@@ -86,6 +104,48 @@ fn kind_of(name: &str) -> PyResult<SegmentKind> {
             "unknown shaft segment {name}"
         ))),
     }
+}
+
+/// Points start..stop of a space over axes of any names, one row an axis.
+///
+/// `axes`: (name, form, numbers) as for a study.
+#[pyfunction]
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "a list from Python arrives by value"
+)]
+pub fn sample<'py>(
+    py: Python<'py>,
+    axes: Vec<AxisSpec<'_>>,
+    layout: &str,
+    count: u64,
+    seed: u64,
+    start: u64,
+    stop: u64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let mut built = Vec::with_capacity(axes.len());
+    for (input, (_, form, numbers)) in axes.iter().enumerate() {
+        let values = values_of(form, numbers.as_slice()?)?;
+        built.push(Axis { input, values });
+    }
+    let space = Space::new(built, layout_of(layout)?, count, seed)
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    if start > stop || stop > space.len() {
+        return Err(PyIndexError::new_err(format!(
+            "points {start}..{stop} of {}",
+            space.len()
+        )));
+    }
+    let len = (stop - start) as usize;
+    let columns = PyArray2::<f64>::zeros(py, [axes.len(), len], false);
+    {
+        let mut columns = columns.readwrite();
+        let chunks = columns.as_slice_mut()?.chunks_mut(len.max(1));
+        for (axis, column) in chunks.enumerate() {
+            space.fill(axis, Rows::From(start), column);
+        }
+    }
+    Ok(columns)
 }
 
 impl PyStudy {

@@ -34,6 +34,10 @@ pub enum Layout {
     Random,
     /// One variant a row of the axes' lists.
     Table,
+    /// Points for Sobol indices (Saltelli 2002): for each pair of points of two scrambled Sobol
+    /// sequences the first, then for each axis the first with that axis of the second, then the
+    /// second.
+    Saltelli,
 }
 
 /// Why a space cannot be.
@@ -63,6 +67,9 @@ pub enum SpaceError {
     /// The Sobol sequence has no more directions.
     #[error("a Sobol study takes at most 128 axes")]
     TooManySobolAxes,
+    /// Two points of the sequence are needed for each.
+    #[error("a sample for Sobol indices takes at most 64 axes")]
+    TooManySaltelliAxes,
 }
 
 /// Which variants are asked for.
@@ -76,11 +83,17 @@ pub enum Rows<'a> {
 
 #[derive(Debug, Clone)]
 enum Points {
-    Grid { strides: Vec<u64> },
+    Grid {
+        strides: Vec<u64>,
+    },
     Sobol(Vec<SobolAxis>),
     LatinHypercube(Vec<Permutation>),
     Random(Vec<u64>),
     Table,
+    Saltelli {
+        first: Vec<SobolAxis>,
+        second: Vec<SobolAxis>,
+    },
 }
 
 /// A space of variants, random access in constant memory (but for a table's own rows).
@@ -120,10 +133,15 @@ impl Space {
                 if axes.len() > MAX_SOBOL_AXES {
                     return Err(SpaceError::TooManySobolAxes);
                 }
-                let sequences = (0..axes.len())
-                    .map(|axis| SobolAxis::new(axis, Some(key(seed, axis as u64))))
-                    .collect();
-                (Points::Sobol(sequences), count)
+                (Points::Sobol(sobol_axes(0, axes.len(), seed)), count)
+            }
+            Layout::Saltelli => {
+                if 2 * axes.len() > MAX_SOBOL_AXES {
+                    return Err(SpaceError::TooManySaltelliAxes);
+                }
+                let first = sobol_axes(0, axes.len(), seed);
+                let second = sobol_axes(axes.len(), axes.len(), seed);
+                (Points::Saltelli { first, second }, count)
             }
             Layout::LatinHypercube => {
                 let keys: Vec<u64> = keys(&axes);
@@ -215,6 +233,15 @@ impl Space {
                     *value = values.at(unit_interval(sequences[axis].bits(*index)));
                 }
             }
+            (Points::Saltelli { first, second }, rows) => {
+                let group = self.axes.len() as u64 + 2;
+                for_each(rows, out, |index| {
+                    let (point, place) = (index / group, index % group);
+                    let of_second = place == axis as u64 + 1 || place + 1 == group;
+                    let sequences = if of_second { second } else { first };
+                    values.at(unit_interval(sequences[axis].bits(point)))
+                });
+            }
             (Points::LatinHypercube(maps), rows) => {
                 for_each(rows, out, |index| values.at(maps[axis].stratified(index)));
             }
@@ -223,6 +250,13 @@ impl Space {
             }
         }
     }
+}
+
+/// Scrambled Sobol sequences of `count` axes from number `start` on.
+fn sobol_axes(start: usize, count: usize, seed: u64) -> Vec<SobolAxis> {
+    (start..start + count)
+        .map(|axis| SobolAxis::new(axis, Some(key(seed, axis as u64))))
+        .collect()
 }
 
 #[inline]
@@ -287,6 +321,7 @@ mod tests {
             Layout::Sobol,
             Layout::LatinHypercube,
             Layout::Random,
+            Layout::Saltelli,
         ] {
             let space = Space::new(axes(), layout, 105, 3).expect("valid");
             assert_eq!(space.len(), 105);
@@ -310,6 +345,29 @@ mod tests {
         assert_eq!(last, [19.0, 22.0]);
         space.fill(0, Rows::From(103), &mut last);
         assert_eq!(last, [0.8, 0.8]);
+    }
+
+    #[test]
+    fn variants_for_sobol_indices_take_one_axis_at_a_time_from_the_second_point() {
+        let space = Space::new(axes(), Layout::Saltelli, 50, 3).expect("valid");
+        for group in 0..10 {
+            let rows: [u64; 5] = std::array::from_fn(|k| group * 5 + k as u64);
+            for axis in 0..3 {
+                let mut values = [0.0; 5];
+                space.fill(axis, Rows::At(&rows), &mut values);
+                let [first, .., second] = values;
+                for (place, value) in values.iter().enumerate().take(4) {
+                    let expected = if place == axis + 1 { second } else { first };
+                    assert_eq!(*value, expected);
+                }
+            }
+        }
+        let sobol = Space::new(axes(), Layout::Sobol, 10, 3).expect("valid");
+        let (mut points, mut firsts) = ([0.0; 10], [0.0; 10]);
+        sobol.fill(2, Rows::From(0), &mut points);
+        let rows: [u64; 10] = std::array::from_fn(|k| 5 * k as u64);
+        space.fill(2, Rows::At(&rows), &mut firsts);
+        assert_eq!(points, firsts);
     }
 
     #[test]

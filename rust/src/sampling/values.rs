@@ -1,6 +1,11 @@
 //! The values of one axis of a study.
 
 use crate::model::rounding::floor;
+use crate::sampling::quantile::normal_quantile;
+
+/// Half the distance of the numbers in [0, 1) that are drawn: in the middle of its step a draw is
+/// never 0, where a normal distribution has no quantile.
+const HALF_STEP: f64 = f64::EPSILON / 4.0;
 
 /// The values one axis can take, in the user's unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +35,37 @@ pub enum Values {
         /// Largest.
         high: f64,
     },
+    /// Normally distributed, of which only what lies from `low` to `high` is drawn.
+    Normal {
+        /// Mean of the whole distribution.
+        mean: f64,
+        /// Its standard deviation.
+        sd: f64,
+        /// Lower end, may be infinite.
+        low: f64,
+        /// Upper end, may be infinite.
+        high: f64,
+        /// Share of the whole distribution below `low`.
+        below_low: f64,
+        /// Share of the whole distribution below `high`.
+        below_high: f64,
+    },
+    /// Triangularly distributed.
+    Triangular {
+        /// Lower end.
+        low: f64,
+        /// Most frequent value.
+        mode: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// Its logarithm is uniformly distributed.
+    LogUniform {
+        /// Lower end, above zero.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
 }
 
 impl Values {
@@ -39,7 +75,7 @@ impl Values {
         match self {
             Values::List(values) => Some(values.len() as u64),
             Values::Linspace { steps, .. } => Some(*steps),
-            Values::Interval { .. } | Values::Whole { .. } => None,
+            _ => None,
         }
     }
 
@@ -55,7 +91,8 @@ impl Values {
                     from + digit as f64 * ((to - from) / (steps - 1).max(1) as f64)
                 }
             }
-            Values::Interval { low, .. } | Values::Whole { low, .. } => *low,
+            // Not countable, and never asked for.
+            _ => f64::NAN,
         }
     }
 
@@ -93,6 +130,20 @@ impl Values {
                 values.get(place).copied().unwrap_or(f64::NAN)
             }
             Values::Linspace { steps, .. } => self.nth((u * *steps as f64) as u64),
+            Values::Normal {
+                mean,
+                sd,
+                low,
+                high,
+                below_low,
+                below_high,
+            } => {
+                let share = below_low + (u + HALF_STEP) * (below_high - below_low);
+                let share = share.clamp(HALF_STEP, 1.0 - f64::EPSILON / 2.0);
+                (mean + sd * normal_quantile(share)).clamp(*low, *high)
+            }
+            Values::Triangular { low, mode, high } => in_triangle(*low, *mode, *high, u),
+            Values::LogUniform { low, high } => (low * (u * (high / low).ln()).exp()).min(*high),
         }
     }
 }
@@ -105,6 +156,17 @@ fn in_interval(low: f64, high: f64, u: f64) -> f64 {
 #[inline(always)]
 fn whole_within(low: f64, high: f64, u: f64) -> f64 {
     low + floor(u * (high - low + 1.0))
+}
+
+/// Quantile of a triangular distribution.
+fn in_triangle(low: f64, mode: f64, high: f64, u: f64) -> f64 {
+    let width = high - low;
+    let rising = mode - low;
+    if u * width <= rising {
+        low + (u * width * rising).sqrt()
+    } else {
+        high - ((1.0 - u) * width * (high - mode)).sqrt()
+    }
 }
 
 #[cfg(test)]
@@ -126,6 +188,40 @@ mod tests {
             prop_assert!(value >= low && value <= high && value.fract() == 0.0);
             prop_assert_eq!(Values::Whole { low, high }.at(0.0), low);
             prop_assert_eq!(Values::Whole { low, high }.at(1.0 - f64::EPSILON / 2.0), high);
+        }
+
+        #[test]
+        fn distributed_numbers_stay_in_their_range_and_grow_with_the_share(
+            low in -5.0..5.0_f64, width in 0.001..9.0_f64, peak in 0.0..=1.0_f64,
+            u in 0.0..1.0_f64, v in 0.0..1.0_f64,
+        ) {
+            let (high, mode) = (low + width, low + peak * width);
+            let normal = Values::Normal {
+                mean: mode, sd: width, low, high, below_low: 0.3, below_high: 0.6,
+            };
+            let triangular = Values::Triangular { low, mode, high };
+            let logarithmic = Values::LogUniform { low: low.abs() + 0.1, high: low.abs() + 0.1 + width };
+            for (values, least, most) in [
+                (normal, low, high),
+                (triangular, low, high),
+                (logarithmic, low.abs() + 0.1, low.abs() + 0.1 + width),
+            ] {
+                for share in [0.0, u, v, 1.0 - f64::EPSILON / 2.0] {
+                    let value = values.at(share);
+                    prop_assert!(value >= least - 1e-12 && value <= most + 1e-12, "{value}");
+                }
+                prop_assert!((u <= v) == (values.at(u) <= values.at(v)) || values.at(u) == values.at(v));
+            }
+        }
+
+        #[test]
+        fn a_normal_number_is_finite_at_both_ends(mean in -5.0..5.0_f64, sd in 0.001..9.0_f64) {
+            let values = Values::Normal {
+                mean, sd, low: f64::NEG_INFINITY, high: f64::INFINITY, below_low: 0.0, below_high: 1.0,
+            };
+            prop_assert!((values.at(0.0) - mean) / sd < -8.0 && values.at(0.0).is_finite());
+            let last = values.at(1.0 - f64::EPSILON / 2.0);
+            prop_assert!((last - mean) / sd > 8.0 && last.is_finite());
         }
     }
 }
