@@ -20,6 +20,7 @@ from cyclosweep.sweep.stored import StoredStudy, open_study
 from cyclosweep.sweep.study import Objective, Study
 
 if _TYPE_CHECKING:
+    from cyclosweep.choose.best import BestVariants, best_variants
     from cyclosweep.choose.comparison import Comparison, compare
     from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
     from cyclosweep.explore import nearest_variants, pareto_front
@@ -29,8 +30,10 @@ if _TYPE_CHECKING:
 
 # Imported when first asked for: SciPy takes longer to load than all a worker of a sweep needs.
 _LATER = {
+    "BestVariants": "choose.best",
     "Comparison": "choose.comparison",
     "Diagnosis": "diagnosis",
+    "best_variants": "choose.best",
     "compare": "choose.comparison",
     "Model": "simulation.simulate",
     "Recording": "recording",
@@ -65,6 +68,7 @@ if _core.DEBUG_BUILD:
     )
 
 __all__ = [
+    "BestVariants",
     "Comparison",
     "Cylinder",
     "DesignError",
@@ -84,6 +88,7 @@ __all__ = [
     "SweepError",
     "Train",
     "__version__",
+    "best_variants",
     "compare",
     "diagnose",
     "diagnose_folder",

@@ -9,10 +9,13 @@ import typer
 
 from cyclosweep import __version__
 from cyclosweep.cli import (
+    best,
     challenge,
     diagnose,
     dynamics,
     inspect,
+    new,
+    pick,
     plot,
     show,
     simulate,
@@ -37,7 +40,10 @@ app = typer.Typer(
 app.command()(validate.validate)
 app.command()(sweep.sweep)
 app.command()(sweep.shard)
+app.command()(new.new)
 app.command()(show.show)
+app.command()(best.best)
+app.command()(pick.pick)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)
 app.command()(plot.plot)

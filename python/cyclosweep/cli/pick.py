@@ -1,0 +1,33 @@
+"""`cyclosweep pick`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def pick(
+    study: Annotated[Path, typer.Argument(metavar="STUDY_DIR", help="Folder of a sweep.")],
+    variant: Annotated[int, typer.Argument(metavar="N", help="Number of the variant.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DRIVE.toml", help="File to write.")],
+    name: Annotated[str | None, typer.Option("--name", help="What the drive is called.")] = None,
+) -> None:
+    """Write one variant of a study as a drive file.
+
+    The file gives the same results as the variant's row. What the study varied is marked as
+    derived from it; every other mark is that of the study's drive.
+    """
+    from cyclosweep.sweep.stored import open_study
+
+    stored = open_study(study)
+    drive = stored.drive_of(variant, name=name)
+    status = stored.row(variant)["status"]
+    drive.to_toml(out)
+    if status != "ok":
+        print(f"cyclosweep: variant {variant} has the status {status}", file=sys.stderr)
+    values = ", ".join(f"{axis} {getattr(drive, axis, None):g}" for axis in stored.axes
+                       if isinstance(getattr(drive, axis, None), (int, float)))  # fmt: skip
+    print(f"Written: {out} ({values})" if values else f"Written: {out}")
