@@ -1,14 +1,26 @@
 """Errors that end in one clear line: bad input, a design that cannot be built, a failed sweep."""
 
 import difflib
+import re
 from collections.abc import Collection, Iterable
+from pathlib import Path
 from typing import TypeVar
 
 from cyclosweep._core import DesignError
 
-__all__ = ["DesignError", "InputError", "SweepError", "did_you_mean", "one_of"]
+__all__ = [
+    "DesignError",
+    "InputError",
+    "SweepError",
+    "did_you_mean",
+    "instance_of",
+    "one_of",
+    "path_of",
+]
 
 Name = TypeVar("Name", bound=object)
+
+_LINE_BREAK = re.compile(r"\s*\n\s*")
 
 _SHORTEST_PART = 4
 """Letters of a name that is looked for inside known ones: three are in too many of them."""
@@ -19,6 +31,10 @@ class InputError(ValueError):
 
     The command line turns it into exit status 2.
     """
+
+    def __str__(self) -> str:
+        """The message in one line, also where what was found has several."""
+        return _LINE_BREAK.sub(" ", super().__str__())
 
 
 class SweepError(RuntimeError):
@@ -93,10 +109,75 @@ def one_of(what: str, found: Name, known: Collection[object]) -> Name:
     if not isinstance(found, (str, int, type(None))) or found not in known:
         names = [str(name) for name in known]
         raise InputError(
-            f"{what}: found {found!r}, expected one of {', '.join(names)}"
+            f"{what}: found {_short(found)}, expected one of {', '.join(names)}"
             f"{did_you_mean(found, names)}"
         )
     return found
+
+
+def instance_of(what: str, found: object, *kinds: type) -> None:
+    """Refuse an argument of another kind than those that a function takes.
+
+    Parameters
+    ----------
+    what : str
+        Name of the argument.
+    found : object
+        What was given.
+    *kinds : type
+        Kinds that it may have.
+
+    Raises
+    ------
+    InputError
+        With what was found and what was expected.
+
+    Examples
+    --------
+    >>> instance_of("folder", "study", str)
+    """
+    if not isinstance(found, kinds):
+        names = " or ".join(kind.__name__ for kind in kinds)
+        raise InputError(f"{what}: found {_short(found)}, expected {names}")
+
+
+def path_of(what: str, found: object) -> Path:
+    """Return the path that an argument says, and refuse what is none.
+
+    Parameters
+    ----------
+    what : str
+        Name of the argument.
+    found : object
+        A text or a path.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> path_of("folder", "study").name
+    'study'
+    """
+    if not isinstance(found, (str, Path)):
+        raise InputError(f"{what}: found {_short(found)}, expected a path")
+    return Path(found)
+
+
+_LONGEST_VALUE = 60
+"""Characters of a value that a message repeats."""
+
+
+def _short(found: object) -> str:
+    """A value as a message shows it, in one line of bounded length."""
+    text = " ".join(repr(found).split())
+    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 3]}..."
 
 
 def _plain(name: str) -> str:

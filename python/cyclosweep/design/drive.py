@@ -22,7 +22,7 @@ from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
 from cyclosweep.design.toml_files import one_line, read_toml
 from cyclosweep.dynamics.train import Train
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, path_of
 
 __all__ = [
     "CRITERIA",
@@ -101,7 +101,7 @@ class Drive(PublishedDrive):
         InputError
             For another name.
         """
-        if name not in _BUILT_IN:
+        if not isinstance(name, str) or name not in _BUILT_IN:
             known = ", ".join(_BUILT_IN)
             hint = did_you_mean(name, _BUILT_IN)
             raise InputError(
@@ -166,7 +166,7 @@ class Drive(PublishedDrive):
         path : str or Path
             The file.
         """
-        write_text(path, tomli_w.dumps(self._table()))
+        write_text(path_of("file", path), tomli_w.dumps(self._table()))
 
     def _table(self) -> dict[str, Any]:
         """What a file holds: every key that is given."""
@@ -245,10 +245,11 @@ class Drive(PublishedDrive):
             else:
                 hint = did_you_mean(name, [*table, *self.inputs()])
                 raise InputError(f"{name}: no such input of this drive{hint}")
+        if "provenance" not in changes:
             table["provenance"] = {
                 key: mark
-                for key, mark in table["provenance"].items()
-                if key != name and not (name == "shaft" and key.startswith("shaft_"))
+                for key, mark in self.provenance.items()
+                if key not in changes and not ("shaft" in changes and key.startswith("shaft_"))
             }
         return self._from_table(table, self.name)
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal, Protocol
 
 import numpy as np
 
 from cyclosweep.design.loaded import loaded_state
+from cyclosweep.design.numbers import finite_number
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.dynamics.train import Train
@@ -71,6 +72,10 @@ class TrainParts:
     damping_s: float = 0.0
 
     def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if value is not None:
+                object.__setattr__(self, each.name, finite_number(each.name, value))
         if self.eccentric_inertia_kg_m2 < 0:
             raise InputError(
                 f"eccentric_inertia_kg_m2: found {self.eccentric_inertia_kg_m2:g}, "
@@ -140,7 +145,8 @@ def train_of(
         raise InputError(
             f"{drive.name}: input_inertia_kg_m2: missing, expected the motor's inertia"
         )
-    orbit, disc = _discs(drive) if model == "components" else (0.0, 0.0)
+    by_name = model if isinstance(model, str) else ""
+    orbit, disc = _discs(drive) if by_name == "components" else (0.0, 0.0)
     eccentric = parts.eccentric_inertia_kg_m2 + orbit
     shaft = parts.input_shaft_stiffness_nm_per_rad
     damping = parts.damping_s
@@ -150,14 +156,14 @@ def train_of(
         chain = _Chain("input", inertia)
         chain.join(TrainSpring.linear(shaft), "input_shaft")
         chain.add("eccentric", eccentric)
-    if model == "components":
+    if by_name == "components":
         mesh, output = _component_springs(drive)
         chain.join(mesh, "mesh", drive.ratio)
         chain.add("discs", disc)
         chain.join(output, "output_pins")
-    elif model == "published":
+    elif by_name == "published":
         chain.join(_published_spring(drive, with_efficiency), "drive", drive.ratio)
-    elif isinstance(model, str):
+    elif isinstance(model, str) or not hasattr(model, "train_spring"):
         raise InputError(f"model: found {model!r}, expected 'published', 'components' or a Model")
     else:
         largest = LOADS[-1] * drive.nominal_torque_nm

@@ -9,9 +9,10 @@ import numpy.typing as npt
 import polars as pl
 
 import cyclosweep._core as _core
-from cyclosweep.design.active_pins import ActivePins, Criterion, count_active_pins
+from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion, count_active_pins
 from cyclosweep.design.hole_windows import hole_windows
 from cyclosweep.design.parts import PartInputs
+from cyclosweep.errors import one_of
 
 __all__ = ["HolePaths"]
 
@@ -33,6 +34,8 @@ class HolePaths(PartInputs):
 
         Raises
         ------
+        InputError
+            For another criterion.
         DesignError
             When no hole ever crosses the pins' pitch circle.
 
@@ -54,8 +57,9 @@ class HolePaths(PartInputs):
         >>> cs.Drive.reference_87().active_pins().minimum
         4
         """
+        chosen = self.criterion if criterion is None else criterion
         return count_active_pins(
-            criterion or self.criterion,
+            one_of("criterion", chosen, CRITERIA),
             ratio=self.ratio,
             disc_count=self.disc_count,
             output_pin_count=self.output_pin_count,

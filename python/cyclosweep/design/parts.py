@@ -227,6 +227,7 @@ class PartInputs(DriveInputs):
         >>> curve.reached, curve.table["load_tn"].max() > 4.4
         (True, True)
         """
+        one_of("side", side, get_args(Side))
         study, parts = self.accepted("full")
         nominal = self.nominal_torque_nm if side == "input" else self.output_torque_nm
         return torque_twist_curve(study, parts, Rig(side, crank_deg, nominal, to_load_tn, points))

@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from cyclosweep.design.numbers import plain
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, path_of
 
 __all__ = ["TomlTable", "one_line", "read_toml"]
 
@@ -70,8 +70,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     InputError
         When it is not there, not text or not TOML.
     """
-    if not isinstance(path, (str, Path)):
-        raise InputError(f"file: found {path!r}, expected the path of a TOML file")
+    path = path_of("file", path)
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple, get_args
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ import polars as pl
 import cyclosweep._core as _core
 from cyclosweep.design.nominal_line import NominalLine, Side
 from cyclosweep.design.numbers import finite_number, whole_number
-from cyclosweep.errors import InputError, one_of
+from cyclosweep.errors import InputError
 
 __all__ = ["Rig", "TorqueTwist", "torque_twist_curve"]
 
@@ -188,7 +188,6 @@ def torque_twist_curve(study: _core.Study, parts: _core.PartStudy, rig: Rig) -> 
         For another side, an angle or a load that is no such number, or fewer than two points.
     """
     side, crank_deg, nominal, to_load_tn, points = rig
-    one_of("side", side, get_args(Side))
     crank_deg = finite_number("crank_deg", crank_deg)
     to_load_tn = finite_number("to_load_tn", to_load_tn)
     if to_load_tn <= 0:

@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.compose import compose
 from cyclosweep.diagnosis.decide import conclude
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify_effects import identify
-from cyclosweep.diagnosis.inputs import check_measured, considered_effects, drive_of
+from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_of
 from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.prepare.problem import prepare
@@ -25,6 +25,7 @@ from cyclosweep.diagnosis.repair import repair
 from cyclosweep.diagnosis.sliding import find_sliding, sliding_diagnosis
 from cyclosweep.diagnosis.verification import verify
 from cyclosweep.display import Steps, shown_steps
+from cyclosweep.errors import instance_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 
@@ -71,6 +72,8 @@ def diagnose(
     """
     check_measured(recording)
     drive = drive if drive is not None else drive_of(recording)
+    instance_of("drive", drive, Drive)
+    check_options(tolerance_deg, seed)
     effects = considered_effects(without)
     # The matrices are small: a second thread of the linear algebra costs several times the time,
     # and the last digits would depend on the machine.

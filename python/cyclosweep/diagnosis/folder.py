@@ -15,6 +15,7 @@ import polars as pl
 import cyclosweep._core as _core
 from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.design.drive import Drive
+from cyclosweep.design.numbers import whole_number
 from cyclosweep.diagnosis.diagnose import diagnose
 from cyclosweep.diagnosis.series import (
     Row,
@@ -25,7 +26,7 @@ from cyclosweep.diagnosis.series import (
     trends,
 )
 from cyclosweep.display import Steps, shown_steps
-from cyclosweep.errors import DesignError, InputError
+from cyclosweep.errors import DesignError, InputError, instance_of, path_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.columns import metadata_path, stem
 from cyclosweep.recording.metadata import Metadata
@@ -76,7 +77,9 @@ def recordings_in(folder: str | Path) -> list[Path]:
     InputError
         There is none.
     """
-    folder = Path(folder)
+    folder = path_of("recordings", folder)
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder, expected recordings in it")
     found = sorted(
         path
         for path in folder.iterdir()
@@ -137,12 +140,15 @@ def diagnose_folder(
     InputError
         There is no recording, two share a name, or `workers` is below one.
     """
-    paths = recordings_in(recordings) if isinstance(recordings, (str, Path)) else list(recordings)
+    if isinstance(recordings, (str, Path)):
+        paths = recordings_in(recordings)
+    else:
+        instance_of("recordings", recordings, Sequence)
+        paths = [path_of("recordings", path) for path in recordings]
     if len({stem(path) for path in paths}) < len(paths):
         raise InputError("recordings: two of one name, expected a folder for each in DIR")
-    if workers < 1:
-        raise InputError(f"workers: found {workers}, expected 1 or more")
-    target = Path(out)
+    workers = whole_number("workers", workers, least=1)
+    target = path_of("out", out)
     target.mkdir(parents=True, exist_ok=True)
     task = _Task(
         drive,
@@ -184,7 +190,9 @@ def _rows(paths: Sequence[Path], task: _Task, workers: int) -> Iterator[tuple[Pa
         for path in paths:
             yield path, _row(path, task)
         return
-    with ProcessPoolExecutor(min(workers, len(paths)), mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(
+        max(1, min(workers, len(paths))), mp_context=get_context("spawn")
+    ) as pool:
         waiting = {pool.submit(_row, path, task): path for path in paths}
         try:
             for done in as_completed(waiting):

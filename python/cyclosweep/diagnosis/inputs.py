@@ -4,19 +4,41 @@ from collections.abc import Collection
 from pathlib import Path
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.errors import InputError, one_of
+from cyclosweep.design.numbers import finite_number, whole_number
+from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects import effects as all_effects
 
 
 def check_measured(recording: Recording) -> None:
-    """Raise `InputError` where the recording is a load programme without a measured angle."""
+    """Raise `InputError` for a load programme without a measured angle, or for no recording."""
+    instance_of("recording", recording, Recording)
     if recording.angle_deg is None:
         raise InputError(
             f"{recording.path or recording.name}: column angle_deg: missing, "
             "expected in a recording"
         )
+
+
+def check_options(tolerance_deg: float | None, seed: int) -> None:
+    """Refuse a tolerance or a seed that is none.
+
+    Parameters
+    ----------
+    tolerance_deg : float or None
+        Size below which an effect does not matter [deg].
+    seed : int
+        Seed of the random draws.
+
+    Raises
+    ------
+    InputError
+        The tolerance is not above zero, or the seed no whole number from zero.
+    """
+    whole_number("seed", seed)
+    if tolerance_deg is not None and finite_number("tolerance_deg", tolerance_deg) <= 0:
+        raise InputError(f"tolerance_deg: found {tolerance_deg:g}, expected degrees above zero")
 
 
 def drive_of(recording: Recording) -> Drive:
@@ -59,6 +81,8 @@ def considered_effects(without: Collection[str]) -> tuple[Effect, ...]:
     InputError
         A name is of no effect.
     """
+    if isinstance(without, (str, bytes)) or not isinstance(without, Collection):
+        raise InputError(f"without: found {without!r}, expected a list of names of effects")
     known = all_effects()
     names = {effect.name for effect in known}
     for name in without:

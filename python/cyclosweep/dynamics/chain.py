@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 import cyclosweep._core as _core
-from cyclosweep.dynamics.checks import numbered, same_length, spring_of
+from cyclosweep.dynamics.checks import floats, numbered, same_length, spring_of
 from cyclosweep.dynamics.spring import Brake, TrainSpring
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, instance_of
 
 __all__ = ["Chain"]
 
@@ -44,11 +44,19 @@ class Chain:
         spring_names: Sequence[str] | None = None,
         damping_s: float = 0.0,
     ) -> None:
-        inertias = tuple(float(j) for j in inertias_kg_m2)
+        inertias = floats("inertias_kg_m2", inertias_kg_m2)
+        stiffnesses_nm_per_rad = floats("stiffnesses_nm_per_rad", stiffnesses_nm_per_rad)
+        for what, given_names in (("names", names), ("spring_names", spring_names)):
+            if given_names is not None:
+                instance_of(what, given_names, list, tuple)
         nodes = tuple(names) if names is not None else numbered("node", len(inertias))
         expected = len(inertias) - (0 if grounded else 1)
         if springs is None:
-            gaps = [0.0] * len(stiffnesses_nm_per_rad) if gaps_rad is None else list(gaps_rad)
+            gaps = (
+                [0.0] * len(stiffnesses_nm_per_rad)
+                if gaps_rad is None
+                else floats("gaps_rad", gaps_rad)
+            )
             same_length("gaps_rad", len(gaps), len(stiffnesses_nm_per_rad))
             springs = [
                 spring_of(k, stiffness, gap)
@@ -66,7 +74,7 @@ class Chain:
                     f"inertia of {name}: found {inertia:g} kg m^2, expected a number above zero"
                 )
         same_length("springs", len(springs), expected, " of a grounded train" if grounded else "")
-        given = [1.0] * len(springs) if ratios is None else [float(r) for r in ratios]
+        given = [1.0] * len(springs) if ratios is None else floats("ratios", ratios)
         same_length("ratios", len(given), len(springs))
         for ratio in given:
             if not (math.isfinite(ratio) and ratio > 0):

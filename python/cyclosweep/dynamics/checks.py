@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from cyclosweep.dynamics.spring import TrainSpring
-from cyclosweep.errors import InputError
+from collections.abc import Sequence
 
-__all__ = ["numbered", "same_length", "spring_of"]
+import numpy as np
+
+from cyclosweep.dynamics.spring import TrainSpring
+from cyclosweep.errors import InputError, instance_of
+
+__all__ = ["floats", "numbered", "real", "same_length", "spring_of"]
 
 
 def numbered(word: str, count: int) -> tuple[str, ...]:
@@ -19,6 +23,24 @@ def spring_of(number: int, stiffness_nm_per_rad: float, gap_rad: float) -> Train
         return TrainSpring.linear(float(stiffness_nm_per_rad), float(gap_rad))
     except InputError as error:
         raise InputError(f"spring {number}: {error}") from None
+
+
+def floats(what: str, values: object) -> tuple[float, ...]:
+    """Return a list of numbers as floats; InputError for what is none."""
+    instance_of(what, values, Sequence, np.ndarray)
+    try:
+        return tuple(float(value) for value in values)  # type: ignore[attr-defined]
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{what}: found {values!r}, expected a list of numbers") from None
+
+
+def real(what: str, value: object) -> float:
+    """Return a number as a float; InputError for what is none."""
+    instance_of(what, value, int, float, np.integer, np.floating)
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except OverflowError:
+        raise InputError(f"{what}: found an integer beyond the range of floats") from None
 
 
 def same_length(what: str, found: int, expected: int, where: str = "") -> None:

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cyclosweep.dynamics.chain import Chain
-from cyclosweep.errors import InputError
+from cyclosweep.dynamics.checks import real
+from cyclosweep.errors import InputError, instance_of
 
 __all__ = ["History", "Torques", "knots"]
 
@@ -46,6 +47,8 @@ def knots(train: Chain, torques: Torques, duration_s: float) -> tuple[Reals, Rea
     InputError
         For an unknown node, times that fall, or numbers that are none.
     """
+    instance_of("torques", torques, Mapping)
+    duration_s = real("duration_s", duration_s)
     if not (math.isfinite(duration_s) and duration_s > 0):
         raise InputError(f"duration_s: found {duration_s:g}, expected a number above zero")
     histories: dict[int, tuple[Reals, Reals]] = {}
@@ -66,9 +69,13 @@ def knots(train: Chain, torques: Torques, duration_s: float) -> tuple[Reals, Rea
 
 def _history(name: str | int, torque: float | History) -> tuple[Reals, Reals]:
     if isinstance(torque, (int, float)):
-        torque = ([0.0], [float(torque)])
-    times = np.asarray(torque[0], dtype=np.float64)
-    values = np.asarray(torque[1], dtype=np.float64)
+        torque = ([0.0], [real(f"torque of {name}", torque)])
+    try:
+        times, values = (np.asarray(each, dtype=np.float64) for each in torque)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"torque of {name}: found {torque!r}, expected a number, or times and torques"
+        ) from None
     if times.ndim != 1 or times.shape != values.shape or not len(times):
         raise InputError(f"torque of {name}: expected as many times as torques, at least one")
     if not (np.isfinite(times).all() and np.isfinite(values).all()):

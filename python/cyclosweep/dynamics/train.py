@@ -9,16 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from cyclosweep.dynamics.chain import Chain
-from cyclosweep.dynamics.checks import same_length
+from cyclosweep.dynamics.checks import real, same_length
 from cyclosweep.dynamics.modes import Modes
 from cyclosweep.dynamics.spring import Brake
 from cyclosweep.dynamics.torques import Torques, knots
 from cyclosweep.dynamics.transient import Transient, follow
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 
 __all__ = ["Train"]
 
 Reals = npt.NDArray[np.float64]
+
+MOST_SAMPLES = 10_000_000
+"""Rows of a transient's table: its columns then still fit into memory."""
 
 
 class Train(Chain):
@@ -87,6 +90,7 @@ class Train(Chain):
         Small oscillations without friction. Through the play the frequency depends on the
         amplitude: :func:`cyclosweep.dynamics.backbone_frequency_hz`.
         """
+        torque_nm = real("torque_nm", torque_nm)
         train = self.locked() if locked else self
         stiffnesses = train.stiffnesses_at(torque_nm)
         at_nodes, at_springs = train.node_ratios, train.spring_ratios
@@ -191,8 +195,9 @@ class Train(Chain):
         4.107449
         """
         times, values = knots(self, torques, duration_s)
-        if samples < 2:
-            raise InputError(f"samples: found {samples}, expected at least 2")
+        instance_of("samples", samples, int, np.integer)
+        if not 2 <= samples <= MOST_SAMPLES:
+            raise InputError(f"samples: found {samples}, expected 2 to {MOST_SAMPLES}")
         before = np.zeros(len(self.names))
         for name, torque in (preload_nm or {}).items():
             if not isinstance(torque, (int, float)):

@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.errors import DesignError, InputError
+from cyclosweep.design.numbers import finite_number
+from cyclosweep.errors import (
+    DesignError,
+    InputError,
+    did_you_mean,
+    instance_of,
+    one_of,
+    path_of,
+)
 from cyclosweep.notebook import html_table
 from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.cleaning import drop_missing
@@ -89,6 +97,14 @@ class Recording(Samples):
     faults: tuple[Fault, ...] = ()
     sha256: str | None = field(default=None, repr=False)
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        instance_of("name", self.name, str)
+        one_of("side", self.side, _SIDES)
+        one_of("torque_from", self.torque_from, _TORQUES)
+        one_of("history", self.history, _HISTORIES)
+        finite_number("angle_resolution_deg", self.angle_resolution_deg)
+
     @classmethod
     def read(cls, path: str | Path, meta: str | Path | None = None) -> Self:
         """Read a recording or a load programme.
@@ -112,7 +128,8 @@ class Recording(Samples):
         InputError
             The file cannot be read as a recording; one line says why.
         """
-        return cls._read(Path(path), None if meta is None else Path(meta), None)
+        meta_path = None if meta is None else path_of("meta", meta)
+        return cls._read(path_of("path", path), meta_path, None)
 
     @classmethod
     def read_as(cls, path: Path, meta: Metadata, meta_path: Path) -> Self:
@@ -183,23 +200,28 @@ class Recording(Samples):
 
         Raises
         ------
-        ValueError
-            For arrays of different lengths or more than one dimension.
+        InputError
+            For arrays of different lengths or more than one dimension, what is no number, or an
+            attribute that no recording has.
 
         Examples
         --------
         >>> Recording.from_arrays([0.0, 5.0, 0.0], [28.0, 41.7, 28.1], side="input").runs
         (1,)
         """
-        torque = np.asarray(torque_nm, dtype=np.float64)
+        for attribute in known:
+            if attribute not in cls.__dataclass_fields__:
+                hint = did_you_mean(attribute, cls.__dataclass_fields__)
+                raise InputError(f"{attribute}: no such attribute of a recording{hint}")
+        torque = _numbers("torque_nm", torque_nm)
         given: dict[str, Any] = {
             "torque_nm": torque,
-            "angle_deg": _floats(angle_deg),
-            "time_s": _floats(time_s),
-            "run": np.asarray(np.ones(len(torque)) if run is None else run, dtype=np.int64),
-            "crank_deg": _floats(crank_deg),
-            "temperature_c": _floats(temperature_c),
-            "unscored": _floats(known.pop("unscored", None)),
+            "angle_deg": _floats("angle_deg", angle_deg),
+            "time_s": _floats("time_s", time_s),
+            "run": _numbers("run", np.ones(len(torque)) if run is None else run, np.int64),
+            "crank_deg": _floats("crank_deg", crank_deg),
+            "temperature_c": _floats("temperature_c", temperature_c),
+            "unscored": _floats("unscored", known.pop("unscored", None)),
         }
         whole = cls(name=name, **given, **known)  # refuses columns of unequal length
         notes = list(whole.notes)
@@ -300,9 +322,51 @@ class Recording(Samples):
 
     def with_angle(self, angle_deg: ArrayLike | None) -> Self:
         """Return the same load history with another angle, as for synthetic twins."""
-        return replace(self, angle_deg=_floats(angle_deg))
+        return replace(self, angle_deg=_floats("angle_deg", angle_deg))
 
 
-def _floats(values: ArrayLike | None) -> Floats | None:
-    """Make an array of floats, where there is one to make."""
-    return None if values is None else np.asarray(values, dtype=np.float64)
+_SIDES = ("input", "output")
+_TORQUES = ("sensor", "motor-current")
+_HISTORIES = ("per-run", "continuous")
+
+
+def _floats(name: str, values: ArrayLike | None) -> Floats | None:
+    """Make an array of floats, where there is one to make.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in a message.
+    values : array_like or None
+        Numbers.
+
+    Returns
+    -------
+    ndarray or None
+    """
+    return None if values is None else _numbers(name, values)
+
+
+def _numbers(name: str, values: ArrayLike, kind: type = np.float64) -> NDArray[Any]:
+    """Make an array of numbers of one dimension, or say what is none.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in a message.
+    values : array_like
+        Numbers.
+    kind : type
+        Type of the array's values.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    try:
+        array: NDArray[Any] = np.asarray(values, dtype=kind)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name}: expected numbers, one a sample") from None
+    if array.ndim != 1:
+        raise InputError(f"{name}: found shape {array.shape}, expected numbers, one a sample")
+    return array

@@ -11,6 +11,7 @@ import polars as pl
 
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.dynamics.train import Train
+from cyclosweep.errors import InputError, did_you_mean
 from cyclosweep.reference.model import Model, Results, assembled
 
 if TYPE_CHECKING:
@@ -297,11 +298,13 @@ def broken_model(name: str) -> Model:
 
     Raises
     ------
-    ValueError
+    InputError
         For another name; the message lists those there are.
     """
-    for model in BROKEN_MODELS:
-        if model.name == name:
-            return model
-    known = ", ".join(model.name for model in BROKEN_MODELS)
-    raise ValueError(f"broken model {name!r}: no such model, expected one of {known}")
+    known = {model.name: model for model in BROKEN_MODELS}
+    if not isinstance(name, str) or name not in known:
+        raise InputError(
+            f"broken model {name!r}: no such model, expected one of {', '.join(known)}"
+            f"{did_you_mean(name, known)}"
+        )
+    return known[name]

@@ -7,6 +7,7 @@ from dataclasses import asdict
 import polars as pl
 
 from cyclosweep.design.drive import Drive
+from cyclosweep.errors import instance_of
 from cyclosweep.reference import (
     contacts,
     criteria,
@@ -65,7 +66,7 @@ def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.Dat
     ------
     DesignError
         When the drive cannot be built.
-    ValueError
+    InputError
         When there is no such deliberate error.
 
     Examples
@@ -76,6 +77,8 @@ def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.Dat
     >>> wrong.filter(pl.col("fact") == "nominal input torque T_N")["ok"].item()
     False
     """
+    if drive is not None:
+        instance_of("drive", drive, Drive)
     model = Model() if broken is None else broken_model(broken)
     rows = [
         {

@@ -7,8 +7,9 @@ from typing import Any, Literal, Self
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.json_files import JsonSource, json_object, name_of
+from cyclosweep.design.numbers import real_numbers
 from cyclosweep.dynamics.spring import TrainSpring
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.notebook import html_table
 from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats
@@ -71,6 +72,15 @@ class Model:
     notes: tuple[str, ...] = field(default=())
     elastic_curve: ElasticCurve | None = None
 
+    def __post_init__(self) -> None:
+        numbers = ("compliance_deg_per_nm", "free_play_deg", "datum_deg", "torque_zero_nm")
+        for name in numbers:
+            real_numbers(name, [getattr(self, name)])
+        one_of("side", self.side, ("input", "output"))
+        instance_of("effects", self.effects, tuple)
+        for value in self.effects:
+            instance_of("effects", value, EffectValue)
+
     def elastic_twist(self, torque_nm: Floats) -> Floats:
         """Twist beyond the free play without effects [deg], by the curve or by the line."""
         if self.elastic_curve is None:
@@ -92,6 +102,7 @@ class Model:
         -------
         Model
         """
+        instance_of("drive", drive, Drive)
         line = drive.nominal_line(side)
         return cls(
             compliance_deg_per_nm=line.compliance_deg_per_nm,

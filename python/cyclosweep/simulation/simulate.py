@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.orders import needed_columns
@@ -133,6 +133,9 @@ def simulate(
     >>> simulate(cs.Drive.reference_87(), load).angle_deg.round(1)
     array([28. , 47.8, 67.6])
     """
+    instance_of("model", model, Model, Drive)
+    instance_of("programme", programme, Recording)
+    one_of("predict", predict, ("angle", "torque"))
     if isinstance(model, Drive):
         model = Model.of_drive(model, programme.side)
     _check(model, programme)

@@ -18,7 +18,7 @@ from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers, whole_number
 from cyclosweep.design.parts import PART_DEFAULTS
-from cyclosweep.errors import InputError, did_you_mean, one_of
+from cyclosweep.errors import InputError, did_you_mean, instance_of, one_of
 from cyclosweep.sweep.distributions import Distribution, Form
 
 __all__ = [
@@ -204,6 +204,7 @@ def known_input(drive: Drive, name: str) -> str:
     InputError
         With the nearest name that the drive does have.
     """
+    instance_of("drive", drive, Drive)
     known = drive.every_input()
     if name not in known:
         raise InputError(f"{name}: no such input of this drive{did_you_mean(name, known)}")

@@ -15,7 +15,7 @@ from filelock import FileLock, Timeout
 
 import cyclosweep._core as _core
 from cyclosweep.atomic import unfinished, write_text
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, path_of
 from cyclosweep.sweep.scan import frame
 from cyclosweep.sweep.study import Study
 from cyclosweep.sweep.summary import PartSummary, summary_of_part
@@ -356,7 +356,7 @@ def scan_dataset(folder: str | Path) -> pl.LazyFrame:
     InputError
         When the folder holds no part of a study.
     """
-    paths = parts_of(Path(folder))
+    paths = parts_of(path_of("folder", folder))
     if not paths:
         raise InputError(f"{folder}: no parts of a study there")
     return pl.scan_parquet(paths)

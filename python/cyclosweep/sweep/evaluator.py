@@ -175,7 +175,7 @@ class Evaluator:
         """Designs as rows, and whether there was one alone."""
         try:
             given = np.asarray(x, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise InputError(f"x: found {x!r}, expected numbers") from None
         single = given.ndim == 1
         designs = given[None, :] if single else given

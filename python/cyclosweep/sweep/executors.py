@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from typing import Literal
 
 from cyclosweep.design.numbers import whole_number
-from cyclosweep.errors import InputError, SweepError, did_you_mean
+from cyclosweep.errors import InputError, SweepError, one_of
 
 __all__ = ["ENGINES", "Engine", "MakeExecutor", "dask_executor", "executor_of", "lend"]
 
@@ -59,17 +59,13 @@ def executor_of(
         raise InputError(f"scheduler: only for engine dask, found engine {engine}")
     if workers is not None:
         workers = whole_number("workers", workers, least=1)
+    one_of("engine", engine, ENGINES)
     if engine == "threads":
         # The kernel and the encoder each use every core; two parts in flight overlap them.
         return lambda: ThreadPoolExecutor(workers or 2)
     if engine == "processes":
         return lambda: _process_pool(workers or os.cpu_count() or 1)
-    if engine == "dask":
-        return lambda: dask_executor(workers, scheduler)
-    raise InputError(
-        f"engine: found {engine!r}, expected one of {', '.join(ENGINES)}"
-        f"{did_you_mean(engine, ENGINES)}"
-    )
+    return lambda: dask_executor(workers, scheduler)
 
 
 @contextlib.contextmanager

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cyclosweep.errors import instance_of
+
 __all__ = ["Objective"]
 
 
@@ -21,6 +23,9 @@ class Objective:
 
     column: str
     maximise: bool = False
+
+    def __post_init__(self) -> None:
+        instance_of("objective", self.column, str)
 
     def __str__(self) -> str:
         return f"{'maximise' if self.maximise else 'minimise'} {self.column}"

@@ -14,7 +14,7 @@ from filelock import FileLock, Timeout
 
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.parts import Engine as Solver
-from cyclosweep.errors import InputError, SweepError
+from cyclosweep.errors import InputError, SweepError, instance_of, path_of
 from cyclosweep.sweep.attempts import run_shards
 from cyclosweep.sweep.dataset import ROWS_PER_PART, SOLVED_ROWS_PER_PART, Dataset
 from cyclosweep.sweep.executors import Engine, executor_of, lend
@@ -106,6 +106,8 @@ def sink(
         space, loads_tn=loads_tn, limits=limits, objective=objective, model=model, solver=solver
     )
     dataset = _dataset(study, folder, rows_per_part)
+    if executor is not None:
+        instance_of("executor", executor, Executor)
     if executor is None:
         make = executor_of(engine, workers=workers, scheduler=scheduler)
     else:
@@ -216,7 +218,9 @@ def shard(
 def _dataset(study: Study, folder: str | Path, rows_per_part: int | None) -> Dataset:
     if rows_per_part is None:
         rows_per_part = ROWS_PER_PART if study.model == "published" else SOLVED_ROWS_PER_PART
-    return Dataset(study, Path(folder), whole_number("rows_per_part", rows_per_part, least=1))
+    return Dataset(
+        study, path_of("folder", folder), whole_number("rows_per_part", rows_per_part, least=1)
+    )
 
 
 def _finish(dataset: Dataset, summaries: list[PartSummary]) -> None:

@@ -17,7 +17,7 @@ from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.units import quantity
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 from cyclosweep.notebook import html_table
 from cyclosweep.sweep.axes import (
     OPTIONAL,
@@ -172,6 +172,7 @@ class Space(SpaceMakers):
         InputError
             For a column that is no input or holds no numbers.
         """
+        instance_of("frame", frame, pl.DataFrame)
         axes = []
         for column in frame.get_columns():
             name = known_input(drive, column.name)
@@ -201,6 +202,7 @@ class Space(SpaceMakers):
     ) -> Space:
         if count > MAX_VARIANTS:
             raise InputError(f"count: found {count}, expected at most 2^63 variants")
+        instance_of("drive", drive, Drive)
         space = cls(drive, method, axes, count, seed)
         try:
             total = space.core().count

@@ -18,7 +18,7 @@ from cyclosweep.design.numbers import checked_loads, real_numbers
 from cyclosweep.design.part_units import TRAIN_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS, TRAIN_INPUTS, Engine
 from cyclosweep.design.units import quantity
-from cyclosweep.errors import InputError, did_you_mean, one_of
+from cyclosweep.errors import InputError, did_you_mean, instance_of, one_of
 from cyclosweep.notebook import html_table
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Space
@@ -109,11 +109,17 @@ class Study:
             if any(given is not None for given in (loads_tn, limits, objective, model, solver)):
                 raise InputError("a study already has its loads, limits, objective and model")
             return space
-        model, solver = _known(model or "published", solver or "quadratic")
+        instance_of("space", space, Space, Study)
+        model, solver = _known(
+            "published" if model is None else model, "quadratic" if solver is None else solver
+        )
+        if objective is not None:
+            instance_of("objective", objective, Objective)
         loads = checked_loads(DEFAULT_LOADS_TN if loads_tn is None else loads_tn)
         if len(set(loads)) != len(loads):
             raise InputError(f"loads_tn: found {list(loads)}, expected each load once")
-        bounds = [_bounds(name, low, high) for name, (low, high) in (limits or {}).items()]
+        instance_of("limits", {} if limits is None else limits, Mapping)
+        bounds = [_bounds(name, ends) for name, ends in (limits or {}).items()]
         study = cls(space, loads, tuple(bounds), objective, model, solver)
         columns = [*space.drive.every_input(), *study.outputs]
         axes = {axis.name for axis in space.axes}
@@ -280,8 +286,11 @@ def _known(model: StudyModel, solver: Engine) -> tuple[StudyModel, Engine]:
     return model, one_of("solver", solver, get_args(Engine))
 
 
-def _bounds(name: str, low: float | None, high: float | None) -> tuple[str, float, float]:
+def _bounds(name: str, ends: tuple[float | None, float | None]) -> tuple[str, float, float]:
     """A limit with both ends; InputError unless they are numbers in order."""
+    if not isinstance(ends, (tuple, list)) or len(ends) != 2:
+        raise InputError(f"limits.{name}: found {ends!r}, expected (least or None, most or None)")
+    low, high = ends
     given = [-math.inf if low is None else low, math.inf if high is None else high]
     least, most = real_numbers(f"limits.{name}", given)
     if not least <= most:
