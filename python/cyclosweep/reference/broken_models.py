@@ -11,7 +11,7 @@ import polars as pl
 
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.dynamics.train import Train
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, instance_of
 from cyclosweep.reference.model import Model, Results, assembled
 
 if TYPE_CHECKING:
@@ -302,7 +302,8 @@ def broken_model(name: str) -> Model:
         For another name; the message lists those there are.
     """
     known = {model.name: model for model in BROKEN_MODELS}
-    if not isinstance(name, str) or name not in known:
+    instance_of("broken model", name, str)
+    if name not in known:
         raise InputError(
             f"broken model {name!r}: no such model, expected one of {', '.join(known)}"
             f"{did_you_mean(name, known)}"

@@ -52,11 +52,11 @@ class Evaluator:
 
     Examples
     --------
-    >>> twist = Evaluator(Drive.reference_87(), ["eccentricity_mm"], "twist_1tn_deg")
-    >>> round(twist([0.62]), 1)
+    >>> twist = Evaluator(Drive.reference_87(), ["output_pin_diameter_mm"], "twist_1tn_deg")
+    >>> round(twist([16.0]), 1)
     47.8
-    >>> twist([[0.6], [0.62], [2.0]]).round(1)
-    array([46.1, 47.8,  nan])
+    >>> twist([[14.0], [16.0], [90.0]]).round(1)
+    array([51.6, 47.8,  nan])
     """
 
     def __init__(
