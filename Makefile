@@ -23,13 +23,14 @@ SAME_CASES ?= 300
 SAME_FLAGS ?=
 SCOREBOARD_OUT ?= build/scoreboard
 SCOREBOARD_FLAGS ?=
+WHEEL_OUT ?= build/wheel
 RECORD := $(BIN)/python -m cyclosweep_challenge.record --drive examples/measured-13-to-1/drive.toml
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench bench-ten-million disc docs golden coverage proof \
-	proof-record proof-faint proof-contest proof-contest-poor same-diagnosis scoreboard clean
+	proof-record proof-faint proof-contest proof-contest-poor same-diagnosis scoreboard wheel clean
 .DEFAULT_GOAL := help
 
 help:
@@ -48,6 +49,7 @@ help:
 	@echo "make proof-contest-poor  the same on poor programmes alone and proof/contest-poor.md; about two hours"
 	@echo "make same-diagnosis OTHER=DIR  whether this code and another checkout (set up) diagnose the same"
 	@echo "make scoreboard  recordings of real devices and made ones, and which answers are right; about half an hour"
+	@echo "make wheel   build the wheel for this kind of machine, install it away from any compiler, use it"
 	@echo "make docs    regenerate what in docs and proof comes from code or from the figures of record"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
@@ -135,6 +137,12 @@ same-diagnosis: env
 # Measured recordings are read from the folder that CYCLOSWEEP_SHARED names (default ../shared).
 scoreboard: env
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m cyclosweep_challenge.scoreboard --out $(SCOREBOARD_OUT) $(SCOREBOARD_FLAGS)
+
+# For Python 3.11 and later; some minutes, most of them link-time optimisation.
+wheel: env
+	rm -rf $(WHEEL_OUT)
+	. $(BIN)/activate && maturin build --profile dist --locked --quiet --out $(WHEEL_OUT)
+	$(BIN)/python tests/support/try_wheel.py $(WHEEL_OUT)
 
 docs: env
 	$(BIN)/python docs/generate.py
