@@ -11,6 +11,7 @@ import cyclosweep._moved as _moved
 from cyclosweep.design.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import DesignError, InputError, SweepError
+from cyclosweep.plugins import Column
 from cyclosweep.sweep.dataset import scan_dataset
 from cyclosweep.sweep.evaluator import Evaluator
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
@@ -69,6 +70,7 @@ if _core.DEBUG_BUILD:
 
 __all__ = [
     "BestVariants",
+    "Column",
     "Comparison",
     "Cylinder",
     "DesignError",

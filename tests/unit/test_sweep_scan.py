@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
 import cyclosweep as cs
+from cyclosweep.sweep.kernel_columns import result_columns
+from cyclosweep.sweep.rows import frame
 
 SPACE = cs.Space.grid(
     cs.Drive.reference_87(),
@@ -115,15 +118,12 @@ def test_a_query_on_inputs_alone_never_starts_the_kernel() -> None:
 
 def test_only_results_asked_for_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
-    scan = cs.scan.__globals__
-    whole = scan["_results"]
 
-    def watched(study: cs.Study, names: list[str], *rest: object) -> list[pl.Series]:
+    def watched(study: cs.Study, names: list[str], *rest: Any) -> list[pl.Series]:
         asked.extend(names)
-        columns: list[pl.Series] = whole(study, names, *rest)
-        return columns
+        return result_columns(study, names, *rest)
 
-    monkeypatch.setitem(scan, "_results", watched)
+    monkeypatch.setitem(frame.__globals__, "result_columns", watched)
     lazy = cs.scan(SPACE).filter(col("status") == "ok", col("eccentricity_mm") > 0.8)
     lazy.select("hole_web_mm", "output_pin_count").collect()
     assert set(asked) == {"status", "hole_web_mm"}

@@ -85,10 +85,15 @@ def test_a_refused_variant_has_null() -> None:
     assert cs.sweep(space)["natural_frequency_1_hz"].is_null().to_list() == [False, True]
 
 
-def test_a_limit_on_a_train_column_is_refused() -> None:
+def test_a_limit_on_a_train_column() -> None:
     space = cs.Space.grid(cs.Drive.reference_87(), load_inertia_kg_m2=[1.0, 5.0])
-    with pytest.raises(cs.InputError, match=r"limits\.natural_frequency_1_hz: found a train"):
-        cs.sweep(space, limits={"natural_frequency_1_hz": (10.0, None)})
+    free = cs.sweep(space)["natural_frequency_1_hz"].to_list()
+    between = 0.5 * sum(free)
+    frame = cs.sweep(space, limits={"natural_frequency_1_hz": (between, None)})
+    expected = ["ok" if value >= between else "limit_natural_frequency_1_hz" for value in free]
+    assert frame["status"].to_list() == expected
+    assert set(expected) == {"ok", "limit_natural_frequency_1_hz"}
+    assert frame["twist_1tn_deg"].is_null().to_list() == [value != "ok" for value in expected]
 
 
 def test_a_study_writes_stiffness_frequency_and_shock_factor(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2] / "python"
 FILES = sorted(ROOT.rglob("*.py"))
 LONGEST = 400
 
-BASE = {"errors", "atomic", "notebook", "display"}
+BASE = {"errors", "atomic", "notebook", "display", "plugins"}
 DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
@@ -24,6 +24,7 @@ REFERENCE = DIAGNOSIS | {"sweep", "explore", "choose", "reference"}
 MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
+    "plugins": {"errors"},
     "notebook": set(),
     "display": {"errors"},
     "_moved": set(),

@@ -25,7 +25,7 @@ _LOG = logging.getLogger(__name__)
 
 _ATTEMPTS = 3
 # The study of the latest task in this process, which most often is that of the next one.
-_STUDIES: dict[tuple[str, Objective | None], Study] = {}
+_STUDIES: dict[tuple[str, tuple[Objective, ...]], Study] = {}
 
 
 def write_part(dataset: Dataset, part: Part) -> PartSummary:
@@ -76,7 +76,7 @@ def write_parts(dataset: Dataset, parts: Sequence[Part]) -> list[PartSummary | E
 
 
 def _study_of_this_process(study: Study) -> Study:
-    key = (study.hash, study.objective)
+    key = (study.hash, study.objectives)
     found = _STUDIES.get(key)
     if found is None:
         _STUDIES.clear()

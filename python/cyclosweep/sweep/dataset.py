@@ -6,7 +6,7 @@ import contextlib
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,9 +16,9 @@ from filelock import FileLock, Timeout
 import cyclosweep._core as _core
 from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.errors import InputError, path_of
-from cyclosweep.sweep.scan import frame
+from cyclosweep.sweep.rows import frame
 from cyclosweep.sweep.study import Study
-from cyclosweep.sweep.summary import PartSummary, summary_of_part
+from cyclosweep.sweep.summary import PartSummary, leaders_of_part, summary_of_part
 
 __all__ = [
     "COMPRESSION",
@@ -184,10 +184,10 @@ class Dataset:
         summary = PartSummary.from_json(footer["record"])
         if (summary.start, summary.stop) != (part.start, part.stop):
             return None
-        if footer.get("objective") != self._objective():
+        if footer.get("objectives") != self._objectives():
             # Another objective changes no numbers, only which variants are best.
             rows = pl.read_parquet(self.folder / part.name)
-            return summary_of_part(rows, part.start, part.stop, self.study)
+            return replace(summary, leaders=leaders_of_part(rows, self.study))
         return summary
 
     @contextlib.contextmanager
@@ -224,9 +224,9 @@ class Dataset:
         OSError
             When it cannot be written; nothing is left behind.
         """
-        rows = frame(self.study, part.start, part.stop, list(self.study.schema()))
+        rows = frame(self.study, part.start, part.stop, self.study.computed())
         summary = summary_of_part(rows, part.start, part.stop, self.study)
-        return self.put(part, rows, summary)
+        return self.put(part, self.study.select(rows), summary)
 
     def put(self, part: Part, rows: pl.DataFrame, summary: PartSummary) -> PartSummary:
         """Write computed rows as a part, whole or not at all.
@@ -246,7 +246,7 @@ class Dataset:
         """
         footer = {
             **self._identity(),
-            "objective": self._objective(),
+            "objectives": self._objectives(),
             "record": summary.to_json(),
         }
         with unfinished(self.folder / part.name) as file:
@@ -264,12 +264,15 @@ class Dataset:
             "study": self.study.hash,
             "version": _core.__version__,
             "rows_per_part": self.rows_per_part,
-            "columns": self.study.units(),
+            "columns": self._units(),
         }
 
-    def _objective(self) -> list[str | bool] | None:
-        objective = self.study.objective
-        return None if objective is None else [objective.column, objective.maximise]
+    def _units(self) -> dict[str, dict[str, str]]:
+        units = self.study.units()
+        return {name: units[name] for name in self.study.given()}
+
+    def _objectives(self) -> list[list[str | bool]]:
+        return [[each.column, each.maximise] for each in self.study.objectives]
 
     def summaries(self) -> list[PartSummary]:
         """Return the summaries of all whole parts, in order."""
@@ -289,7 +292,8 @@ class Dataset:
             **self._identity(),
             "definition": self.study.definition(),
             "drive": json.loads(self.study.space.drive.to_json()),
-            "objective": self._objective(),
+            "objective": next(iter(self._objectives()), None),
+            "objectives": self._objectives(),
             "variants": len(self.study),
             "rows": rows,
             "complete": rows == len(self.study),

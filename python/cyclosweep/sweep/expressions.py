@@ -101,16 +101,16 @@ def number(text: str, columns: Mapping[str, pl.DataType], *, where: str = "expre
     Returns
     -------
     polars.Expr
-        Of type Float64.
+        Of type Float64; 1 and 0 for true and false.
 
     Raises
     ------
     InputError
-        As there, and where its value is a truth value or a text.
+        As there, and where its value is a text.
     """
     found = expression(text, columns, where=where)
     dtype = _dtype(found, columns)
-    if not dtype.is_numeric():
+    if not (dtype.is_numeric() or dtype == pl.Boolean()):
         raise InputError(f"{where}: found {text!r}, which is no number, expected one")
     return found.cast(pl.Float64)
 

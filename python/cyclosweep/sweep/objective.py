@@ -16,7 +16,7 @@ class Objective:
     Attributes
     ----------
     column : str
-        A result or an input.
+        A column of the study, or an expression of columns.
     maximise : bool
         Whether more is better.
     """

@@ -6,29 +6,20 @@ engine trusts the source: it must apply the predicate and the row limit itself.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import polars as pl
 from polars.io.plugins import register_io_source
 
 import cyclosweep._core as _core
 from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError
-from cyclosweep.sweep.memory import take
+from cyclosweep.sweep.own_columns import Own
+from cyclosweep.sweep.rows import frame
 from cyclosweep.sweep.study import Limits, Study, StudyModel
-from cyclosweep.sweep.train_columns import (
-    TRAIN_COLUMNS,
-    needed_inputs,
-    needed_results,
-    train_columns,
-)
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from cyclosweep.sweep.space import Space
 
 __all__ = ["Evaluations", "frame", "kernel_evaluations", "scan", "sweep"]
@@ -81,6 +72,8 @@ def scan(
     limits: Limits | None = None,
     model: StudyModel | None = None,
     solver: Engine | None = None,
+    constraints: Mapping[str, Own] | None = None,
+    columns: Mapping[str, Own] | None = None,
 ) -> pl.LazyFrame:
     """Sweep a space lazily.
 
@@ -101,6 +94,8 @@ def scan(
         which is solved for only where a query needs it.
     solver : {"quadratic", "full"}, optional
         How the component model finds its equilibria; the faster one by default.
+    constraints, columns : mapping, optional
+        Conditions and columns of your own by name, as for :meth:`cyclosweep.Study.of`.
 
     Returns
     -------
@@ -126,7 +121,15 @@ def scan(
     ... ].to_list()
     [10, 10]
     """
-    study = Study.of(space, loads_tn=loads_tn, limits=limits, model=model, solver=solver)
+    study = Study.of(
+        space,
+        loads_tn=loads_tn,
+        limits=limits,
+        model=model,
+        solver=solver,
+        constraints=constraints,
+        columns=columns,
+    )
     most = DEFAULT_BATCH if study.model == "published" else SOLVED_BATCH
 
     def source(
@@ -142,9 +145,12 @@ def scan(
         for first in range(start, stop, size):
             yield frame(study, first, min(first + size, stop), wanted, predicate)
 
-    return register_io_source(
+    rows = register_io_source(
         source, schema=study.schema(), is_pure=True, explain_name="cyclosweep"
     )
+    if study.only_ok:
+        rows = rows.filter(pl.col("status") == "ok")
+    return rows if study.keep is None else rows.select(study.given())
 
 
 def sweep(
@@ -154,6 +160,8 @@ def sweep(
     limits: Limits | None = None,
     model: StudyModel | None = None,
     solver: Engine | None = None,
+    constraints: Mapping[str, Own] | None = None,
+    columns: Mapping[str, Own] | None = None,
 ) -> pl.DataFrame:
     """Sweep a space into memory.
 
@@ -161,7 +169,7 @@ def sweep(
     ----------
     space : Space or Study
         What varies.
-    loads_tn, limits, model, solver : optional
+    loads_tn, limits, model, solver, constraints, columns : optional
         As for :func:`scan`.
 
     Returns
@@ -181,193 +189,18 @@ def sweep(
     >>> cs.sweep(space)["status"].to_list()
     ['ok', 'eccentricity_too_large_for_ring']
     """
-    study = Study.of(space, loads_tn=loads_tn, limits=limits, model=model, solver=solver)
+    study = Study.of(
+        space,
+        loads_tn=loads_tn,
+        limits=limits,
+        model=model,
+        solver=solver,
+        constraints=constraints,
+        columns=columns,
+    )
     count = study.space.stop - study.space.start
     if count > _LARGEST_FRAME:
         raise InputError(
             f"{count:,} variants do not fit into one frame, expected scan, sink or a slice"
         )
-    return frame(study, study.space.start, study.space.stop, list(study.schema()))
-
-
-def frame(
-    study: Study,
-    start: int,
-    stop: int,
-    columns: Sequence[str],
-    predicate: pl.Expr | None = None,
-) -> pl.DataFrame:
-    """Columns of variants start..stop for which a predicate holds.
-
-    Parameters
-    ----------
-    study : Study
-        What is computed.
-    start, stop : int
-        Variants of the whole space, slices not applied.
-    columns : sequence of str
-        Columns wanted, in order.
-    predicate : polars.Expr, optional
-        Condition; its parts on inputs alone are applied before the kernel.
-
-    Returns
-    -------
-    polars.DataFrame
-    """
-    cheap = {"variant", *(axis.name for axis in study.space.axes)}
-    before, after = _split(predicate, cheap)
-    needed = dict.fromkeys(columns)
-    for condition in after:
-        needed.update(dict.fromkeys(condition.meta.root_names()))
-    results = [name for name in needed if name not in cheap]
-    first = dict.fromkeys(name for name in needed if name in cheap)
-    for condition in before:
-        first.update(dict.fromkeys(condition.meta.root_names()))
-    if before:
-        inputs = _inputs(study, list(dict.fromkeys(["variant", *first])), start, stop)
-        inputs = inputs.filter(*before)
-        if not results:
-            return inputs.select(columns)
-        picked = None if inputs.height == stop - start else inputs["variant"].to_numpy()
-    else:
-        # A frame without columns has no height: the number of the variant stands in.
-        inputs, picked = _inputs(study, list(first) or ["variant"], start, stop), None
-    if not results:
-        return inputs.select(columns)
-    whole = inputs.with_columns(_results(study, results, start, stop, picked))
-    if after:
-        whole = whole.filter(*after)
-    return whole.select(columns)
-
-
-def _split(predicate: pl.Expr | None, cheap: set[str]) -> tuple[list[pl.Expr], list[pl.Expr]]:
-    """Divide a conjunction into terms on ``cheap`` columns alone, and the others."""
-    if predicate is None:
-        return [], []
-    parts = predicate.meta.pop()
-    if len(parts) == 2 and (parts[1] & parts[0]).meta.eq(predicate):
-        before, after = _split(parts[1], cheap)
-        more_before, more_after = _split(parts[0], cheap)
-        return before + more_before, after + more_after
-    return ([predicate], []) if set(predicate.meta.root_names()) <= cheap else ([], [predicate])
-
-
-def _inputs(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
-    dtypes = study.schema()
-    axes = [name for name in names if name != "variant"]
-    memory = take(len(axes) * (stop - start))
-    study.core.fill_axes(axes, start, stop, memory)
-    values = dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
-    columns = []
-    for name in names:
-        if name == "variant":
-            columns.append(pl.int_range(start, stop, dtype=pl.UInt64, eager=True).alias(name))
-        elif name == "criterion":
-            codes = pl.Series(name, values[name].astype(np.uint8))
-            columns.append(codes.cat.to(dtypes[name]))
-        else:
-            columns.append(pl.Series(name, values[name]).cast(dtypes[name]))
-    return pl.DataFrame(columns)
-
-
-def _results(
-    study: Study,
-    names: list[str],
-    start: int,
-    stop: int,
-    picked: npt.NDArray[np.uint64] | None,
-) -> list[pl.Series]:
-    wanted = [name for name in names if name != "status"]
-    of_train = [name for name in wanted if name in TRAIN_COLUMNS]
-    with_parts = study.model == "components"
-    outputs = [name for name in wanted if name not in TRAIN_COLUMNS]
-    if of_train:
-        outputs = list(dict.fromkeys([*outputs, *needed_results(with_parts)]))
-    of_parts = [name for name in outputs if name in _PARTS and study.model == "components"]
-    published = [name for name in outputs if name not in of_parts]
-    status, any_refused, columns = _evaluated(study.core, published, start, stop, picked)
-    values = dict(zip(published, columns, strict=True))
-    may_not_apply = dict(zip(published, study.core.may_not_apply(published), strict=True))
-    if study.model == "components":
-        status, any_refused, columns = _solved(study, of_parts, start, stop, picked)
-        values.update(zip(of_parts, columns, strict=True))
-        may_not_apply.update(dict.fromkeys(of_parts, True))
-    if of_train:
-        inputs = _train_inputs(study, with_parts, start, stop, picked)
-        results = {name: values[name] for name in needed_results(with_parts)}
-        values.update(train_columns(of_train, {**inputs, **results}, with_parts))
-        may_not_apply.update(dict.fromkeys(of_train, True))
-    outputs = wanted
-    dtypes = study.schema()
-    series = {"status": pl.Series("status", status)}
-    for name in outputs:
-        series[name] = pl.Series(name, values[name], nan_to_null=may_not_apply[name])
-    table = pl.DataFrame(series)
-    if any_refused and outputs:
-        # Nothing is copied: polars joins the validity to the columns.
-        built = pl.col("status") == 0
-        table = table.with_columns(pl.when(built).then(pl.col(*outputs)))
-    table = table.with_columns(
-        *(_cast(name, dtypes[name]) for name in outputs if dtypes[name] != pl.Float64()),
-        pl.col("status").cat.to(dtypes["status"]),
-    )
-    return [table[name] for name in names]
-
-
-def _train_inputs(
-    study: Study,
-    with_parts: bool,
-    start: int,
-    stop: int,
-    picked: npt.NDArray[np.uint64] | None,
-) -> dict[str, npt.NDArray[np.float64] | float]:
-    """Inputs of the torsional train: columns where they vary, numbers elsewhere, NaN without."""
-    drive = study.space.drive
-    varying = {axis.name for axis in study.space.axes}
-    names = needed_inputs(with_parts)
-    axes = [name for name in names if name in varying]
-    found: dict[str, npt.NDArray[np.float64] | float] = {}
-    for name in names:
-        value = getattr(drive, name)
-        found[name] = math.nan if value is None else float(value)
-    for name, column in zip(axes, study.core.axes(axes, start, stop), strict=True):
-        found[name] = column if picked is None else column[picked - np.uint64(start)]
-    return found
-
-
-_PARTS = frozenset(name for name, _ in _core.part_output_table())
-
-
-def _cast(name: str, dtype: pl.DataType) -> pl.Expr:
-    """Turn a column of floats into its own type; codes into the words of an Enum."""
-    if isinstance(dtype, pl.Enum):
-        return pl.col(name).cast(pl.UInt8).cat.to(dtype)
-    return pl.col(name).cast(dtype)
-
-
-def _evaluated(
-    core: _core.Study,
-    outputs: list[str],
-    start: int,
-    stop: int,
-    picked: npt.NDArray[np.uint64] | None,
-) -> tuple[npt.NDArray[np.uint8], bool, npt.NDArray[np.float64]]:
-    """Statuses of the published model and its columns."""
-    if picked is None:
-        memory = take(len(outputs) * (stop - start))
-        status, any_refused = core.fill_range(start, stop, outputs, memory)
-        return status, any_refused, memory.reshape(len(outputs), stop - start)
-    return core.evaluate_at(picked, outputs)
-
-
-def _solved(
-    study: Study,
-    outputs: list[str],
-    start: int,
-    stop: int,
-    picked: npt.NDArray[np.uint64] | None,
-) -> tuple[npt.NDArray[np.uint8], bool, npt.NDArray[np.float64]]:
-    """Statuses of both models and the component model's columns."""
-    if picked is None:
-        return study.part_core.evaluate_range(study.core, start, stop, outputs)
-    return study.part_core.evaluate_at(study.core, picked, outputs)
+    return study.select(frame(study, study.space.start, study.space.stop, study.computed()))

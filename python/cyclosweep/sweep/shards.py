@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +19,7 @@ from cyclosweep.sweep.attempts import run_shards
 from cyclosweep.sweep.dataset import ROWS_PER_PART, SOLVED_ROWS_PER_PART, Dataset
 from cyclosweep.sweep.executors import Engine, executor_of, lend
 from cyclosweep.sweep.objective import Objective
+from cyclosweep.sweep.own_columns import Own
 from cyclosweep.sweep.progress import Progress, ShowProgress
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Limits, Study, StudyModel
@@ -40,9 +41,11 @@ def sink(
     fresh: bool = False,
     loads_tn: Sequence[float] | None = None,
     limits: Limits | None = None,
-    objective: Objective | None = None,
+    objective: Objective | Sequence[Objective] | None = None,
     model: StudyModel | None = None,
     solver: Solver | None = None,
+    constraints: Mapping[str, Own] | None = None,
+    columns: Mapping[str, Own] | None = None,
     rows_per_part: int | None = None,
     engine: Engine = "threads",
     workers: int | None = None,
@@ -62,9 +65,9 @@ def sink(
         Keep the whole parts of an earlier run of the same study.
     fresh : bool
         Delete what an earlier sweep left in the folder.
-    loads_tn, limits, model, solver : optional
+    loads_tn, limits, model, solver, constraints, columns : optional
         As for :func:`cyclosweep.sweep.scan`.
-    objective : Objective, optional
+    objective : Objective or sequence of them, optional
         What the summary's ten best variants are best in.
     rows_per_part : int, optional
         Variants a part, by default what a thread computes in seconds: 2^18, or 2^14 with the
@@ -103,7 +106,14 @@ def sink(
     {'ok': 3}
     """
     study = Study.of(
-        space, loads_tn=loads_tn, limits=limits, objective=objective, model=model, solver=solver
+        space,
+        loads_tn=loads_tn,
+        limits=limits,
+        objective=objective,
+        model=model,
+        solver=solver,
+        constraints=constraints,
+        columns=columns,
     )
     dataset = _dataset(study, folder, rows_per_part)
     if executor is not None:

@@ -30,6 +30,7 @@ from cyclosweep.sweep.axes import (
     listed_axis,
     sampled_axis,
 )
+from cyclosweep.sweep.derived import Derived, derivations, with_derived
 from cyclosweep.sweep.space_makers import SpaceMakers
 
 __all__ = ["Axis", "Linspace", "Method", "Space", "linspace"]
@@ -62,6 +63,7 @@ class Space(SpaceMakers):
     seed: int = 0
     start: int = 0
     stop: int = 0
+    derived: tuple[Derived, ...] = ()
 
     @classmethod
     def grid(cls, drive: Drive, /, **axes: Linspace | Iterable[float | str]) -> Space:
@@ -210,6 +212,54 @@ class Space(SpaceMakers):
             raise InputError(f"axes: {error}") from None
         return replace(space, total=total, stop=total)
 
+    def derive(self, **quantities: str | float) -> Space:
+        """Return this space with inputs that follow from others, variant by variant.
+
+        Parameters
+        ----------
+        **quantities
+            Expression of each by name: of an input, whose value in the drive it replaces, or of a
+            quantity of your own that other expressions use. It may name axes, keys of the drive
+            and other derived quantities; see :mod:`cyclosweep.sweep.expressions`.
+
+        Returns
+        -------
+        Space
+            Each quantity is a column of its sweeps.
+
+        Raises
+        ------
+        InputError
+            For an expression that names what is not there, an axis, or quantities that follow
+            from each other.
+
+        Examples
+        --------
+        >>> space = Space.grid(Drive.reference_87(), eccentricity_mm=[0.5, 0.6]).derive(
+        ...     rim_mm="4 + eccentricity_mm",
+        ...     disc_outer_radius_mm="ring_pin_circle_radius_mm - rim_mm",
+        ... )
+        >>> space[1].disc_outer_radius_mm
+        70.4
+        """
+        given: dict[str, str | float] = {each.name: each.text for each in self.derived}
+        found = derivations(self.drive, self.axes, given | quantities)
+        return replace(self, derived=found)
+
+    def on_rows(self, inputs: pl.DataFrame) -> Space:
+        """Return the space of some variants whose inputs, derived ones included, are columns."""
+        axes = []
+        for name in inputs.columns:
+            if name in self.varying and name in self.drive.every_input():
+                column = inputs[name].to_physical().cast(pl.Float64).fill_null(math.nan)
+                axes.append(Axis(name, "list", np.ascontiguousarray(column.to_numpy())))
+        return Space(self.drive, "table", tuple(axes), inputs.height, 0, 0, inputs.height)
+
+    @property
+    def varying(self) -> frozenset[str]:
+        """Inputs that vary: axes, and those that follow from them."""
+        return frozenset([*(a.name for a in self.axes), *(d.name for d in self.derived)])
+
     def core(
         self,
         loads_tn: Sequence[float] = (),
@@ -264,16 +314,25 @@ class Space(SpaceMakers):
         index = np.array([self.start + key % count], dtype=np.uint64)
         core = self.core()
         changes: dict[str, Any] = {}
-        for axis in self.axes:
-            value = float(core.axis_at(axis.name, index)[0])
-            if axis.name == "criterion":
-                changes[axis.name] = CRITERIA[int(value)]
-            elif axis.name in OPTIONAL and math.isnan(value):
-                changes[axis.name] = None
-            elif axis.name in WHOLE and value.is_integer():
-                changes[axis.name] = int(value)
+        numbers = {axis.name: float(core.axis_at(axis.name, index)[0]) for axis in self.axes}
+        if self.derived:
+            table = pl.DataFrame({name: [value] for name, value in numbers.items()})
+            if "criterion" in numbers:
+                words = pl.lit(CRITERIA[int(numbers["criterion"])], dtype=pl.Enum(CRITERIA))
+                table = table.with_columns(words.alias("criterion"))
+            row = with_derived(table, self.drive, self.derived).row(0, named=True)
+            inputs = self.drive.every_input()
+            own = {each.name: row[each.name] for each in self.derived if each.name in inputs}
+            numbers |= {name: math.nan if value is None else value for name, value in own.items()}
+        for name, value in numbers.items():
+            if name == "criterion":
+                changes[name] = CRITERIA[int(value)]
+            elif name in OPTIONAL and math.isnan(value):
+                changes[name] = None
+            elif name in WHOLE and value.is_integer():
+                changes[name] = int(value)
             else:
-                changes[axis.name] = value
+                changes[name] = value
         return self.drive.replace(**changes)
 
     def __repr__(self) -> str:
@@ -293,7 +352,9 @@ class Space(SpaceMakers):
     def definition(self) -> dict[str, Any]:
         """Return what identifies this space in the study's hash and in the manifest."""
         drive = {name: repr(value) for name, value in self.drive.values().items()}
+        derived = {"derived": [[each.name, each.text] for each in self.derived]}
         return {
+            **(derived if self.derived else {}),
             "drive": drive,
             "shaft": [segment.kind for segment in self.drive.shaft],
             "method": self.method,

@@ -47,7 +47,7 @@ class StoredStudy:
         SHA-256 of the definition, and the version of cyclosweep that computed it.
     variants, rows : int
         Variants of the whole study, and those that are there.
-    objective : Objective or None
+    objectives : tuple of Objective
         What its best variants are best in.
     parts : tuple of Path
         The Parquet files, in order.
@@ -62,8 +62,13 @@ class StoredStudy:
     version: str
     variants: int
     rows: int
-    objective: Objective | None
+    objectives: tuple[Objective, ...]
     parts: tuple[Path, ...]
+
+    @property
+    def objective(self) -> Objective | None:
+        """The first objective; None where there is none."""
+        return self.objectives[0] if self.objectives else None
 
     @property
     def complete(self) -> bool:
@@ -91,9 +96,10 @@ class StoredStudy:
         """Counts by status, ranges of the results and best variants, of the parts' footers."""
         records = [footer["record"] for path in self.parts if (footer := read_footer(path))]
         return merge(
-            (PartSummary.from_json(record) for record in records),
+            [PartSummary.from_json(record) for record in records],
             list(self.columns),
-            self.objective,
+            self.objectives,
+            {name: about["unit"] for name, about in self.columns.items()},
         )
 
     def row(self, variant: int) -> dict[str, Any]:
@@ -208,19 +214,21 @@ def open_study(folder: str | Path) -> StoredStudy:
         raise InputError(f"{folder}: no part of the study is there yet, expected at least one")
     try:
         definition = manifest["definition"]
-        given = manifest.get("objective")
+        first = manifest.get("objective")
+        given = manifest.get("objectives", [] if first is None else [first])
+        derived = [name for name, _ in definition.get("derived", [])]
         records = [footer["record"] for path in parts if (footer := read_footer(path))]
         return StoredStudy(
             folder=folder,
             drive=_drive(manifest),
-            axes=tuple(axis["name"] for axis in definition["axes"]),
+            axes=(*(axis["name"] for axis in definition["axes"]), *derived),
             definition=definition,
             columns=manifest["columns"],
             hash=manifest["study"],
             version=manifest["version"],
             variants=manifest["variants"],
             rows=sum(record["stop"] - record["start"] for record in records),
-            objective=None if given is None else Objective(given[0], bool(given[1])),
+            objectives=tuple(Objective(column, bool(most)) for column, most in given),
             parts=tuple(parts),
         )
     except (KeyError, TypeError, ValueError, InputError) as error:

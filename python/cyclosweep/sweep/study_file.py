@@ -5,16 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
-import polars as pl
 from pydantic import Field, ValidationError
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
 from cyclosweep.errors import InputError
+from cyclosweep.plugins import Column
 from cyclosweep.sweep.axes import Linspace, is_count
+from cyclosweep.sweep.derived import check_new_name
 from cyclosweep.sweep.distributions import distribution_from
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Method, Space
+from cyclosweep.sweep.table_files import read_table
 
 __all__ = ["StudyFile", "read_study_file"]
 
@@ -69,6 +71,17 @@ class _ObjectiveTable(TomlTable):
     minimise: str | None = None
     maximise: str | None = None
 
+    def objective(self) -> Objective:
+        if (self.minimise is None) == (self.maximise is None):
+            raise InputError("objective: expected either minimise or maximise")
+        return Objective(self.minimise or self.maximise or "", self.maximise is not None)
+
+
+class _OwnColumn(TomlTable):
+    expression: str
+    unit: str = ""
+    meaning: str = ""
+
 
 class StudyFile(TomlTable):
     """The tables of a study file."""
@@ -80,25 +93,54 @@ class StudyFile(TomlTable):
     sample: _Sample = _Sample()
     axes: dict[str, dict[str, Any]] = Field(default_factory=dict)
     limits: dict[str, _Limit] = Field(default_factory=dict)
-    objective: _ObjectiveTable | None = None
+    objective: dict[str, Any] | list[dict[str, Any]] | None = None
+    derived: dict[str, str | float] = Field(default_factory=dict)
+    constraints: dict[str, str] = Field(default_factory=dict)
+    columns: list[str] | dict[str, Any] = Field(default_factory=dict)
+    only_ok: bool = False
 
     def space(self, folder: Path) -> Space:
         """Return the file's space; files that it names are taken from ``folder``."""
         drive = Drive.load(self.drive, beside=folder)
-        return self._table(drive, folder) if self.sample.method == "table" else self._drawn(drive)
+        is_table = self.sample.method == "table"
+        space = self._table(drive, folder) if is_table else self._drawn(drive)
+        return space.derive(**self.derived) if self.derived else space
 
     def bounds(self) -> dict[str, tuple[float | None, float | None]]:
         """Least and greatest value of each limited column, None where there is none."""
         return {name: (limit.min, limit.max) for name, limit in self.limits.items()}
 
-    def chosen_objective(self) -> Objective | None:
-        """Return what the best variants are best in; None where the file does not say."""
-        if self.objective is None:
+    def chosen_objectives(self) -> list[Objective]:
+        """What the best variants are best in; none where the file does not say."""
+        given = self.objective
+        tables = given if isinstance(given, list) else [given] if given is not None else []
+        try:
+            return [_ObjectiveTable.model_validate(table).objective() for table in tables]
+        except ValidationError as error:
+            raise InputError(f"objective.{one_line(error)}") from None
+
+    def own_columns(self) -> dict[str, Column]:
+        """Columns that the file defines: the tables below ``columns``."""
+        found = {}
+        for name, table in self.columns.items() if isinstance(self.columns, dict) else ():
+            if name == "keep" and isinstance(table, list):
+                continue
+            check_new_name("columns", name)
+            try:
+                own = _OwnColumn.model_validate(table)
+            except ValidationError as error:
+                raise InputError(f"columns.{name}.{one_line(error)}") from None
+            found[name] = Column(own.expression, own.unit, own.meaning)
+        return found
+
+    def kept_columns(self) -> list[str] | None:
+        """Columns to keep: ``columns`` as a list, or ``columns.keep``; None for all."""
+        kept = self.columns if isinstance(self.columns, list) else self.columns.get("keep")
+        if isinstance(kept, dict):
             return None
-        wanted = self.objective
-        if (wanted.minimise is None) == (wanted.maximise is None):
-            raise InputError("objective: expected either minimise or maximise")
-        return Objective(wanted.minimise or wanted.maximise or "", wanted.maximise is not None)
+        if kept is not None and not all(isinstance(name, str) for name in kept):
+            raise InputError(f"columns.keep: found {kept!r}, expected names of columns")
+        return kept
 
     def _table(self, drive: Drive, folder: Path) -> Space:
         if self.sample.file is None:
@@ -106,11 +148,7 @@ class StudyFile(TomlTable):
         if self.axes:
             raise InputError("axes: not with method table, whose columns are the axes")
         path = folder / self.sample.file
-        try:
-            reads_parquet = path.suffix == ".parquet"
-            frame = pl.read_parquet(path) if reads_parquet else pl.read_csv(path)
-        except (OSError, pl.exceptions.PolarsError) as error:
-            raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
+        frame = read_table(path)
         try:
             return Space.table(drive, frame)
         except InputError as error:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import heapq
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +10,11 @@ import polars as pl
 
 from cyclosweep.design.json_files import JsonSource, json_object, name_of
 from cyclosweep.design.numbers import whole_number
-from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError
 from cyclosweep.notebook import html_table
+from cyclosweep.sweep.derived import constants
+from cyclosweep.sweep.expressions import names_in, number
+from cyclosweep.sweep.leaders import VALUE, Leaders, leaders, merge_leaders
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -21,9 +22,14 @@ if TYPE_CHECKING:
     from cyclosweep.sweep.objective import Objective
     from cyclosweep.sweep.study import Study
 
-__all__ = ["BEST", "PartSummary", "Summary", "merge", "summarise", "summary_of_part"]
-
-BEST = 10
+__all__ = [
+    "PartSummary",
+    "Summary",
+    "leaders_of_part",
+    "merge",
+    "summarise",
+    "summary_of_part",
+]
 
 
 @dataclass(frozen=True)
@@ -38,15 +44,20 @@ class PartSummary:
         Rows by status.
     ranges : dict
         Least and greatest value of each result.
-    best : list of dict
-        Its best variants by the study's objective, best first.
+    leaders : list of Leaders
+        Its best variants by each of the study's objectives.
     """
 
     start: int
     stop: int
     status: dict[str, int]
     ranges: dict[str, tuple[float, float]]
-    best: list[dict[str, Any]] = field(default_factory=list)
+    leaders: list[Leaders] = field(default_factory=list)
+
+    @property
+    def best(self) -> list[dict[str, Any]]:
+        """The best variants by the first objective, best first."""
+        return self.leaders[0].best if self.leaders else []
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
@@ -55,14 +66,15 @@ class PartSummary:
             "stop": self.stop,
             "status": self.status,
             "ranges": self.ranges,
-            "best": self.best,
+            "leaders": [each.to_json() for each in self.leaders],
         }
 
     @classmethod
     def from_json(cls, value: dict[str, Any]) -> PartSummary:
         """Read what :meth:`to_json` returned."""
         ranges = {name: (low, high) for name, (low, high) in value["ranges"].items()}
-        return cls(value["start"], value["stop"], value["status"], ranges, value["best"])
+        leaders = [Leaders.from_json(each) for each in value.get("leaders", [])]
+        return cls(value["start"], value["stop"], value["status"], ranges, leaders)
 
 
 def summary_of_part(rows: pl.DataFrame, start: int, stop: int, study: Study) -> PartSummary:
@@ -83,7 +95,7 @@ def summary_of_part(rows: pl.DataFrame, start: int, stop: int, study: Study) -> 
     """
     counts = rows["status"].value_counts().sort("status")
     status = dict(zip(counts["status"].to_list(), counts["count"].to_list(), strict=True))
-    names = [name for name, kind in study.outputs.items() if kind not in ("flag", "solver")]
+    names = [name for name in study.ranged() if name in rows.columns]
     lows = rows.select(pl.col(names).min()).row(0)
     highs = rows.select(pl.col(names).max()).row(0)
     ranges = {
@@ -91,21 +103,39 @@ def summary_of_part(rows: pl.DataFrame, start: int, stop: int, study: Study) -> 
         for name, low, high in zip(names, lows, highs, strict=True)
         if low is not None
     }
-    best: list[dict[str, Any]] = []
-    if (objective := study.objective) is not None:
-        is_number = pl.col(objective.column).cast(pl.Float64).is_not_nan()
-        kept = rows.select(*_best_columns(study), "status").filter(
-            pl.col("status") == "ok", is_number
-        )
-        by, reverse = [objective.column, "variant"], [objective.maximise, False]
-        best = kept.bottom_k(BEST, by=by, reverse=reverse).drop("status").to_dicts()
-    return PartSummary(start, stop, status, ranges, best)
+    return PartSummary(start, stop, status, ranges, leaders_of_part(rows, study))
 
 
-def _best_columns(study: Study) -> list[str]:
-    assert study.objective is not None
-    axes = [axis.name for axis in study.space.axes]
-    return list(dict.fromkeys(["variant", study.objective.column, *axes]))
+def leaders_of_part(rows: pl.DataFrame, study: Study) -> list[Leaders]:
+    """Best variants of one part by each of a study's objectives.
+
+    Parameters
+    ----------
+    rows : polars.DataFrame
+        The columns that objectives read, and the inputs that vary.
+    study : Study
+        What they belong to.
+
+    Returns
+    -------
+    list of Leaders
+
+    Raises
+    ------
+    InputError
+        When the rows lack a column that an objective reads.
+    """
+    found = []
+    drive, varying = study.space.drive, [n for n in rows.columns if n in study.space.varying]
+    built = rows.filter(pl.col("status") == "ok") if study.objectives else rows
+    for objective in study.objectives:
+        name = objective.column
+        fixed = [n for n in names_in(name) if n in drive.every_input() and n not in rows.columns]
+        table = built.with_columns(constants(drive, fixed))
+        value = number(name, dict(table.schema), where="objective").fill_nan(None)
+        table = table.select("variant", value.alias(VALUE), *varying).drop_nulls(VALUE)
+        found.append(leaders(table, name, objective.maximise))
+    return found
 
 
 @dataclass(frozen=True)
@@ -121,9 +151,15 @@ class Summary:
     ranges : dict
         Least and greatest value of each result among variants that can be built.
     best : list of dict
-        The ten best variants by the study's objective, best first.
+        The ten best variants by the study's first objective, best first.
     objective : str or None
         "minimise column" or "maximise column".
+    leaders : dict of str to Leaders
+        The best variants by every objective, by its words.
+    remarks : list of str
+        What to know of them: an objective that nothing moves, several variants that are equal.
+    units : dict of str to str
+        Unit of each result.
     """
 
     rows: int
@@ -131,6 +167,9 @@ class Summary:
     ranges: dict[str, tuple[float, float]]
     best: list[dict[str, Any]]
     objective: str | None
+    leaders: dict[str, Leaders] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
+    units: dict[str, str] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
@@ -140,6 +179,9 @@ class Summary:
             "ranges": {name: list(pair) for name, pair in self.ranges.items()},
             "objective": self.objective,
             "best": self.best,
+            "objectives": {words: each.to_json() for words, each in self.leaders.items()},
+            "remarks": self.remarks,
+            "units": self.units,
         }
 
     @classmethod
@@ -164,7 +206,11 @@ class Summary:
         try:
             ranges = {name: (low, high) for name, (low, high) in value["ranges"].items()}
             rows, objective = whole_number("rows", value["rows"]), value["objective"]
-            return cls(rows, dict(value["status"]), ranges, list(value["best"]), objective)
+            found = value.get("objectives", {}).items()
+            leaders = {words: Leaders.from_json(each) for words, each in found}
+            status, best = dict(value["status"]), list(value["best"])
+            remarks, units = list(value.get("remarks", [])), dict(value.get("units", {}))
+            return cls(rows, status, ranges, best, objective, leaders, remarks, units)
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise InputError(f"{name_of(source)}: not a summary of a sweep: {error}") from None
 
@@ -194,23 +240,26 @@ class Summary:
             status.add_row(name, f"{count:,}", f"{count / max(self.rows, 1):.1%}")
         ranges = Table("result", "least", "greatest", "unit", box=box.SIMPLE_HEAD, title="Ranges")
         for name, (low, high) in self.ranges.items():
-            ranges.add_row(name, f"{low:.5g}", f"{high:.5g}", quantity(name).unit)
+            ranges.add_row(name, f"{low:.5g}", f"{high:.5g}", self.units.get(name, ""))
         for table in (status, ranges):
             table.columns[0].overflow = "fold"
             for column in table.columns[1:3]:
                 column.justify = "right"
         yield status
         yield ranges
-        if self.best:
-            target = (self.objective or "").split()[-1]
-            best = Table(box=box.SIMPLE_HEAD, title=f"Best, {self.objective}")
+        for words, leading in self.leaders.items():
+            if not leading.best:
+                continue
+            target = words.partition(" ")[2]
+            best = Table(box=box.SIMPLE_HEAD, title=f"Best, {words}")
             best.add_column("variant", justify="right")
-            best.add_column(quantity(target).unit, justify="right")
+            best.add_column(self.units.get(target, "value"), justify="right")
             best.add_column("where")
-            for row in self.best:
+            for row in leading.best:
                 axes = (f"{k} {_short(v)}" for k, v in row.items() if k not in ("variant", target))
                 best.add_row(f"{row['variant']}", _short(row[target]), ", ".join(axes))
             yield best
+        yield from (f"Note: {remark}" for remark in self.remarks)
 
 
 def _short(value: object) -> str:
@@ -231,11 +280,15 @@ def summarise(summaries: Iterable[PartSummary], study: Study) -> Summary:
     -------
     Summary
     """
-    return merge(summaries, list(study.outputs), study.objective)
+    units = {name: about["unit"] for name, about in study.units().items()}
+    return merge(summaries, study.ranged(), study.objectives, units)
 
 
 def merge(
-    summaries: Iterable[PartSummary], columns: Sequence[str], objective: Objective | None
+    summaries: Iterable[PartSummary],
+    columns: Sequence[str],
+    objectives: Sequence[Objective],
+    units: Mapping[str, str],
 ) -> Summary:
     """Put the summaries of parts together without the study that they belong to.
 
@@ -245,32 +298,35 @@ def merge(
         One for each part.
     columns : sequence of str
         Results in the order in which their ranges are listed.
-    objective : Objective, optional
-        What the best variants are best in; a part summarised for another one gives none.
+    objectives : sequence of Objective
+        What the best variants are best in; a part summarised for others gives none.
+    units : mapping of str to str
+        Unit of each result.
 
     Returns
     -------
     Summary
     """
+    parts = list(summaries)
     rows = 0
     status: dict[str, int] = {}
     ranges: dict[str, tuple[float, float]] = {}
-    best: list[dict[str, Any]] = []
-    for summary in summaries:
+    for summary in parts:
         rows += summary.stop - summary.start
         for name, count in summary.status.items():
             status[name] = status.get(name, 0) + count
         for name, (low, high) in summary.ranges.items():
             seen = ranges.get(name, (low, high))
             ranges[name] = (min(low, seen[0]), max(high, seen[1]))
-        if objective is not None:
-            best.extend(row for row in summary.best if objective.column in row)
     order = {name: k for k, name in enumerate(columns)}
-    ranges = dict(sorted(ranges.items(), key=lambda item: order[item[0]]))
+    ranges = dict(sorted(ranges.items(), key=lambda item: order.get(item[0], len(order))))
     status = dict(sorted(status.items(), key=lambda item: -item[1]))
-    wanted = None
-    if objective is not None:
-        column, sign = objective.column, -1 if objective.maximise else 1
-        best = heapq.nsmallest(BEST, best, key=lambda row: (sign * row[column], row["variant"]))
-        wanted = str(objective)
-    return Summary(rows, status, ranges, best, wanted)
+    merged = {}
+    for objective in objectives:
+        column = objective.column
+        of_parts = [each for part in parts for each in part.leaders if each.column == column]
+        merged[str(objective)] = merge_leaders(of_parts, objective.maximise)
+    remarks = [remark for words, each in merged.items() for remark in each.remarks(words)]
+    first = next(iter(merged), None)
+    best = merged[first].best if first is not None else []
+    return Summary(rows, status, ranges, best, first, merged, remarks, dict(units))
