@@ -37,7 +37,7 @@ help:
 	@echo "make demo    set up, sweep 1,050,000 variants to Parquet, validate the 87:1 case"
 	@echo "make test    set up, run all tests"
 	@echo "make test-grid  closed form against a 0.01 deg grid on 10,000 random drives, some minutes"
-	@echo "make lint    rustfmt, clippy, rustdoc, ruff, mypy, stubtest"
+	@echo "make lint    rustfmt, clippy, rustdoc, ruff, mypy, stubtest, types of the blocks of docs"
 	@echo "make coverage  the Python tests once more, with the share of lines and branches they run"
 	@echo "make bench   speed and memory beside opponents, written to docs/performance.md"
 	@echo "make bench-ten-million  1e7 variants of the component model to Parquet, interrupted and resumed"
@@ -91,6 +91,7 @@ lint: env
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest cyclosweep._core
+	$(BIN)/python docs/check_types.py
 
 bench: env
 	$(BIN)/python -m pip install --quiet --group bench

@@ -91,7 +91,9 @@ def test_public_tables_are_plain_lists_and_dictionaries() -> None:
     (effect,) = identified.effects
     assert effect["name"] == "overload_softening"
     assert effect["size_deg"]["ci95"][0] < effect["size_deg"]["estimate"]
-    assert identified.mismatch["regions"][0]["p_value"] <= 0.05
+    p_value = identified.mismatch["regions"][0]["p_value"]
+    assert p_value is not None
+    assert p_value <= 0.05
     assert identified.content == json.loads(identified.to_json())
 
 

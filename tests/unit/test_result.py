@@ -9,7 +9,17 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.result import Answer, answer_of, content_of
+from cyclosweep.result import (
+    Answer,
+    EffectParameter,
+    FoundEffect,
+    Mismatch,
+    Region,
+    Size,
+    answer_of,
+    content_of,
+)
+from cyclosweep.result import content as typed
 from cyclosweep.result.json_form import json_text
 from cyclosweep.result.schema import json_schema
 from tests.support.published_schema import PUBLISHED, check_content
@@ -61,3 +71,17 @@ def test_numbers_that_json_has_not_become_null() -> None:
     noise = dataclasses.replace(answer.noise, sigma_deg=np.float64("nan"))
     content = json.loads(json_text(dataclasses.replace(answer, noise=noise)))
     assert content["noise"]["sigma_deg"] is None
+
+
+@pytest.mark.parametrize(
+    ("content", "part"),
+    [
+        (typed.EffectContent, FoundEffect),
+        (typed.ParameterContent, EffectParameter),
+        (typed.SizeContent, Size),
+        (typed.RegionContent, Region),
+        (typed.MismatchContent, Mismatch),
+    ],
+)
+def test_types_of_the_dictionaries_have_the_fields_of_the_parts(content: type, part: type) -> None:
+    assert list(content.__annotations__) == [field.name for field in dataclasses.fields(part)]

@@ -11,6 +11,7 @@ from cyclosweep.notebook import html_table
 from cyclosweep.recording import Recording
 from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_report
 from cyclosweep.result import Answer, Size, answer_of, content_of, json_text
+from cyclosweep.result.content import EffectContent, MismatchContent
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
 
@@ -68,14 +69,15 @@ class Diagnosis:
         return content_of(self.answer)
 
     @property
-    def effects(self) -> list[dict[str, Any]]:
-        """Accepted effects with size, interval and evidence."""
+    def effects(self) -> list[EffectContent]:
+        """Accepted effects with size, interval and evidence; `answer.effects` has attributes."""
         return list(self.content["effects"])
 
     @property
-    def mismatch(self) -> dict[str, Any]:
+    def mismatch(self) -> MismatchContent:
         """Global test and regions where recording and simulation differ."""
-        return dict(self.content["mismatch"])
+        found: MismatchContent = self.content["mismatch"]
+        return found
 
     @property
     def held_out(self) -> tuple[HeldOut, ...]:

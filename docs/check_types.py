@@ -1,0 +1,52 @@
+"""Type-check every Python block of README and docs, as the editor of a reader does."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sys
+from pathlib import Path
+
+from mypy import api
+
+ROOT = Path(__file__).resolve().parents[1]
+BLOCKS = ROOT / "build" / "doc-blocks"
+_BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+# The types of SciPy know no function that is called with many points at once.
+CONFIGURATION = """
+[mypy]
+mypy_path = $MYPY_CONFIG_FILE_DIR/../../python
+ignore_missing_imports = True
+check_untyped_defs = True
+follow_imports = silent
+plugins = pydantic.mypy
+[mypy-scipy.*]
+follow_imports = skip
+"""
+
+
+def main() -> None:
+    """Write a module for each block, check all of them, and name the page where one is wrong."""
+    shutil.rmtree(BLOCKS, ignore_errors=True)
+    BLOCKS.mkdir(parents=True)
+    configuration = BLOCKS / "mypy.ini"
+    configuration.write_text(CONFIGURATION)
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
+        name = "_".join(page.relative_to(ROOT).with_suffix("").parts).replace("-", "_")
+        text = page.read_text("utf-8")
+        for number, block in enumerate(_BLOCK.finditer(text)):
+            # Empty lines in front, so that the lines of a message are those of the page.
+            before = text[: block.start(1)].count("\n")
+            (BLOCKS / f"{name}_{number}.py").write_text("\n" * before + block[1])
+    modules = sorted(map(str, BLOCKS.glob("*.py")))
+    cache = str(ROOT / ".mypy_cache" / "doc-blocks")
+    out, errors, status = api.run(
+        ["--config-file", str(configuration), "--cache-dir", cache, *modules]
+    )
+    print(out + errors, end="")
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()
