@@ -13,16 +13,19 @@ ROOT = Path(__file__).resolve().parents[1]
 BLOCKS = ROOT / "build" / "doc-blocks"
 _BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
-# The types of SciPy know no function that is called with many points at once.
+# The types of SciPy know no function that is called with many points at once; and an example goes
+# on where a program would ask whether a recording has an angle or a diagnosis a model.
 CONFIGURATION = """
 [mypy]
 mypy_path = $MYPY_CONFIG_FILE_DIR/../../python
 ignore_missing_imports = True
 check_untyped_defs = True
+strict_optional = False
 follow_imports = silent
 plugins = pydantic.mypy
 [mypy-scipy.*]
 follow_imports = skip
+follow_imports_for_stubs = True
 """
 
 
