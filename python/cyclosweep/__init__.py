@@ -13,18 +13,30 @@ from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.plugins import Column
 from cyclosweep.sweep.dataset import scan_dataset
+from cyclosweep.sweep.distributions import Distribution, log_uniform, normal, triangular, uniform
 from cyclosweep.sweep.evaluator import Evaluator
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
 from cyclosweep.sweep.shards import shard, sink
 from cyclosweep.sweep.space import Space, linspace
 from cyclosweep.sweep.stored import StoredStudy, open_study
 from cyclosweep.sweep.study import Objective, Study
+from cyclosweep.sweep.tolerances import Tolerances
 
 if _TYPE_CHECKING:
     from cyclosweep.choose.best import BestVariants, best_variants
     from cyclosweep.choose.comparison import Comparison, compare
     from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
-    from cyclosweep.explore import nearest_variants, pareto_front
+    from cyclosweep.explore import (
+        FeasibleRanges,
+        driving_inputs,
+        feasible_ranges,
+        input_influence,
+        nearest_variants,
+        pareto_front,
+        robust_choice,
+        sobol_indices,
+        tolerance_percentiles,
+    )
     from cyclosweep.recording import Recording
     from cyclosweep.reference.rows import validate
     from cyclosweep.simulation.simulate import Model, simulate
@@ -34,16 +46,23 @@ _LATER = {
     "BestVariants": "choose.best",
     "Comparison": "choose.comparison",
     "Diagnosis": "diagnosis",
-    "best_variants": "choose.best",
-    "compare": "choose.comparison",
+    "FeasibleRanges": "explore",
     "Model": "simulation.simulate",
     "Recording": "recording",
     "Series": "diagnosis",
+    "best_variants": "choose.best",
+    "compare": "choose.comparison",
     "diagnose": "diagnosis",
     "diagnose_folder": "diagnosis",
+    "driving_inputs": "explore",
+    "feasible_ranges": "explore",
+    "input_influence": "explore",
     "nearest_variants": "explore",
     "pareto_front": "explore",
+    "robust_choice": "explore",
     "simulate": "simulation.simulate",
+    "sobol_indices": "explore",
+    "tolerance_percentiles": "explore",
     "validate": "reference.rows",
 }
 _FOLDERS = {
@@ -75,8 +94,10 @@ __all__ = [
     "Cylinder",
     "DesignError",
     "Diagnosis",
+    "Distribution",
     "Drive",
     "Evaluator",
+    "FeasibleRanges",
     "Frustum",
     "InputError",
     "Keyway",
@@ -88,23 +109,34 @@ __all__ = [
     "StoredStudy",
     "Study",
     "SweepError",
+    "Tolerances",
     "Train",
     "__version__",
     "best_variants",
     "compare",
     "diagnose",
     "diagnose_folder",
+    "driving_inputs",
+    "feasible_ranges",
+    "input_influence",
     "kernel_evaluations",
     "linspace",
+    "log_uniform",
     "nearest_variants",
+    "normal",
     "open_study",
     "pareto_front",
+    "robust_choice",
     "scan",
     "scan_dataset",
     "shard",
     "simulate",
     "sink",
+    "sobol_indices",
     "sweep",
+    "tolerance_percentiles",
+    "triangular",
+    "uniform",
     "validate",
 ]
 

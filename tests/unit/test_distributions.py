@@ -13,31 +13,26 @@ from scipy import special, stats
 
 import cyclosweep as cs
 import cyclosweep._core as _core
-from cyclosweep.sweep.distributions import (
-    Distribution,
-    distribution_from,
-    log_uniform,
-    normal,
-    triangular,
-    uniform,
-)
-from cyclosweep.sweep.tolerances import Tolerances, pieces
+from cyclosweep.sweep.distributions import distribution_from
+from cyclosweep.sweep.tolerances import pieces
 
-CASES: list[tuple[Distribution, Any]] = [
-    (uniform(0.3, 0.8), stats.uniform(0.3, 0.5)),
-    (normal(0.5, 0.02), stats.norm(0.5, 0.02)),
-    (normal(0.5, 0.02, 0.47, 0.51), stats.truncnorm(-1.5, 0.5, 0.5, 0.02)),
-    (normal(0.5, 0.02, low=0.5), stats.truncnorm(0, math.inf, 0.5, 0.02)),
-    (triangular(0.3, 0.45, 0.8), stats.triang(0.3, 0.3, 0.5)),
-    (triangular(0.3, 0.3, 0.8), stats.triang(0, 0.3, 0.5)),
-    (triangular(0.3, 0.8, 0.8), stats.triang(1, 0.3, 0.5)),
-    (log_uniform(0.05, 5.0), stats.loguniform(0.05, 5.0)),
+CASES: list[tuple[cs.Distribution, Any]] = [
+    (cs.uniform(0.3, 0.8), stats.uniform(0.3, 0.5)),
+    (cs.normal(0.5, 0.02), stats.norm(0.5, 0.02)),
+    (cs.normal(0.5, 0.02, 0.47, 0.51), stats.truncnorm(-1.5, 0.5, 0.5, 0.02)),
+    (cs.normal(0.5, 0.02, low=0.5), stats.truncnorm(0, math.inf, 0.5, 0.02)),
+    (cs.triangular(0.3, 0.45, 0.8), stats.triang(0.3, 0.3, 0.5)),
+    (cs.triangular(0.3, 0.3, 0.8), stats.triang(0, 0.3, 0.5)),
+    (cs.triangular(0.3, 0.8, 0.8), stats.triang(1, 0.3, 0.5)),
+    (cs.log_uniform(0.05, 5.0), stats.loguniform(0.05, 5.0)),
 ]
 
 
 @pytest.mark.parametrize(("given", "expected"), CASES, ids=lambda case: str(case)[:60])
 @pytest.mark.parametrize("method", [cs.Space.sobol, cs.Space.latin_hypercube, cs.Space.random])
-def test_an_axis_is_distributed_as_asked(given: Distribution, expected: Any, method: Any) -> None:
+def test_an_axis_is_distributed_as_asked(
+    given: cs.Distribution, expected: Any, method: Any
+) -> None:
     space = method(cs.Drive.reference_87(), 4096, seed=3, eccentricity_mm=given)
     values = space.core().axes(["eccentricity_mm"], 0, 4096)[0]
     assert stats.kstest(values, expected.cdf).pvalue > 1e-3
@@ -48,7 +43,9 @@ def test_an_axis_is_distributed_as_asked(given: Distribution, expected: Any, met
 
 
 @pytest.mark.parametrize(("given", "expected"), CASES, ids=lambda case: str(case)[:60])
-def test_a_draw_is_the_quantile_of_its_uniform_number(given: Distribution, expected: Any) -> None:
+def test_a_draw_is_the_quantile_of_its_uniform_number(
+    given: cs.Distribution, expected: Any
+) -> None:
     axes = [("u", "interval", np.array([0.0, 1.0]))]
     shares = _core.sample(axes, "sobol", 2048, 9, 0, 2048)[0]
     values = _core.sample([("x", *given.core())], "sobol", 2048, 9, 0, 2048)[0]
@@ -79,13 +76,14 @@ output_pin_count = { from = 6, to = 8 }
 """)
     study = cs.Study.from_toml(tmp_path / "study.toml")
     expected = cs.Space.sobol(
-        cs.Drive.reference_87(), 64, eccentricity_mm=normal(0.5, 0.01, 0.48),
-        output_pin_diameter_mm=triangular(15, 16, 18), output_pin_length_mm=log_uniform(30, 50),
-        bush_wall_mm=uniform(1, 3), output_pin_count=(6, 8),
+        cs.Drive.reference_87(), 64, eccentricity_mm=cs.normal(0.5, 0.01, 0.48),
+        output_pin_diameter_mm=cs.triangular(15, 16, 18),
+        output_pin_length_mm=cs.log_uniform(30, 50), bush_wall_mm=cs.uniform(1, 3),
+        output_pin_count=(6, 8),
     )  # fmt: skip
     assert study.hash == cs.Study.of(expected).hash
     other = (study.space.axes[0].definition(), cs.Space.sobol(
-        cs.Drive.reference_87(), 64, eccentricity_mm=normal(0.5, 0.02, 0.48)
+        cs.Drive.reference_87(), 64, eccentricity_mm=cs.normal(0.5, 0.02, 0.48)
     ).axes[0].definition())  # fmt: skip
     assert other[0] != other[1]
     words = [str(axis) for axis in expected.axes]
@@ -118,9 +116,9 @@ def test_a_distribution_that_cannot_be_is_one_line(table: dict[str, Any], messag
 def test_a_count_or_a_grid_has_no_distribution(tmp_path: Path) -> None:
     drive = cs.Drive.reference_87()
     with pytest.raises(cs.InputError, match="output_pin_count: found a distribution"):
-        cs.Space.sobol(drive, 8, output_pin_count=normal(8, 1))
+        cs.Space.sobol(drive, 8, output_pin_count=cs.normal(8, 1))
     with pytest.raises(cs.InputError, match="eccentricity_mm"):
-        cs.Space.grid(drive, eccentricity_mm=normal(8, 1))  # type: ignore[arg-type]
+        cs.Space.grid(drive, eccentricity_mm=cs.normal(8, 1))  # type: ignore[arg-type]
     path = tmp_path / "study.toml"
     path.write_text('[axes]\neccentricity_mm = { distribution = "normal", sd = 1 }\n')
     with pytest.raises(cs.InputError, match="found a distribution, not for a grid"):
@@ -130,10 +128,10 @@ def test_a_count_or_a_grid_has_no_distribution(tmp_path: Path) -> None:
 def test_pieces_deviate_as_their_tolerances_say() -> None:
     drive = cs.Drive.reference_87()
     given = {
-        "eccentricity_mm": normal(sd=0.004),
+        "eccentricity_mm": cs.normal(sd=0.004),
         "bush_wall_mm": 0.01,
         "output_pin_length_mm": (-0.1, 0.3),
-        "youngs_modulus_gpa": log_uniform(0.95, 1.05),
+        "youngs_modulus_gpa": cs.log_uniform(0.95, 1.05),
     }
     table = pieces(drive, given, 4096, seed=1)
     assert abs(table["eccentricity_mm"].mean() - drive.eccentricity_mm) < 1e-5  # type: ignore[operator]
@@ -146,8 +144,8 @@ def test_pieces_deviate_as_their_tolerances_say() -> None:
 
 
 def test_pieces_of_a_batch_share_what_their_batch_deviates() -> None:
-    tolerances = Tolerances(
-        {"eccentricity_mm": normal(sd=0.003)}, {"eccentricity_mm": normal(sd=0.004)}, 64
+    tolerances = cs.Tolerances(
+        {"eccentricity_mm": cs.normal(sd=0.003)}, {"eccentricity_mm": cs.normal(sd=0.004)}, 64
     )
     values = pieces(cs.Drive.reference_87(), tolerances, 64 * 256)["eccentricity_mm"]
     by_batch = values.to_numpy().reshape(256, 64)
@@ -157,7 +155,7 @@ def test_pieces_of_a_batch_share_what_their_batch_deviates() -> None:
     # Neighbours in a batch are alike, and those of two batches are not.
     assert np.corrcoef(by_batch[:, 0], by_batch[:, 1])[0, 1] == pytest.approx(0.64, abs=0.1)
     assert abs(np.corrcoef(by_batch[:-1, 0], by_batch[1:, 0])[0, 1]) < 0.2
-    alone = Tolerances({}, {"eccentricity_mm": 0.01}, 5)
+    alone = cs.Tolerances({}, {"eccentricity_mm": 0.01}, 5)
     shared = pieces(cs.Drive.reference_87(), alone, 12)["eccentricity_mm"]
     assert shared.n_unique() == 3
     assert shared[:5].n_unique() == 1
@@ -190,10 +188,11 @@ bush_wall_mm = { distribution = "normal", sd = 0.01, from = -0.02, to = 0.02 }
 [batches]
 eccentricity_mm = { distribution = "uniform", from = -0.02, to = 0.02 }
 """)
-    found = Tolerances.from_toml(path)
-    assert found == Tolerances(
-        {"eccentricity_mm": uniform(-0.01, 0.01), "bush_wall_mm": normal(0, 0.01, -0.02, 0.02)},
-        {"eccentricity_mm": uniform(-0.02, 0.02)}, 20,
+    found = cs.Tolerances.from_toml(path)
+    assert found == cs.Tolerances(
+        {"eccentricity_mm": cs.uniform(-0.01, 0.01),
+         "bush_wall_mm": cs.normal(0, 0.01, -0.02, 0.02)},
+        {"eccentricity_mm": cs.uniform(-0.02, 0.02)}, 20,
     )  # fmt: skip
     for text, message in (
         ("[tolerance]\nx = 1", "tolerances.toml: tolerance: no such key, did you mean tolerances"),
@@ -204,7 +203,7 @@ eccentricity_mm = { distribution = "uniform", from = -0.02, to = 0.02 }
     ):
         path.write_text(text)
         with pytest.raises(cs.InputError, match=message):
-            Tolerances.from_toml(path)
+            cs.Tolerances.from_toml(path)
 
 
 def test_salib_problems_come_and_go() -> None:
@@ -250,7 +249,7 @@ def test_salib_problems_that_a_space_cannot_have_are_refused() -> None:
 
 def test_a_larger_sample_for_sobol_indices_keeps_the_smaller_one() -> None:
     drive = cs.Drive.reference_87()
-    axes: dict[str, Any] = {"eccentricity_mm": normal(0.5, 0.01), "bush_wall_mm": (1, 2)}
+    axes: dict[str, Any] = {"eccentricity_mm": cs.normal(0.5, 0.01), "bush_wall_mm": (1, 2)}
     small, large = (cs.Space.saltelli(drive, count, seed=2, **axes) for count in (16, 64))
     assert (small.total, large.total) == (64, 256)
     assert cs.sweep(small).equals(cs.sweep(large[:64]))

@@ -10,6 +10,7 @@ from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError
 from cyclosweep.explore.tables import Conditions, Table, batches, conditions, open_table
 from cyclosweep.sweep.expressions import number
+from cyclosweep.sweep.progress import ShowProgress
 
 __all__ = ["nearest_variants"]
 
@@ -24,7 +25,7 @@ def nearest_variants(
     scales: Mapping[str, float] | None = None,
     limits: Conditions | None = None,
     only_ok: bool = True,
-    progress: bool | None = None,
+    progress: ShowProgress = None,
 ) -> pl.DataFrame:
     """Feasible variants that come nearest to a wish.
 
@@ -43,8 +44,9 @@ def nearest_variants(
         As for :func:`~cyclosweep.explore.pareto.pareto_front`.
     only_ok : bool
         Whether only rows with the status ``ok`` count, where there is such a column.
-    progress : bool, optional
-        Whether there is a progress bar; by default on a terminal, after two seconds.
+    progress : bool or callable, optional
+        Whether there is a progress bar, by default on a terminal after two seconds; or a
+        function that is told how much is done and how much there is.
 
     Returns
     -------

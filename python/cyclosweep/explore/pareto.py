@@ -13,6 +13,7 @@ from cyclosweep.explore.dominance import Front
 from cyclosweep.explore.tables import Conditions, Rows, Table, batches, conditions, open_table
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.objective import Objective
+from cyclosweep.sweep.progress import ShowProgress
 
 __all__ = ["Objectives", "objectives_of", "pareto_front"]
 
@@ -30,7 +31,7 @@ def pareto_front(
     limits: Conditions | None = None,
     *,
     only_ok: bool = True,
-    progress: bool | None = None,
+    progress: ShowProgress = None,
 ) -> pl.DataFrame:
     """Variants that no other one beats in every objective.
 
@@ -48,8 +49,9 @@ def pareto_front(
         ``hole_web_mm > 2``.
     only_ok : bool
         Whether only rows with the status ``ok`` count, where there is such a column.
-    progress : bool, optional
-        Whether there is a progress bar; by default on a terminal, after two seconds.
+    progress : bool or callable, optional
+        Whether there is a progress bar, by default on a terminal after two seconds; or a
+        function that is told how much is done and how much there is.
 
     Returns
     -------
@@ -168,7 +170,7 @@ def _picked(
     values: Sequence[pl.Expr],
     kept: Sequence[pl.Expr],
     key: pl.Expr,
-    progress: bool | None,
+    progress: ShowProgress,
 ) -> npt.NDArray[np.uint64]:
     """Keys of the rows on the front, in order."""
     names = [f"__objective_{k}" for k in range(len(wanted))]

@@ -11,7 +11,7 @@ import polars as pl
 from cyclosweep.errors import InputError
 from cyclosweep.sweep.dataset import scan_dataset
 from cyclosweep.sweep.expressions import condition, number
-from cyclosweep.sweep.progress import Progress
+from cyclosweep.sweep.progress import Progress, ShowProgress
 from cyclosweep.sweep.scan import scan
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Limits, Study
@@ -71,7 +71,9 @@ def open_table(table: Table) -> Rows:
         return Rows(table, dict(table.collect_schema()), 0)
     if isinstance(table, Study | Space):
         study = Study.of(table)
-        return Rows(scan(study), study.schema(), study.space.stop - study.space.start)
+        frame = scan(study)
+        total = study.space.stop - study.space.start
+        return Rows(frame, dict(frame.collect_schema()), 0 if study.only_ok else total)
     if not isinstance(table, str | Path):
         raise InputError(f"table: found {table!r}, expected a frame, a space, a study or a path")
     path = Path(table)
@@ -149,7 +151,7 @@ def _bounds(text: str, bounds: object) -> tuple[float | None, float | None]:
 
 
 def batches(
-    rows: Rows, columns: Sequence[pl.Expr], label: str, *, progress: bool | None = None
+    rows: Rows, columns: Sequence[pl.Expr], label: str, *, progress: ShowProgress = None
 ) -> Iterator[pl.DataFrame]:
     """Columns of all rows, batch by batch in order, with a progress bar.
 
@@ -161,7 +163,7 @@ def batches(
         What is computed of each row.
     label : str
         What stands before the bar.
-    progress : bool, optional
+    progress : bool or callable, optional
         Whether there is a bar; by default after two seconds when standard error is a terminal.
 
     Yields

@@ -55,10 +55,11 @@ class SpaceMakers:
 
         Examples
         --------
-        >>> import cyclosweep as cs, polars as pl
+        >>> import cyclosweep as cs
         >>> made = cs.Space.around(cs.Drive.reference_87(), {"eccentricity_mm": 0.01}, 64)
-        >>> cs.sweep(made).select((pl.col("eccentricity_mm") - 0.5).abs().max() <= 0.01).item()
-        True
+        >>> values = cs.sweep(made)["eccentricity_mm"]
+        >>> round(values.min(), 3), round(values.max(), 3)
+        (0.61, 0.63)
         """
         make: Any = cls
         return cast(Self, make.table(drive, pieces(drive, tolerances, count, seed=seed)))
