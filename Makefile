@@ -30,7 +30,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rust -name '*.rs')
 
 .PHONY: help env demo test test-rust test-python test-grid lint bench bench-ten-million disc docs golden coverage proof \
-	proof-record proof-faint proof-contest proof-contest-poor same-diagnosis scoreboard wheel clean
+	proof-record proof-faint proof-contest proof-contest-poor same-diagnosis scoreboard wheel site clean
 .DEFAULT_GOAL := help
 
 help:
@@ -51,6 +51,7 @@ help:
 	@echo "make scoreboard  recordings of real devices and made ones, and which answers are right; about half an hour"
 	@echo "make wheel   build the wheel for this kind of machine, install it away from any compiler, use it"
 	@echo "make docs    regenerate what in docs and proof comes from code or from the figures of record"
+	@echo "make site    the documentation as pages that open without a server: build/site/index.html; make docs does it too"
 	@echo "make clean   delete target, $(VENV) and out; records of the proof in build stay"
 	@echo "make golden  regenerate the golden values (read the diff before committing it)"
 
@@ -149,6 +150,11 @@ docs: env
 	$(BIN)/python docs/generate.py
 	$(BIN)/python -m cyclosweep_challenge.record --pages proof
 	test ! -f proof/rigs.json || $(BIN)/python -m cyclosweep_challenge.campaign --page proof
+	$(MAKE) site
+
+# Every warning, such as a link that leads nowhere, is an error.
+site: env
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 golden: env
 	$(BIN)/python -m tests.golden.regenerate

@@ -16,7 +16,10 @@ import cyclosweep as cs
 from cyclosweep.simulation import effects
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
+RUN_WHOLE = sorted([*(DOCS / "tutorials").glob("*.md"), *(DOCS / "how-to").glob("*.md")])
+"""Pages whose blocks build on each other: run from top to bottom in one folder."""
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -24,6 +27,7 @@ def _blocks(*languages: str) -> list[object]:
     return [
         pytest.param(match[2], id=f"{page.name}-{number}")
         for page in PAGES
+        if page not in RUN_WHOLE
         for number, match in enumerate(_BLOCK.finditer(page.read_text("utf-8")))
         if match[1] in languages
     ]
@@ -45,9 +49,7 @@ def test_python_block_runs(code: str) -> None:
     exec(compile(code, "block", "exec"), {"__name__": "block"})
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the blocks are for a POSIX shell")
-@pytest.mark.parametrize("code", _blocks("sh"))
-def test_shell_block_runs(code: str, folder: Path) -> None:
+def _run_in_shell(code: str, folder: Path) -> None:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     run = subprocess.run(
         ["bash", "-eu", "-o", "pipefail", "-c", code],
@@ -58,6 +60,29 @@ def test_shell_block_runs(code: str, folder: Path) -> None:
         check=False,
     )
     assert run.returncode == 0, run.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the blocks are for a POSIX shell")
+@pytest.mark.parametrize("code", _blocks("sh"))
+def test_shell_block_runs(code: str, folder: Path) -> None:
+    _run_in_shell(code, folder)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the blocks are for a POSIX shell")
+@pytest.mark.parametrize("page", [pytest.param(page, id=page.stem) for page in RUN_WHOLE])
+def test_page_runs_from_top_to_bottom(page: Path, folder: Path) -> None:
+    names: dict[str, object] = {"__name__": "block"}
+    for match in _BLOCK.finditer(page.read_text("utf-8")):
+        if match[1] == "sh":
+            _run_in_shell(match[2], folder)
+        elif match[1] == "python":
+            exec(compile(match[2], page.name, "exec"), names)
+
+
+def test_reference_page_has_every_public_name() -> None:
+    page = (DOCS / "reference" / "python.md").read_text("utf-8")
+    named = set(re.findall(r"^::: cyclosweep\.(\w+)$", page, re.MULTILINE))
+    assert named == set(cs.__all__) - {"__version__"}
 
 
 @pytest.mark.parametrize("code", _blocks("make"))
