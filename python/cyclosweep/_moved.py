@@ -105,8 +105,10 @@ _CHALLENGE = (
         ".measured_run": ".measured.run",
     }
 )
+_DYNAMICS = {"cyclosweep.dynamics.figures": "figures.train"}
 MOVED: dict[str, str] = {
-    old: f"cyclosweep.{new}" for old, new in (_DESIGN | _SWEEP | _SIMULATION | _DIAGNOSIS).items()
+    old: f"cyclosweep.{new}"
+    for old, new in (_DESIGN | _SWEEP | _SIMULATION | _DIAGNOSIS | _DYNAMICS).items()
 } | {f"cyclosweep.challenge{old}": f"cyclosweep_challenge{new}" for old, new in _CHALLENGE.items()}
 """Where the modules of version 0.1 stand now, by their old names."""
 

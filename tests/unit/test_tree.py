@@ -39,7 +39,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "report": SIMULATION | {"result"},
     "diagnosis": SIMULATION | {"result", "report"},
     "reference": DIAGNOSIS | {"sweep"},
-    "figures": DESIGN | {"sweep"},
+    "figures": DESIGN | {"sweep", "explore"},
     "cli": REFERENCE | {"figures", "__init__"},
     "__init__": REFERENCE | {"_moved"},
     "__main__": {"cli"},

@@ -112,7 +112,7 @@ def shock(
     from cyclosweep.atomic import unfinished, write_text
     from cyclosweep.design.drive import Drive
     from cyclosweep.design.events import Event, transient
-    from cyclosweep.dynamics.figures import save_transient
+    from cyclosweep.figures.train import save_transient
 
     chosen = Drive.load(drive)
     what = Event.from_toml(event).of_drive(chosen)

@@ -31,6 +31,7 @@ __all__ = [
     "TWO_COLUMNS_MM",
     "VERMILION",
     "above",
+    "headline",
     "new_figure",
     "note",
     "save",
@@ -104,6 +105,9 @@ _HOUSE: dict[str, Any] = {
     "legend.handlelength": 2.2,
     "hatch.linewidth": 0.5,
     "figure.facecolor": "white",
+    "figure.labelsize": 7.0,
+    "figure.titlesize": 7.5,
+    "figure.titleweight": "bold",
     "savefig.facecolor": "white",
     "image.cmap": SEQUENTIAL,
     "svg.hashsalt": "cyclosweep",
@@ -177,6 +181,19 @@ def note(figure: Figure, text: str) -> None:
     letters = int(figure.get_figwidth() * 72 / (0.545 * 6.0))
     lines = textwrap.wrap(text, letters)
     figure.supxlabel("\n".join(lines), x=0.012, ha="left", fontsize=6.0, color=GREY)
+
+
+def headline(figure: Figure, text: str) -> None:
+    """Write a picture's title above all panels.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The picture.
+    text : str
+        The title.
+    """
+    figure.suptitle(text, x=0.012, ha="left")
 
 
 def above(panel: Axes, columns: int = 2, **options: Any) -> None:
