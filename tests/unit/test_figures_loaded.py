@@ -14,7 +14,6 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
 
 import cyclosweep as cs
-from cyclosweep.choose.comparison import compare
 from cyclosweep.design.excitation import excitation_orders
 from cyclosweep.figures.budget import budget_figure
 from cyclosweep.figures.ring import ring_figure
@@ -82,7 +81,7 @@ def test_lines_on_the_ring_balance_the_torque(loaded: cs.Drive) -> None:
 
 
 def test_bars_of_the_budget_are_its_parts(loaded: cs.Drive) -> None:
-    found = compare([loaded, EXAMPLES / "catalogue-29.toml"])
+    found = cs.compare([loaded, EXAMPLES / "catalogue-29.toml"])
     figure = budget_figure(found.budget)
     of_components = found.budget.filter(model="components")
     for name in ("components-87", "catalogue-29"):
@@ -95,7 +94,7 @@ def test_bars_of_the_budget_are_its_parts(loaded: cs.Drive) -> None:
 
 
 def test_a_drive_without_components_is_drawn_by_the_published_model(reference: cs.Drive) -> None:
-    budget = compare([reference, EXAMPLES / "catalogue-29.toml"]).budget
+    budget = cs.compare([reference, EXAMPLES / "catalogue-29.toml"]).budget
     bars = artists(budget_figure(budget), "reference-87")
     drawn = [bar for bar in bars if isinstance(bar, Rectangle) and bar.get_width() > 0]
     assert len(drawn) == budget.filter(drive="reference-87", model="published").height
@@ -125,7 +124,7 @@ def test_play_over_clearance_is_that_of_the_torque_twist_curve(loaded: cs.Drive)
 PICTURES: list[Callable[[cs.Drive], Figure]] = [
     shares_figure,
     ring_figure,
-    lambda drive: budget_figure(compare([drive] * 6).budget),
+    lambda drive: budget_figure(cs.compare([drive] * 6).budget),
     lambda drive: load_series_figure(drive, loads=(0.5, 1.0)),
     lambda drive: clearance_series_figure(drive, hole_clearances_mm=(0.0, 0.1)),
 ]

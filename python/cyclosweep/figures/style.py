@@ -84,6 +84,7 @@ _HOUSE: dict[str, Any] = {
     "axes.spines.right": False,
     "axes.axisbelow": True,
     "axes.grid": False,
+    "axes.prop_cycle": f"cycler('color', {list(COLOURS)})",
     "grid.color": FAINT,
     "grid.linewidth": 0.5,
     "text.color": INK,

@@ -14,6 +14,7 @@ from cyclosweep.errors import InputError
 from cyclosweep.figures.style import (
     BLUE,
     COLOURS,
+    DASHES,
     FAINT,
     GREY,
     INK,
@@ -154,11 +155,11 @@ def transient_figure(run: Transient) -> Figure:
     figure = new_figure(20.0 + 34.0 * (len(names) + 1), TWO_COLUMNS_MM)
     panels = figure.subplots(len(names) + 1, 1, sharex=True)
     time = run.table["time_s"].to_numpy()
-    for k, (name, panel) in enumerate(zip(names, panels[:-1], strict=True)):
+    for name, panel in zip(names, panels[:-1], strict=True):
         panel.plot(
             time,
             run.table[f"torque_{name}_nm"].to_numpy(),
-            color=COLOURS[k % len(COLOURS)],
+            color=BLUE,
             linewidth=1.0,
         )
         at = run.impacts.filter(pl.col("spring") == name)["time_s"].to_numpy()
@@ -179,8 +180,8 @@ def transient_figure(run: Transient) -> Figure:
         ("elastic", "elastic_energy_j"),
         ("taken by friction", "friction_loss_j"),
     )
-    for label, column in energies:
-        panels[-1].plot(time, run.table[column].to_numpy(), label=label, linewidth=1.0)
+    for (label, column), dash in zip(energies, DASHES, strict=False):
+        panels[-1].plot(time, run.table[column].to_numpy(), dash, label=label, linewidth=1.0)
     panels[-1].set_ylabel("energy [J]")
     panels[-1].set_xlabel("time [s]")
     panels[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=6.5)
