@@ -18,6 +18,21 @@ _LINK = re.compile(r"\]\((?![a-z]+:|#|<)([^)#\s]+)(#[^)]*)?\)")
 _FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 _EQUATION = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>', re.DOTALL)
 
+_TITLES = {
+    "design": "Drives",
+    "sweep": "Spaces, studies, sweeps",
+    "explore": "Choosing",
+    "choose": "Choosing",
+    "recording": "Recordings and diagnosis",
+    "diagnosis": "Recordings and diagnosis",
+    "simulation": "Recordings and diagnosis",
+    "dynamics": "Dynamics",
+    "reference": "Validation",
+    "errors": "Errors",
+    "cad": "Drawings",
+    "figures": "Pictures",
+    "": "Others",
+}
 _ROLE = re.compile(r":(?:class|meth|func|data|mod|attr|exc):(<code[^>]*>)~?")
 _FOOTNOTE = re.compile(r"<p>\.\. \[\d+\] ")
 
@@ -69,6 +84,22 @@ def _command_page() -> str:
     return "\n".join(lines) + "\n"
 
 
+def _every_public_name() -> str:
+    """Return the directives that show the docstring of every public name, by what it is for."""
+    import cyclosweep as cs
+
+    groups: dict[str, list[str]] = {title: [] for title in dict.fromkeys(_TITLES.values())}
+    for name in cs.__all__:
+        if not name.startswith("_"):
+            folder = getattr(cs, name).__module__.split(".")[1]
+            groups[_TITLES.get(folder, "Others")].append(name)
+    lines = []
+    for title, names in groups.items():
+        lines += [f"## {title}", ""] if names else []
+        lines += [line for name in sorted(names) for line in (f"::: cyclosweep.{name}", "")]
+    return "\n".join(lines)
+
+
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the proof's pages, the examples, the commands, and every file that a page links to."""
     wanted = {path.relative_to(ROOT).as_posix() for path in (ROOT / "proof").glob("*.md")}
@@ -101,6 +132,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     place = page.file.src_uri
     if page.file.generated_by:
         return markdown
+    markdown = markdown.replace("<!-- every public name -->", _every_public_name())
 
     def moved(match: re.Match[str]) -> str:
         target = _in_site(_target(place, match[1]))
