@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import logging
 import posixpath
 import re
 from pathlib import Path
@@ -33,6 +34,12 @@ _TITLES = {
     "figures": "Pictures",
     "": "Others",
 }
+_SHIM = "https://unpkg.com/iframe-worker/shim"
+"""What the theme would fetch for the search in pages opened from a folder."""
+
+_FETCHED = re.compile(
+    r'<(?:script|img|iframe)[^>]*src="(https?://[^"]+)|<link[^>]*href="(https?://[^"]+)'
+)
 _ROLE = re.compile(r":(?:class|meth|func|data|mod|attr|exc):(<code[^>]*>)~?")
 _FOOTNOTE = re.compile(r"<p>\.\. \[\d+\] ")
 
@@ -151,3 +158,19 @@ def on_page_content(content: str, page: Page, config: MkDocsConfig, files: Files
         return f'<{match[1]} class="arithmatex">{formula}</{match[1]}>'
 
     return _FOOTNOTE.sub("<p>", _ROLE.sub(r"\1", _EQUATION.sub(mathml, content)))
+
+
+def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
+    """Take the search's script from the site, and warn of anything that a reader would fetch."""
+    up = posixpath.relpath("search-worker.js", posixpath.dirname(page.file.dest_uri) or ".")
+    output = output.replace(_SHIM, up)
+    for match in _FETCHED.finditer(output):
+        logging.getLogger("mkdocs.site").warning(
+            "%s: found %s, expected nothing from a network", page.file.src_uri, match[1] or match[2]
+        )
+    return output
+
+
+def on_post_template(output: str, template_name: str, config: MkDocsConfig) -> str:
+    """Take the search's script from the site in the page of lost links, too."""
+    return output.replace(_SHIM, "search-worker.js")
