@@ -1,4 +1,4 @@
-"""Columns and constraints that a module named by `--plugin` adds to every study."""
+"""What a module named by `--plugin` adds: columns and constraints of every study, and effects."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import polars as pl
 
 from cyclosweep.errors import InputError
 
-__all__ = ["COLUMNS", "CONSTRAINTS", "Batch", "Column", "column", "constraint", "load"]
+__all__ = ["COLUMNS", "CONSTRAINTS", "LOADED", "Batch", "Column", "column", "constraint", "load"]
 
 Batch = Callable[[pl.DataFrame], object]
 """A function of some rows of a study, that returns one value a row."""
@@ -48,6 +48,9 @@ class Column:
 
 COLUMNS: dict[str, Column] = {}
 """Columns that every study gets which has what they need, by name."""
+
+LOADED: list[str] = []
+"""Modules that were loaded, as a worker in another process has to load them again."""
 
 CONSTRAINTS: dict[str, Column] = {}
 """Conditions that the variants of every study have to meet, by name."""
@@ -114,6 +117,8 @@ def constraint(name: str, *, needs: Sequence[str] | None = None) -> Callable[[_F
 def load(module: str) -> ModuleType:
     """Import a module of the user's own, whose decorators then have run.
 
+    An effect is registered by :func:`cyclosweep.simulation.effects.register`.
+
     Parameters
     ----------
     module : str
@@ -135,7 +140,11 @@ def load(module: str) -> ModuleType:
     # Workers in other processes find it by the same path.
     sys.path.insert(0, str(folder.resolve()))
     try:
-        return importlib.import_module(name)
+        found = importlib.import_module(name)
     except Exception as error:
         reason = str(error).partition("\n")[0]
         raise InputError(f"--plugin: {module}: {type(error).__name__}: {reason}") from None
+    again = str(path.resolve()) if path.suffix == ".py" else module
+    if again not in LOADED:
+        LOADED.append(again)
+    return found

@@ -8,12 +8,13 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.simulation import effects
+from tests.support.own_modules import registered_for_now
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -34,13 +35,13 @@ def _blocks(*languages: str) -> list[object]:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """An empty folder with the examples in it, as a reader of README has them."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     # A block may register an effect of its own, which other tests must not see.
-    monkeypatch.setattr(effects, "_REGISTERED", dict(effects._REGISTERED))
-    return tmp_path
+    with registered_for_now():
+        yield tmp_path
 
 
 @pytest.mark.parametrize("code", _blocks("python"))

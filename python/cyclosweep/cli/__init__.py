@@ -7,7 +7,7 @@ from typing import Annotated, cast
 
 import typer
 
-from cyclosweep import __version__
+from cyclosweep import __version__, plugins
 from cyclosweep.cli import (
     best,
     challenge,
@@ -65,15 +65,42 @@ def _root(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
+    plugin: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="MODULE",
+            help="Import a module of your own first, with columns, constraints or effects; the "
+            "option may stand anywhere.",
+        ),
+    ] = None,
 ) -> None:
     """Sweep, validate and diagnose the torsional compliance of cycloidal gear drives."""
+
+
+def _with_plugins(arguments: list[str]) -> list[str]:
+    """Import the modules that ``--plugin`` names and return the other arguments."""
+    rest: list[str] = []
+    given = iter(arguments)
+    for argument in given:
+        if argument == "--":
+            return [*rest, argument, *given]
+        name, sign, module = argument.partition("=")
+        if name != "--plugin":
+            rest.append(argument)
+            continue
+        module = module if sign else next(given, "")
+        if not module:
+            raise InputError("--plugin: found nothing after it, expected a module or a .py file")
+        plugins.load(module)
+    return rest
 
 
 def main() -> None:
     """Run the command line; every error is one line and an exit status."""
     survive_encoding()
     try:
-        status = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
+        arguments = _with_plugins(sys.argv[1:])
+        status = app(args=arguments or ["--help"], standalone_mode=False)
     except _UsageError as error:
         message = getattr(error, "format_message", error.__str__)()
         fail(f"{' '.join(message.split()).rstrip('.')}; see --help", 2)

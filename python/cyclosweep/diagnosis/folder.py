@@ -13,6 +13,7 @@ from typing import Any
 import polars as pl
 
 import cyclosweep._core as _core
+from cyclosweep import plugins
 from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
@@ -32,6 +33,7 @@ from cyclosweep.recording.columns import metadata_path, stem
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.series_page import write_series_page
 from cyclosweep.result.series import Trend
+from cyclosweep.simulation.effects import effects
 
 _LOG = logging.getLogger(__name__)
 
@@ -157,6 +159,7 @@ def diagnose_folder(
         resume,
         full,
         options,
+        tuple(plugins.LOADED),
     )
     rows: dict[Path, Row] = {}
     with shown_steps(f"{len(paths)} recordings", progress, _LOG) as say:
@@ -182,6 +185,7 @@ class _Task:
     resume: bool
     full: bool
     options: dict[str, Any]
+    plugins: tuple[str, ...] = ()
 
 
 def _rows(paths: Sequence[Path], task: _Task, workers: int) -> Iterator[tuple[Path, Row]]:
@@ -205,6 +209,8 @@ def _rows(paths: Sequence[Path], task: _Task, workers: int) -> Iterator[tuple[Pa
 def _row(path: Path, task: _Task) -> Row:
     """Diagnose one recording, write its results and return its row; every failure is a row."""
     row: Row = {"recording": stem(path)}
+    for module in task.plugins:  # a worker has not loaded them yet
+        plugins.load(module)
     try:
         meta = _metadata(path, task.meta)
         row |= conditions_of(stem(path), meta)
@@ -248,7 +254,9 @@ def _key(path: Path, task: _Task, meta: Metadata) -> str:
         beside = None if meta.drive is None else file.parent / meta.drive
         if beside is not None and beside.is_file():
             digest.update(beside.read_bytes())
-    said = (task.drive, task.full, sorted(task.options.items()), _core.__version__)
+    drive = None if task.drive is None else task.drive.to_json()
+    considered = [effect.name for effect in effects()]
+    said = (drive, task.full, sorted(task.options.items()), considered, _core.__version__)
     digest.update(repr(said).encode())
     return digest.hexdigest()
 
