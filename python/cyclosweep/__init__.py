@@ -13,6 +13,7 @@ from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.plugins import Column
 from cyclosweep.sweep.dataset import scan_dataset
+from cyclosweep.sweep.design_table import evaluate_table
 from cyclosweep.sweep.distributions import Distribution, log_uniform, normal, triangular, uniform
 from cyclosweep.sweep.evaluator import Evaluator
 from cyclosweep.sweep.scan import kernel_evaluations, scan, sweep
@@ -117,6 +118,7 @@ __all__ = [
     "diagnose",
     "diagnose_folder",
     "driving_inputs",
+    "evaluate_table",
     "feasible_ranges",
     "input_influence",
     "kernel_evaluations",

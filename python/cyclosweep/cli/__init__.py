@@ -13,6 +13,7 @@ from cyclosweep.cli import (
     challenge,
     diagnose,
     dynamics,
+    evaluate,
     inspect,
     new,
     pick,
@@ -40,6 +41,7 @@ app = typer.Typer(
 app.command()(validate.validate)
 app.command()(sweep.sweep)
 app.command()(sweep.shard)
+app.command()(evaluate.evaluate)
 app.command()(new.new)
 app.command()(show.show)
 app.command()(best.best)

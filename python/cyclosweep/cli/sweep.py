@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
+from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
     from cyclosweep.sweep.study import Study
@@ -37,14 +39,19 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Address of a running Dask scheduler.")
     ] = None,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="Begin even where the disk has no room for all of it.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Sweep a study to a folder of Parquet parts; killed, the same command goes on from there."""
     from cyclosweep.sweep.shards import sink
 
     with interruptible(LEFT):
+        swept = _study(study, rows)
+        _say_size(swept, out, fresh=fresh, yes=yes)
         summary = sink(
-            _study(study, rows),
+            swept,
             out,
             fresh=fresh,
             workers=workers,
@@ -81,3 +88,18 @@ def _study(path: Path, rows: int | None) -> Study:
 
     study = Study.from_toml(path)
     return study if rows is None else dataclasses.replace(study, space=study.space[:rows])
+
+
+def _say_size(study: Study, out: Path, *, fresh: bool, yes: bool) -> None:
+    """Say how much a sweep has to do; refuse, or ask, where the disk has no room for it."""
+    from cyclosweep.sweep.size import estimate, rows_left
+
+    size = estimate(study, out, None if fresh else rows_left(study, out))
+    print(f"{size} in {out}", file=sys.stderr)
+    if size.fits or yes:
+        return
+    refusal = f"{out}: no room for {size}; --rows takes fewer variants, --yes begins all the same"
+    if not (sys.stdin.isatty() and sys.stderr.isatty()):
+        raise InputError(refusal)
+    if not typer.confirm("There is no room for all of it. Begin all the same?", err=True):
+        raise InputError(refusal)

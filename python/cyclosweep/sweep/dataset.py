@@ -15,6 +15,7 @@ from filelock import FileLock, Timeout
 
 import cyclosweep._core as _core
 from cyclosweep.atomic import unfinished, write_text
+from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError, path_of
 from cyclosweep.sweep.rows import frame
 from cyclosweep.sweep.study import Study
@@ -26,6 +27,7 @@ __all__ = [
     "SOLVED_ROWS_PER_PART",
     "Dataset",
     "Part",
+    "dataset_of",
     "read_manifest",
     "scan_dataset",
 ]
@@ -306,6 +308,29 @@ class Dataset:
         }
         write_text(self.folder / _MANIFEST, json.dumps(manifest, indent=1))
         (self.folder / _FORMER_MANIFEST).unlink(missing_ok=True)
+
+
+def dataset_of(study: Study, folder: str | Path, rows_per_part: int | None = None) -> Dataset:
+    """Return the dataset of a study in a folder, which need not exist.
+
+    Parameters
+    ----------
+    study : Study
+        What is in it.
+    folder : str or Path
+        Where it is.
+    rows_per_part : int, optional
+        Variants a part, by default what a thread computes in seconds.
+
+    Returns
+    -------
+    Dataset
+    """
+    if rows_per_part is None:
+        rows_per_part = ROWS_PER_PART if study.model == "published" else SOLVED_ROWS_PER_PART
+    return Dataset(
+        study, path_of("folder", folder), whole_number("rows_per_part", rows_per_part, least=1)
+    )
 
 
 def read_footer(path: Path) -> dict[str, Any] | None:

@@ -14,9 +14,9 @@ from filelock import FileLock, Timeout
 
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.parts import Engine as Solver
-from cyclosweep.errors import InputError, SweepError, instance_of, path_of
+from cyclosweep.errors import InputError, SweepError, instance_of
 from cyclosweep.sweep.attempts import run_shards
-from cyclosweep.sweep.dataset import ROWS_PER_PART, SOLVED_ROWS_PER_PART, Dataset
+from cyclosweep.sweep.dataset import Dataset, dataset_of
 from cyclosweep.sweep.executors import Engine, executor_of, lend
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.own_columns import Own
@@ -115,7 +115,7 @@ def sink(
         constraints=constraints,
         columns=columns,
     )
-    dataset = _dataset(study, folder, rows_per_part)
+    dataset = dataset_of(study, folder, rows_per_part)
     if executor is not None:
         instance_of("executor", executor, Executor)
     if executor is None:
@@ -205,7 +205,7 @@ def shard(
     of = whole_number("shard: of", of, least=1)
     index = whole_number("shard: index", index, most=of - 1)
     study = Study.of(space)
-    dataset = _dataset(study, folder, rows_per_part)
+    dataset = dataset_of(study, folder, rows_per_part)
     dataset.prepare(resume=True, fresh=False)
     numbers = range(index, dataset.part_count, of)
     parts = (dataset.part(number) for number in numbers)
@@ -223,14 +223,6 @@ def shard(
         dataset.write_manifest(dataset.summaries())
     (dataset.folder / ".manifest.lock").unlink(missing_ok=True)
     return summarise(summaries, study)
-
-
-def _dataset(study: Study, folder: str | Path, rows_per_part: int | None) -> Dataset:
-    if rows_per_part is None:
-        rows_per_part = ROWS_PER_PART if study.model == "published" else SOLVED_ROWS_PER_PART
-    return Dataset(
-        study, path_of("folder", folder), whole_number("rows_per_part", rows_per_part, least=1)
-    )
 
 
 def _finish(dataset: Dataset, summaries: list[PartSummary]) -> None:

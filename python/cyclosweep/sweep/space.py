@@ -19,6 +19,7 @@ from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError, instance_of
 from cyclosweep.notebook import html_table
+from cyclosweep.sweep.any_table import as_frame
 from cyclosweep.sweep.axes import (
     OPTIONAL,
     WHOLE,
@@ -158,14 +159,14 @@ class Space(SpaceMakers):
         return cls._sampled(drive, "random", count, seed, axes)
 
     @classmethod
-    def table(cls, drive: Drive, frame: pl.DataFrame, /) -> Space:
-        """One variant a row of a frame whose columns are inputs.
+    def table(cls, drive: Drive, frame: Any, /) -> Space:
+        """One variant a row of a table whose columns are inputs.
 
         Parameters
         ----------
         drive : Drive
             What does not vary.
-        frame : polars.DataFrame
+        frame : polars.DataFrame, pandas.DataFrame, pyarrow.Table, mapping or structured ndarray
             Columns named as inputs; null and NaN are kept and give the status
             ``non_finite_input`` where the input is not optional.
 
@@ -174,9 +175,9 @@ class Space(SpaceMakers):
         InputError
             For a column that is no input or holds no numbers.
         """
-        instance_of("frame", frame, pl.DataFrame)
+        table = as_frame(frame)
         axes = []
-        for column in frame.get_columns():
+        for column in table.get_columns():
             name = known_input(drive, column.name)
             if name == "criterion":
                 numbers = np.array(criterion_codes(column.to_list()))
@@ -185,7 +186,7 @@ class Space(SpaceMakers):
                     raise InputError(f"{name}: found {column.dtype}, expected numbers")
                 numbers = column.cast(pl.Float64).fill_null(np.nan).to_numpy()
             axes.append(Axis(name, "list", np.ascontiguousarray(numbers, dtype=np.float64)))
-        return cls._made(drive, "table", tuple(axes), frame.height, 0)
+        return cls._made(drive, "table", tuple(axes), table.height, 0)
 
     @classmethod
     def _sampled(
