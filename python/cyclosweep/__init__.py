@@ -41,6 +41,7 @@ if _TYPE_CHECKING:
     from cyclosweep.recording import Recording
     from cyclosweep.reference.rows import validate
     from cyclosweep.simulation.simulate import Model, simulate
+    from cyclosweep.study_report import report_study
 
 # Imported when first asked for: SciPy takes longer to load than all a worker of a sweep needs.
 _LATER = {
@@ -60,6 +61,7 @@ _LATER = {
     "input_influence": "explore",
     "nearest_variants": "explore",
     "pareto_front": "explore",
+    "report_study": "study_report",
     "robust_choice": "explore",
     "simulate": "simulation.simulate",
     "sobol_indices": "explore",
@@ -75,6 +77,7 @@ _FOLDERS = {
     "report",
     "result",
     "simulation",
+    "study_report",
 }
 
 __version__ = _core.__version__
@@ -128,6 +131,7 @@ __all__ = [
     "normal",
     "open_study",
     "pareto_front",
+    "report_study",
     "robust_choice",
     "scan",
     "scan_dataset",

@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2] / "python"
 FILES = sorted(ROOT.rglob("*.py"))
 LONGEST = 400
 
-BASE = {"errors", "atomic", "notebook", "display", "plugins"}
+BASE = {"errors", "atomic", "notebook", "display", "plugins", "page"}
 DESIGN = BASE | {"dynamics", "design"}
 SIMULATION = DESIGN | {"recording", "simulation"}
 DIAGNOSIS = SIMULATION | {"result", "report", "diagnosis"}
@@ -26,6 +26,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "atomic": set(),
     "plugins": {"errors"},
     "notebook": set(),
+    "page": set(),
     "display": {"errors"},
     "_moved": set(),
     "dynamics": BASE,
@@ -40,8 +41,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "diagnosis": SIMULATION | {"result", "report"},
     "reference": DIAGNOSIS | {"sweep"},
     "figures": DESIGN | {"sweep", "explore"},
-    "cli": REFERENCE | {"figures", "__init__"},
-    "__init__": REFERENCE | {"_moved"},
+    "study_report": DESIGN | {"sweep", "explore", "choose", "figures"},
+    "cli": REFERENCE | {"figures", "study_report", "__init__"},
+    "__init__": REFERENCE | {"_moved", "figures", "study_report"},
     "__main__": {"cli"},
 }
 

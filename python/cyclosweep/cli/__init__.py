@@ -18,6 +18,7 @@ from cyclosweep.cli import (
     new,
     pick,
     plot,
+    report,
     show,
     simulate,
     sweep,
@@ -46,6 +47,7 @@ app.command()(new.new)
 app.command()(show.show)
 app.command()(best.best)
 app.command()(pick.pick)
+app.command()(report.report)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)
 app.command()(plot.plot)

@@ -101,8 +101,7 @@ def _goals(
     if sum(given is not None and given != [] for given in (pareto, minimise, maximise)) > 1:
         raise InputError("found two of --pareto, --minimise and --maximise, expected one")
     if pareto:
-        texts = [text.strip() for each in pareto for text in _split(each)]
-        goals = [text if text.startswith(("min ", "max ")) else f"min {text}" for text in texts]
+        goals = split_objectives(pareto)
         if len(goals) < 2:
             raise InputError(f"--pareto: found {pareto[0]!r}, expected two or more, as A,B")
         return goals
@@ -114,6 +113,12 @@ def _goals(
             "--pareto"
         )
     return [f"{'max' if stored.objective.maximise else 'min'} {stored.objective.column}"]
+
+
+def split_objectives(given: list[str]) -> list[str]:
+    """Objectives of ``--pareto``, each as ``min A`` or ``max A``."""
+    texts = [text.strip() for each in given for text in _split(each)]
+    return [text if text.startswith(("min ", "max ")) else f"min {text}" for text in texts]
 
 
 def _split(text: str) -> list[str]:

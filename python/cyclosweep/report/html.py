@@ -6,11 +6,11 @@ from importlib.resources import files
 from pathlib import Path
 
 from cyclosweep.atomic import write_text
+from cyclosweep.page import bullets, definitions, document, paragraph, section, table_html
 from cyclosweep.report import sentences, tables
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
 from cyclosweep.report.svg import figure_svg
-from cyclosweep.report.tables import Table
 from cyclosweep.report.wording import number, probability, verdict_words
 from cyclosweep.result import Thinning
 
@@ -51,34 +51,27 @@ def page(data: ReportData) -> str:
             _top(data),
             _verdict(data),
             picture("loop"),
-            _list("What the loop shows", sentences.findings(data)),
-            _list("Where simulation and recording differ", sentences.regions(data)),
+            bullets("What the loop shows", sentences.findings(data)),
+            bullets("Where simulation and recording differ", sentences.regions(data)),
             _effects(data),
-            _paragraph("What remains without a name", sentences.unknown(data)),
-            _paragraph("Next experiment", sentences.next_experiment(data)),
+            paragraph("What remains without a name", sentences.unknown(data)),
+            paragraph("Next experiment", sentences.next_experiment(data)),
             _loop(data, picture("zoom")),
-            _section("Residuals", picture("profiles")),
-            _section("Residual map", picture("map")),
-            _section("Parameters", _table(tables.parameter_table(data))),
-            _section("Every effect that was tried", _table(tables.hypothesis_table(data))),
-            _list("Explanations that fit", sentences.explanations(data)),
-            _list("Not found, with 95 % upper bounds", sentences.bounds(data)),
-            _list("What this recording cannot show", sentences.untestable(data)),
-            _section("Errors on data not used", _table(tables.held_out_table(data))),
-            _section("Self-check", _table(tables.self_check_table(data))),
+            section("Residuals", picture("profiles")),
+            section("Residual map", picture("map")),
+            section("Parameters", table_html(tables.parameter_table(data))),
+            section("Every effect that was tried", table_html(tables.hypothesis_table(data))),
+            bullets("Explanations that fit", sentences.explanations(data)),
+            bullets("Not found, with 95 % upper bounds", sentences.bounds(data)),
+            bullets("What this recording cannot show", sentences.untestable(data)),
+            section("Errors on data not used", table_html(tables.held_out_table(data))),
+            section("Self-check", table_html(tables.self_check_table(data))),
             _recording(data),
             _provenance(data),
         ]
     )
-    style = files("cyclosweep.report").joinpath("style.css").read_text(encoding="utf-8")
     script = files("cyclosweep.report").joinpath("script.js").read_text(encoding="utf-8")
-    title = escape(f"{data.recording.name}: torque–twist diagnosis")
-    return (
-        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{title}</title><link rel="icon" href="data:,"><style>{style}</style></head>'
-        f"<body><main>{body}</main><script>{script}</script></body></html>\n"
-    )
+    return document(f"{data.recording.name}: torque–twist diagnosis", body, script=script)
 
 
 def _top(data: ReportData) -> str:
@@ -133,7 +126,7 @@ def _effects(data: ReportData) -> str:
         + f'<p class="soft">{escape(evidence)}</p></div>'
         for name, size, evidence, physics, where in sentences.effect_cards(data)
     )
-    return _section(
+    return section(
         "What was left out of the model", f'<div class="cards">{cards}</div>' if cards else ""
     )
 
@@ -142,7 +135,7 @@ def _loop(data: ReportData, picture: str) -> str:
     """Figures of the loop; nothing of a faulty recording, whose figures would mislead."""
     if data.result.verdict == "DATA_FAULT":
         return ""
-    return _section("Loop", picture + _table(tables.loop_table(data)))
+    return section("Loop", picture + table_html(tables.loop_table(data)))
 
 
 def _thinning(thinning: Thinning | None) -> str:
@@ -178,12 +171,9 @@ def _recording(data: ReportData) -> str:
         ("conditioning runs", ", ".join(map(str, recording.conditioning_runs)) or "none"),
         ("holdout runs", ", ".join(map(str, recording.holdout_runs)) or "chosen by blocks"),
     ]  # fmt: skip
-    listed = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in rows)
     remarks = [*recording.notes, *(fault.reason for fault in recording.faults)]
-    bullets = "".join(f"<li>{escape(text)}</li>" for text in remarks)
-    return _section(
-        "The recording", f"<dl>{listed}</dl>" + (f"<ul>{bullets}</ul>" if bullets else "")
-    )
+    listed = "".join(f"<li>{escape(text)}</li>" for text in remarks)
+    return section("The recording", definitions(rows) + (f"<ul>{listed}</ul>" if listed else ""))
 
 
 def _extent(values: "Iterable[float]", unit: str) -> str:
@@ -197,47 +187,4 @@ def _provenance(data: ReportData) -> str:
     rows = dict(data.provenance)
     if data.recording.sha256:
         rows.setdefault("recording, SHA-256", data.recording.sha256)
-    listed = "".join(
-        f"<dt>{escape(str(key))}</dt><dd>{escape(str(value))}</dd>" for key, value in rows.items()
-    )
-    return _section("Provenance", f"<dl>{listed}</dl>" if listed else "")
-
-
-def _section(title: str, content: str) -> str:
-    """Section with a heading; nothing where there is no content."""
-    return f"<section><h2>{escape(title)}</h2>{content}</section>" if content else ""
-
-
-def _paragraph(title: str, text: str) -> str:
-    """Section with one paragraph; nothing where there is no text."""
-    return _section(title, f"<p>{escape(text)}</p>" if text else "")
-
-
-def _list(title: str, items: list[str]) -> str:
-    """Section with a bulleted list."""
-    bullets = "".join(f"<li>{escape(item[:1].upper() + item[1:])}</li>" for item in items)
-    return _section(title, f"<ul>{bullets}</ul>" if bullets else "")
-
-
-def _table(table: Table | None) -> str:
-    """Table with its note."""
-    if table is None:
-        return ""
-    words = table.words
-
-    def cell(tag: str, place: int, text: str) -> str:
-        kind = ' class="words"' if place in words else ""
-        return f"<{tag}{kind}>{escape(text)}</{tag}>"
-
-    head = "".join(cell("th", k, text) for k, text in enumerate(table.columns))
-    rows = "".join(
-        ('<tr class="lead">' if place in table.lead else "<tr>")
-        + "".join(cell("td", k, text) for k, text in enumerate(row))
-        + "</tr>"
-        for place, row in enumerate(table.rows)
-    )
-    note = f'<p class="soft">{escape(table.note)}</p>' if table.note else ""
-    return (
-        f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
-        f"</div>{note}"
-    )
+    return section("Provenance", definitions((str(k), str(v)) for k, v in rows.items()))

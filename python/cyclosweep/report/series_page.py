@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cyclosweep.atomic import write_text
+from cyclosweep.page import document
 from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.wording import interval, number, plain
@@ -36,7 +36,6 @@ def write_series_page(
     trends : sequence of Trend
         What rises or falls with which condition.
     """
-    style = files("cyclosweep.report").joinpath("style.css").read_text(encoding="utf-8")
     done = sum(row["status"] == "ok" for row in rows)
     body = [
         '<header class="top"><h1>Series of recordings</h1><div class="meta">Torque–twist '
@@ -50,13 +49,7 @@ def write_series_page(
         "condition; friction is half the width of the loop in torque. Sizes of the effects are "
         'those of the diagnosis. All columns: <a href="table.csv">table.csv</a>.</p>',
     ]
-    write_text(
-        path,
-        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>Series of recordings</title><link rel="icon" href="data:,"><style>{style}</style>'
-        f"</head><body><main>{''.join(filter(None, body))}</main></body></html>\n",
-    )
+    write_text(path, document("Series of recordings", "".join(filter(None, body))))
 
 
 def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:

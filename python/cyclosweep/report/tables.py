@@ -1,9 +1,8 @@
 """The tables of a report as plain rows, shared by the page and the terminal."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from cyclosweep.page import Table
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.loops import LoopFigures, loop_figures
 from cyclosweep.report.wording import (
@@ -18,32 +17,6 @@ from cyclosweep.report.wording import (
     without_unit,
 )
 from cyclosweep.result import CalibratedParameter
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Rows of text under a heading.
-
-    Attributes
-    ----------
-    title, note : str
-        Heading, and what a reader should know about it.
-    columns : tuple of str
-        Column headings with their units.
-    rows : tuple of tuple of str
-        Cells.
-    words : frozenset of int
-        Columns that hold text rather than numbers, besides the first.
-    lead : frozenset of int
-        Rows that matter most.
-    """
-
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    note: str = ""
-    words: frozenset[int] = frozenset()
-    lead: frozenset[int] = frozenset()
 
 
 def loop_table(data: ReportData) -> Table | None:

@@ -1,0 +1,209 @@
+"""Variants worth a closer look: the best, the balanced, and those that stay good when made."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.explore.tables import open_table
+from cyclosweep.sweep.axes import is_count
+from cyclosweep.sweep.expressions import number
+from cyclosweep.sweep.objective import Objective
+from cyclosweep.sweep.scan import scan
+from cyclosweep.sweep.space import Space
+from cyclosweep.sweep.stored import StoredStudy
+from cyclosweep.sweep.study import Study
+from cyclosweep.sweep.tolerances import Tolerances
+
+__all__ = ["Robust", "assumed_tolerances", "choose_variants", "robust_variants", "spread"]
+
+ASSUMED_TOLERANCE = 0.005
+"""Half width of the tolerance over a dimension's value, where none is given: our assumption, which
+the report says; a drawing's own are given by a tolerance file."""
+PIECES = {"published": 1024, "components": 128}
+"""Pieces made of each candidate, by model: some thousands in a second each."""
+
+
+@dataclass(frozen=True)
+class Robust:
+    """What becomes of one candidate when it is made within tolerances.
+
+    Attributes
+    ----------
+    variant : int
+        Its number.
+    nominal : dict
+        Each objective as drawn.
+    percentiles : dict
+        5th, 50th and 95th percentile of each objective over the pieces that can be used.
+    usable : float
+        Share of the pieces that can be built and keep the study's limits.
+    """
+
+    variant: int
+    nominal: dict[str, float]
+    percentiles: dict[str, tuple[float, float, float]]
+    usable: float
+
+
+def spread(front: pl.DataFrame, most: int) -> pl.DataFrame:
+    """Rows of a front evenly spread over it, its ends among them.
+
+    Parameters
+    ----------
+    front : polars.DataFrame
+        Sorted by its first objective.
+    most : int
+        How many rows at most.
+
+    Returns
+    -------
+    polars.DataFrame
+    """
+    if front.height <= most:
+        return front
+    places = np.unique(np.linspace(0, front.height - 1, most).round().astype(int))
+    rows: list[int] = places.tolist()
+    return front.select(pl.all().gather(rows))
+
+
+def choose_variants(front: pl.DataFrame, objectives: Sequence[Objective]) -> dict[int, str]:
+    """Choose from a front the best by each objective and the most balanced one.
+
+    Parameters
+    ----------
+    front : polars.DataFrame
+        Its rows.
+    objectives : sequence of Objective
+        What it is a front of.
+
+    Returns
+    -------
+    dict of int to str
+        Variants and why each was chosen.
+    """
+    if front.is_empty():
+        return {}
+    columns = [front[each.column].cast(pl.Float64).to_numpy() for each in objectives]
+    losses = []
+    for each, values in zip(objectives, columns, strict=True):
+        signed = -values if each.maximise else values
+        width = signed.max() - signed.min()
+        losses.append((signed - signed.min()) / width if width > 0 else np.zeros(len(signed)))
+    found: dict[int, str] = {}
+    variants = front["variant"].to_list()
+    for each, loss in zip(objectives, losses, strict=True):
+        best = variants[int(np.argmin(loss))]
+        word = "greatest" if each.maximise else "least"
+        why = f"{word} {each.column}"
+        found[best] = f"{found[best]} and {why}" if best in found else why
+    balanced = variants[int(np.argmin(np.sqrt(np.sum(np.square(losses), axis=0))))]
+    if len(objectives) > 1 and balanced not in found:
+        found[balanced] = "nearest to the best of every objective, each over its range on the front"
+    return found
+
+
+def assumed_tolerances(study: StoredStudy) -> Tolerances | None:
+    """Tolerances assumed where none are given: half a percent of every dimension that varies."""
+    known = study.drive.every_input()
+    inputs: dict[str, float] = {}
+    for name in study.axes:
+        if name == "criterion" or is_count(name) or name not in known:
+            continue
+        value = {**study.drive.values(), **study.drive.part_values()}.get(name, math.nan)
+        if math.isfinite(value) and value != 0:
+            inputs[name] = abs(value) * ASSUMED_TOLERANCE
+    return Tolerances(inputs) if inputs else None
+
+
+def robust_variants(
+    study: StoredStudy,
+    variants: Sequence[int],
+    objectives: Sequence[Objective],
+    tolerances: Tolerances,
+) -> list[Robust]:
+    """Make pieces of each candidate within tolerances and say what becomes of the objectives.
+
+    Parameters
+    ----------
+    study : StoredStudy
+        The study, for its limits and model.
+    variants : sequence of int
+        Candidates.
+    objectives : sequence of Objective
+        What matters.
+    tolerances : Tolerances
+        How far pieces deviate.
+
+    Returns
+    -------
+    list of Robust
+        The one whose bad piece (95th percentile of the first objective, in its bad sense) is
+        best comes first; those with unusable pieces after those without.
+    """
+    found = []
+    for variant in variants:
+        row = study.row(variant)
+        drive = study.drive_of(variant)
+        pieces = Study.of(
+            Space.around(drive, _held(tolerances, drive), PIECES[study.model], seed=1),
+            loads_tn=study.loads_tn,
+            limits=_limits(study),
+            model=study.model,
+        )
+        rows = open_table(pieces)
+        values = [number(o.column, rows.schema, where="objective") for o in objectives]
+        table = (
+            scan(pieces)
+            .filter(pl.col("status").cast(pl.String) == "ok")
+            .select(value.alias(o.column) for o, value in zip(objectives, values, strict=True))
+            .collect()
+        )
+        percentiles = {o.column: _percentiles(table[o.column]) for o in objectives}
+        nominal = pl.DataFrame([row]).cast({"status": pl.String})
+        at = nominal.select(v.alias(o.column) for o, v in zip(objectives, values, strict=True))
+        found.append(
+            Robust(
+                variant,
+                {o.column: float(at[o.column][0]) for o in objectives},
+                percentiles,
+                table.height / len(pieces),
+            )
+        )
+    first = objectives[0]
+
+    def order(each: Robust) -> tuple[float, float]:
+        low, _, high = each.percentiles[first.column]
+        bad = -low if first.maximise else high
+        return (round(1 - each.usable, 3), bad if math.isfinite(bad) else math.inf)
+
+    return sorted(found, key=order)
+
+
+def _held(tolerances: Tolerances, drive: Drive) -> Tolerances:
+    """Tolerances of the inputs that this drive has a value of."""
+    given = {**drive.values(), **drive.part_values()}
+    kept: dict[str, Any] = {
+        name: each
+        for name, each in tolerances.inputs.items()
+        if math.isfinite(given.get(name, math.nan))
+    }
+    return Tolerances(kept, tolerances.batches, tolerances.batch_size)
+
+
+def _limits(study: StoredStudy) -> Mapping[str, tuple[float | None, float | None]]:
+    return {name: (float(low), float(high)) for name, low, high in study.definition["limits"]}
+
+
+def _percentiles(values: pl.Series) -> tuple[float, float, float]:
+    kept = values.drop_nulls().drop_nans()
+    if kept.is_empty():
+        return (math.nan, math.nan, math.nan)
+    low, middle, high = np.percentile(kept.to_numpy(), (5, 50, 95))
+    return (float(low), float(middle), float(high))
