@@ -148,10 +148,11 @@ def parallel_page(
                 "colorbar": {"title": {"text": axis_label(by), "side": "right"}},
             },
             labelfont={"size": 12},
+            labelside="bottom",  # lines of a label run downwards, away from the figures
         )
     )
     figure = _finished(figure, sample.said)
-    return figure.update_layout(margin={"l": 60, "r": 30, "t": 80, "b": 30})
+    return figure.update_layout(margin={"l": 60, "r": 30, "t": 40, "b": 105})
 
 
 def response_page(
@@ -190,7 +191,10 @@ def response_page(
     cells = cells_of(table, x, y, result, how=how, limits=limits)
     is_whole = bool(np.isfinite(cells.values).all()) and min(cells.values.shape) >= 3
     kind = objects.Contour if is_whole else objects.Heatmap
-    options: dict[str, Any] = {"contours": {"showlabels": True}} if is_whole else {}
+    options: dict[str, Any] = {}
+    if is_whole:
+        options["contours"] = {"showlabels": True, "labelfont": {"color": "white"}}
+        options["line"] = {"color": "white", "width": 0.8}
     figure = objects.Figure(
         kind(
             x=cells.x,
@@ -231,7 +235,8 @@ def _hover(data: ParetoData, *, with_number: bool) -> str:
 def _wrapped(name: str) -> str:
     import textwrap
 
-    return "<br>".join(textwrap.wrap(axis_label(name), 16))
+    # The first line is left to the figure at the end of the axis.
+    return "<br>".join(["\N{NO-BREAK SPACE}", *textwrap.wrap(axis_label(name), 16)])
 
 
 def _finished(figure: Figure, said: str) -> Figure:
