@@ -88,7 +88,7 @@ def best_variants(
     >>> found.table["output_pin_count"].to_list(), found.within
     ([10, 9], 4)
     """
-    rows = whole_number("rows", rows, least=1)
+    rows = whole_number("rows", rows, least=1, most=2**32 - 1)
     source = open_table(table)
     if "variant" not in source.schema:
         raise InputError("table: no column variant, expected the rows of a study")

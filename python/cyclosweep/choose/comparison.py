@@ -20,7 +20,7 @@ from cyclosweep.choose.budget import (
 from cyclosweep.choose.remarks import Remark, remarks_on
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.units import quantity
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 from cyclosweep.notebook import html_table
 from cyclosweep.sweep.scan import sweep
 from cyclosweep.sweep.space import Space
@@ -190,6 +190,7 @@ def compare(drives: Sequence[Drive | str | Path] | Drive | str | Path) -> Compar
     >>> found.inputs.height, found.budget["part"][0]
     (35, 'shaft segment 1, keyway')
     """
+    instance_of("drives", drives, Drive, str, Path, Sequence)
     given = [drives] if isinstance(drives, (Drive, str, Path)) else list(drives)
     if not given:
         raise InputError("drives: none, expected at least one")

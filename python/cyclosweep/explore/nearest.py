@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import polars as pl
 
-from cyclosweep.design.numbers import whole_number
-from cyclosweep.errors import InputError
+from cyclosweep.design.numbers import finite_number, whole_number
+from cyclosweep.errors import InputError, instance_of
 from cyclosweep.explore.tables import Conditions, Table, batches, conditions, open_table
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.progress import ShowProgress
@@ -70,16 +70,17 @@ def nearest_variants(
     """
     rows = open_table(table)
     count = whole_number("count", count, least=1)
+    instance_of("target", target, Mapping)
     if not target:
         raise InputError("target: none, expected at least one column and its wanted value")
     if _DISTANCE in rows.schema:
         raise InputError(f"table: has a column {_DISTANCE}, expected another name for it")
     for text, value in target.items():
-        _finite(f"target.{text}", value)
+        finite_number(f"target.{text}", value)
     for text, value in (scales or {}).items():
         if text not in target:
             raise InputError(f"scales.{text}: not in the target, expected one of {list(target)}")
-        if _finite(f"scales.{text}", value) <= 0:
+        if finite_number(f"scales.{text}", value) <= 0:
             raise InputError(f"scales.{text}: found {value:g}, expected more than 0")
     values = {text: number(text, rows.schema, where="target") for text in target}
     kept = conditions(limits, rows.schema, only_ok=only_ok)
@@ -100,11 +101,3 @@ def nearest_variants(
         near = batch.filter(pl.col(_DISTANCE).is_not_null())
         best = pl.concat([best, near]).sort(_DISTANCE, maintain_order=True).head(count)
     return best
-
-
-def _finite(where: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == float("inf"):
-        raise InputError(f"{where}: found {value!r}, expected a finite number")
-    if value != value:
-        raise InputError(f"{where}: found NaN, expected a finite number")
-    return float(value)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 from cyclosweep.explore.dominance import Front
 from cyclosweep.explore.tables import Conditions, Rows, Table, batches, conditions, open_table
 from cyclosweep.sweep.expressions import number
@@ -127,6 +127,7 @@ def objectives_of(
     InputError
         For none, a sense that is neither min nor max, or one objective twice.
     """
+    instance_of(where, given, Mapping, Sequence, Objective)
     if isinstance(given, Mapping):
         found = [
             Objective(text.strip(), _is_max(text, sense, where)) for text, sense in given.items()

@@ -12,7 +12,7 @@ import polars as pl
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import finite_number, whole_number
 from cyclosweep.design.parts import Engine
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 from cyclosweep.explore.tables import Conditions, conditions
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.objective import Objective
@@ -189,6 +189,7 @@ def robust_choice(
     >>> best.select("rank", "rank_nominal").row(0)
     (1, 1)
     """
+    instance_of("objective", objective, str, Objective)
     wanted = Objective(objective) if isinstance(objective, str) else objective
     worst = 100 - percentile if wanted.maximise else percentile
     found = tolerance_percentiles(designs, tolerances, wanted.column, [worst], **settings)
@@ -206,6 +207,7 @@ def _blocks(
     designs: Designs, drive: Drive | None, size: int
 ) -> tuple[pl.DataFrame, Iterator[tuple[Drive, pl.DataFrame]], int]:
     """Labels of the designs; drives with a few rows of inputs each; how many designs there are."""
+    instance_of("designs", designs, pl.DataFrame, Drive, Sequence)
     if isinstance(designs, pl.DataFrame):
         base = drive or Drive.reference_87()
         known = base.every_input()

@@ -13,7 +13,7 @@ import polars as pl
 
 import cyclosweep._core as _core
 from cyclosweep.design.numbers import finite_number, whole_number
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, instance_of
 from cyclosweep.explore.tables import Rows, batches
 from cyclosweep.sweep.distributions import Distribution, uniform
 from cyclosweep.sweep.progress import ShowProgress
@@ -171,6 +171,7 @@ def driving_inputs(indices: pl.DataFrame) -> pl.DataFrame:
         ``result``, ``driven_by`` (the input of the greatest total index; null where the result
         does not vary) and a column of total indices [1] for each input.
     """
+    instance_of("indices", indices, pl.DataFrame)
     wide = indices.pivot("input", index="result", values="total", maintain_order=True)
     most = (
         indices.filter(pl.col("total").is_not_null())

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import polars as pl
 
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 from cyclosweep.sweep.dataset import scan_dataset
 from cyclosweep.sweep.expressions import condition, number
 from cyclosweep.sweep.progress import Progress, ShowProgress
@@ -121,6 +121,7 @@ def conditions(
         found.append(pl.col("status").cast(pl.String) == "ok")
     if limits is None:
         return found
+    instance_of("limits", limits, Mapping, Sequence)
     if isinstance(limits, str):
         limits = [limits]
     if not isinstance(limits, Mapping):

@@ -17,7 +17,7 @@ from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.numbers import whole_number
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, path_of
 from cyclosweep.sweep.dataset import parts_of, read_footer, read_manifest
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.study import StudyModel
@@ -202,7 +202,7 @@ def open_study(folder: str | Path) -> StoredStudy:
     ...     study.rows, study.axes, study.drive_of(2).output_pin_count
     (3, ('output_pin_count',), 9)
     """
-    folder = Path(folder)
+    folder = path_of("folder", folder)
     if not folder.is_dir():
         found = "is a file" if folder.exists() else "no such folder"
         raise InputError(f"{folder}: {found}, expected the folder of a study")
