@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -180,3 +182,20 @@ def test_the_ring_s_forces_stand_over_their_pins(loaded: cs.Drive) -> None:
         assert tops[:, 0] == pytest.approx(at * 360 / 88)
         assert tops[:, 1] == pytest.approx(forces[disc, at])
     assert pl.Series([len(each.get_segments()) for each in drawn]).sum() > 20
+
+
+def test_a_drive_that_cannot_be_built_is_not_left_out_of_a_budget_in_silence(
+    reference: cs.Drive, tmp_path: Path
+) -> None:
+    broken = tmp_path / "broken.toml"
+    reference.replace(output_pin_diameter_mm=40.0).to_toml(broken)
+    command = [sys.executable, "-m", "cyclosweep", "plot", "budget", "reference-87", broken]
+    done = subprocess.run(
+        [*map(str, command), "--out", str(tmp_path / "a.png")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "holes overlap" in done.stderr
+    assert not (tmp_path / "a.png").exists()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from cyclosweep.cli.output import fail
-from cyclosweep.errors import InputError
+from cyclosweep.errors import DesignError, InputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -208,7 +208,11 @@ def _budget(asked: _Asked) -> Figure:
     from cyclosweep.choose.comparison import compare
     from cyclosweep.figures.budget import budget_figure
 
-    return budget_figure(compare(asked.sources).budget)
+    compared = compare(asked.sources)
+    for each in compared.figures:
+        if (reason := each.drive.explain()) is not None:
+            raise DesignError(f"{each.label}: {reason}")
+    return budget_figure(compared.budget)
 
 
 def _load_series(asked: _Asked) -> Figure:
