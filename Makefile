@@ -34,7 +34,7 @@ SOURCES := Cargo.toml Cargo.lock pyproject.toml constraints.txt $(shell find rus
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo    set up, sweep 1,050,000 variants to Parquet, validate the 87:1 case"
+	@echo "make demo    set up, sweep 1,050,000 variants to Parquet, validate the 87:1 case, report the study"
 	@echo "make test    set up, run all tests"
 	@echo "make test-grid  closed form against a 0.01 deg grid on 10,000 random drives, some minutes"
 	@echo "make lint    rustfmt, clippy, rustdoc, ruff, mypy, stubtest, types of the blocks of docs"
@@ -68,6 +68,8 @@ $(VENV)/.ready: $(SOURCES)
 demo: env
 	$(BIN)/cyclosweep sweep examples/grid-87.toml --out $(DEMO_OUT)
 	$(BIN)/cyclosweep validate
+	$(BIN)/cyclosweep report $(DEMO_OUT) --out $(DEMO_OUT)-report.html
+	@echo "Open $(DEMO_OUT)-report.html in a browser; it needs no network."
 
 test: test-rust test-python
 
