@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 DOTS_PER_INCH = 150
+CAPTION = 36
+"""Height of the caption, two lines [hundredths of an inch]."""
 
 
 def write_png(data: ReportData, folder: str | Path) -> list[Path]:
@@ -81,18 +83,20 @@ def _write(figure: Figure, path: Path) -> Path:
     height = figure.rows * figure.row_height + 80
     canvas = Canvas(figsize=(WIDTH / 100, height / 100), layout="constrained")
     FigureCanvasAgg(canvas)
-    grid = canvas.add_gridspec(figure.rows, figure.columns)
+    # A part of its own for the caption, which the legend would else be drawn over.
+    pictures, foot = canvas.subfigures(2, 1, height_ratios=[height - CAPTION, CAPTION])
+    grid = pictures.add_gridspec(figure.rows, figure.columns)
     handles: dict[str, Any] = {}
     for placed in figure.panels:
-        axes = canvas.add_subplot(grid[_cells_of(placed)])
+        axes = pictures.add_subplot(grid[_cells_of(placed)])
         _panel(axes, placed.panel)
         names = axes.get_legend_handles_labels()
         for handle, name in zip(*names, strict=True):
             handles.setdefault(name, handle)
-    canvas.suptitle(figure.title, fontsize=11, fontweight="bold")
-    canvas.supxlabel(fill(figure.caption, 190), fontsize=7.5, color="#5c6672", x=0.01, ha="left")
+    pictures.suptitle(figure.title, fontsize=11, fontweight="bold")
+    foot.text(0.01, 0.9, fill(figure.caption, 190), fontsize=7.5, color="#5c6672", va="top")
     if handles:
-        canvas.legend(
+        pictures.legend(
             handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles),
             fontsize=8, frameon=False, markerscale=3,
         )  # fmt: skip
