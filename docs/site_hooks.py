@@ -64,7 +64,7 @@ def _target(page: str, link: str) -> str:
 def _example_list() -> str:
     lines = ["# Examples", "", "Files that run as they are, from the folder `examples`.", ""]
     for path in sorted((ROOT / "examples").rglob("*")):
-        if path.suffix not in (".toml", ".md", ".py", ".csv"):
+        if path.suffix not in (".toml", ".md", ".py", ".csv", ".ipynb"):
             continue
         name = path.relative_to(ROOT / "examples").as_posix()
         first = path.read_text("utf-8").splitlines()[0]
@@ -113,7 +113,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     wanted |= {
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / "examples").rglob("*")
-        if path.suffix in (".toml", ".md", ".py", ".csv")
+        if path.suffix in (".toml", ".md", ".py", ".csv", ".ipynb")
     }
     pages = [file.src_uri for file in files.documentation_pages()] + sorted(wanted)
     for page in pages:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import re
 import shutil
@@ -78,6 +79,21 @@ def test_page_runs_from_top_to_bottom(page: Path, folder: Path) -> None:
             _run_in_shell(match[2], folder)
         elif match[1] == "python":
             exec(compile(match[2], page.name, "exec"), names)
+
+
+@pytest.mark.parametrize(
+    "notebook", sorted((ROOT / "examples").glob("*.ipynb")), ids=lambda p: p.stem
+)
+def test_notebook_runs_beside_its_files(
+    notebook: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder / "examples")
+    cells = json.loads(notebook.read_text("utf-8"))["cells"]
+    names: dict[str, object] = {"__name__": "notebook"}
+    for cell in cells:
+        if cell["cell_type"] == "code":
+            assert not cell["outputs"], "a notebook is kept without its outputs"
+            exec(compile("".join(cell["source"]), notebook.name, "exec"), names)
 
 
 @pytest.mark.parametrize("code", _blocks("make"))
