@@ -84,7 +84,8 @@ def _write(figure: Figure, path: Path) -> Path:
     canvas = Canvas(figsize=(WIDTH / 100, height / 100), layout="constrained")
     FigureCanvasAgg(canvas)
     # A part of its own for the caption, which the legend would else be drawn over.
-    pictures, foot = canvas.subfigures(2, 1, height_ratios=[height - CAPTION, CAPTION])
+    parts = canvas.add_gridspec(2, 1, height_ratios=[height - CAPTION, CAPTION])
+    pictures, foot = canvas.add_subfigure(parts[0]), canvas.add_subfigure(parts[1])
     grid = pictures.add_gridspec(figure.rows, figure.columns)
     handles: dict[str, Any] = {}
     for placed in figure.panels:
