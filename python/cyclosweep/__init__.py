@@ -24,6 +24,7 @@ from cyclosweep.sweep.study import Objective, Study
 from cyclosweep.sweep.tolerances import Tolerances
 
 if _TYPE_CHECKING:
+    from cyclosweep import cad as cad
     from cyclosweep.choose.best import BestVariants, best_variants
     from cyclosweep.choose.comparison import Comparison, compare
     from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
@@ -69,6 +70,7 @@ _LATER = {
     "validate": "reference.rows",
 }
 _FOLDERS = {
+    "cad",
     "choose",
     "diagnosis",
     "explore",

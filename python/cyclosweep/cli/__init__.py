@@ -14,6 +14,7 @@ from cyclosweep.cli import (
     diagnose,
     dynamics,
     evaluate,
+    export,
     inspect,
     new,
     pick,
@@ -53,6 +54,7 @@ app.command()(torque_twist.torque_twist)
 app.command()(plot.plot)
 app.command()(inspect.inspect)
 app.command()(diagnose.diagnose)
+app.command()(export.export)
 app.command()(dynamics.modes)
 app.command()(dynamics.shock)
 app.command()(challenge.challenge)
