@@ -11,13 +11,14 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
-import ezdxf
-import ezdxf.path
 import numpy as np
 import numpy.typing as npt
 import polars as pl
 import pytest
 import trimesh
+from ezdxf import path as dxf_path
+from ezdxf import units
+from ezdxf.filemanagement import readfile
 from scipy.spatial import cKDTree
 
 import cyclosweep as cs
@@ -86,7 +87,7 @@ def distance_from_profile(profile: cs.cad.DiscProfile, points: Reals) -> Reals:
 
 def outline_of(path: Path, layer: str) -> Any:
     """The only polyline on a layer of a DXF file."""
-    [line] = ezdxf.readfile(path).modelspace().query(f"LWPOLYLINE[layer=='{layer}']")
+    [line] = readfile(path).modelspace().query(f"LWPOLYLINE[layer=='{layer}']")
     return line
 
 
@@ -241,7 +242,7 @@ def test_without_modification_every_ring_pin_touches(drive: cs.Drive) -> None:
 
 def test_holes_stand_about_the_pins_at_the_eccentricity(tmp_path: Path) -> None:
     cs.cad.write_dxf(FAT, tmp_path / "drive.dxf")
-    space = ezdxf.readfile(tmp_path / "drive.dxf").modelspace()
+    space = readfile(tmp_path / "drive.dxf").modelspace()
     centres = {
         layer: np.array(
             [
@@ -281,16 +282,16 @@ def test_a_disc_that_is_the_first_one_turned_is_said_to_be(drive: cs.Drive) -> N
 @drives
 def test_the_dxf_is_sound_and_names_its_numbers(drive: cs.Drive, tmp_path: Path) -> None:
     cs.cad.write_dxf(drive, tmp_path / "drive.dxf")
-    document = ezdxf.readfile(tmp_path / "drive.dxf")
+    document = readfile(tmp_path / "drive.dxf")
     audit = document.audit()
     assert (audit.errors, audit.fixes) == ([], [])
-    assert document.units == ezdxf.units.MM
-    lines = document.modelspace().query("LWPOLYLINE")
+    assert document.units == units.MM
+    lines: list[Any] = list(document.modelspace().query("LWPOLYLINE"))
     assert sorted(line.dxf.layer for line in lines) == [
         *(f"DISC_{disc + 1}" for disc in range(drive.disc_count)), "HOUSING",
     ]  # fmt: skip
     assert all(line.closed for line in lines)
-    assert all(len(path) > 10 for path in map(ezdxf.path.make_path, lines))
+    assert all(len(path) > 10 for path in map(dxf_path.make_path, lines))
     texts = [text.dxf.text for text in document.modelspace().query("TEXT")]
     assert f"ratio {drive.ratio}" in texts[0]
     assert f"eccentricity {drive.eccentricity_mm:g}" in texts[0]

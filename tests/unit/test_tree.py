@@ -34,6 +34,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "sweep": DESIGN,
     "explore": DESIGN | {"sweep"},
     "choose": DESIGN | {"sweep", "explore"},
+    "cad": DESIGN,
     "recording": DESIGN,
     "simulation": DESIGN | {"recording"},
     "result": SIMULATION,
@@ -42,8 +43,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "reference": DIAGNOSIS | {"sweep"},
     "figures": DESIGN | {"sweep", "explore"},
     "study_report": DESIGN | {"sweep", "explore", "choose", "figures"},
-    "cli": REFERENCE | {"figures", "study_report", "__init__"},
-    "__init__": REFERENCE | {"_moved", "figures", "study_report"},
+    "cli": REFERENCE | {"cad", "figures", "study_report", "__init__"},
+    "__init__": REFERENCE | {"_moved", "cad", "figures", "study_report"},
     "__main__": {"cli"},
 }
 

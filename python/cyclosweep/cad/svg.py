@@ -57,9 +57,10 @@ def svg_text(drawn: Drawing) -> str:
     parts = [
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * edge:.4f}mm" height="{height:.4f}mm" '
-        f'viewBox="{-edge:.4f} {-edge:.4f} {2 * edge:.4f} {height:.4f}" role="img">\n'
+        f'viewBox="{-edge:.4f} {-edge:.4f} {2 * edge:.4f} {height:.4f}" role="img" '
+        'style="background:#fff">\n'
         f"<title>{escape(drawn.name)}</title>\n<desc>{escape(' / '.join(drawn.title))}</desc>\n"
-        f'<g transform="scale(1 -1)" fill="none" stroke-width="{radius / 500:.4g}">\n'
+        f'<g transform="scale(1 -1)" fill="none" stroke-width="{radius / 320:.4g}">\n'
     ]
     for layer in drawn.layers[:-2]:
         parts.append(f'<g id="{layer}" stroke="{_colour(layer)}">\n')
@@ -67,7 +68,7 @@ def svg_text(drawn: Drawing) -> str:
         parts.append("</g>\n")
     dash = f"{radius / 40:.4g} {radius / 150:.4g} {radius / 200:.4g} {radius / 150:.4g}"
     parts.append(
-        f'<g id="{CENTRES}" stroke="{_CENTRE}" stroke-width="{radius / 1000:.4g}" '
+        f'<g id="{CENTRES}" stroke="{_CENTRE}" stroke-width="{radius / 700:.4g}" '
         f'stroke-dasharray="{dash}">\n'
     )
     parts += [_shape(circle) for circle in drawn.pitch_circles]
