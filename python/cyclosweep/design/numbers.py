@@ -92,10 +92,12 @@ def finite_number(name: str, value: object) -> float:
     >>> finite_number("crank_rad", np.float32(0.5))
     0.5
     """
-    number = real_numbers(name, [value])[0]
-    if not math.isfinite(number):
-        raise InputError(f"{name}: found {number:g}, expected a finite number")
-    return number
+    given = plain(value)
+    if isinstance(given, (int, float)) and not isinstance(given, bool):
+        number = real_numbers(name, [given])[0]
+        if math.isfinite(number):
+            return number
+    raise InputError(f"{name}: found {given!r}, expected a finite number")
 
 
 def whole_number(name: str, value: object, *, least: int = 0, most: int | None = None) -> int:
