@@ -207,6 +207,18 @@ def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
+def test_why_pieces_cannot_be_used_is_said(tmp_path: Path) -> None:
+    """A first segment as thick as the next one: half of the pieces are thicker."""
+    space = cs.Space.grid(cs.Drive.reference_87(), shaft_1_diameter_mm=[54.0, 55.0])
+    cs.sink(space, tmp_path / "s", objective=cs.Objective("twist_1tn_deg"))
+    facts = gather(tmp_path / "s")
+    by_variant = {each.variant: each for each in facts.robust}
+    assert by_variant[1].refused == "shaft_step_not_ascending"
+    assert by_variant[1].usable == pytest.approx(0.5, abs=0.01)
+    page = cs.report_study(tmp_path / "s", tmp_path / "r.html").read_text("utf-8")
+    assert "shaft_step_not_ascending" in page.replace("<wbr>", "")
+
+
 def test_command_with_objectives_limits_variants_and_tolerances(folder: Path) -> None:
     here = folder.parent
     (here / "tol.toml").write_text("[tolerances]\noutput_pin_diameter_mm = 0.02\n")

@@ -44,12 +44,15 @@ class Robust:
         5th, 50th and 95th percentile of each objective over the pieces that can be used.
     usable : float
         Share of the pieces that can be built and keep the study's limits.
+    refused : str
+        Status of most of the other pieces; empty where all are usable.
     """
 
     variant: int
     nominal: dict[str, float]
     percentiles: dict[str, tuple[float, float, float]]
     usable: float
+    refused: str
 
 
 def spread(front: pl.DataFrame, most: int) -> pl.DataFrame:
@@ -159,12 +162,14 @@ def robust_variants(
         )
         rows = open_table(pieces)
         values = [number(o.column, rows.schema, where="objective") for o in objectives]
-        table = (
+        status = pl.col("status").cast(pl.String)
+        whole = (
             scan(pieces)
-            .filter(pl.col("status").cast(pl.String) == "ok")
-            .select(value.alias(o.column) for o, value in zip(objectives, values, strict=True))
+            .select(status, *(v.alias(o.column) for o, v in zip(objectives, values, strict=True)))
             .collect()
         )
+        table = whole.filter(pl.col("status") == "ok")
+        refused = whole.filter(pl.col("status") != "ok")["status"].mode().sort()
         percentiles = {o.column: _percentiles(table[o.column]) for o in objectives}
         nominal = pl.DataFrame([row]).cast({"status": pl.String})
         at = nominal.select(v.alias(o.column) for o, v in zip(objectives, values, strict=True))
@@ -174,6 +179,7 @@ def robust_variants(
                 {o.column: float(at[o.column][0]) for o in objectives},
                 percentiles,
                 table.height / len(pieces),
+                str(refused[0]) if len(refused) else "",
             )
         )
     first = objectives[0]

@@ -248,7 +248,7 @@ def _robust(facts: StudyFacts) -> str:
         for each in facts.objectives:
             cells.append(number(found.nominal[each.column]))
             cells += [number(value) for value in found.percentiles[each.column]]
-        rows.append((*cells, f"{found.usable:.1%}"))
+        rows.append((*cells, f"{found.usable:.1%}", found.refused))
     given = ", ".join(
         f"{name} {_deviation(held)}" for name, held in facts.tolerances.inputs.items()
     )
@@ -257,7 +257,16 @@ def _robust(facts: StudyFacts) -> str:
         f"{given}. Percentiles of the pieces that can be built and keep the limits. The first row "
         "is the candidate whose worst pieces are best."
     )
-    return table_html(Table("", (*columns, "usable"), tuple(rows), note, lead=frozenset({0})))
+    return table_html(
+        Table(
+            "",
+            (*columns, "usable", "most of the others"),
+            tuple(rows),
+            note,
+            words=frozenset({len(columns) + 1}),
+            lead=frozenset({0}),
+        )
+    )
 
 
 def _deviation(held: object) -> str:

@@ -132,5 +132,6 @@ def _robust(facts: StudyFacts) -> list[str]:
         f"Made within {'assumed ' if facts.are_assumed else ''}tolerances, variant {best.variant} "
         f"stays the best of {len(facts.robust)} candidates: 95 of 100 pieces keep {first.column} "
         f"{'above' if first.maximise else 'below'} {with_unit(first.column, bad)}, and "
-        f"{best.usable:.1%} are usable."
+        f"{best.usable:.1%} are usable"
+        + (f" (most of the others: {best.refused})." if best.refused else ".")
     ]
