@@ -15,11 +15,15 @@ from cyclosweep.cli import (
     dynamics,
     evaluate,
     export,
+    feasible,
     inspect,
+    nearest,
     new,
     pick,
     plot,
     report,
+    robust,
+    sensitivity,
     show,
     simulate,
     sweep,
@@ -48,6 +52,10 @@ app.command()(new.new)
 app.command()(show.show)
 app.command()(best.best)
 app.command()(pick.pick)
+app.command()(nearest.nearest)
+app.command()(feasible.feasible)
+app.command()(sensitivity.sensitivity)
+app.command()(robust.robust)
 app.command()(report.report)
 app.command()(simulate.simulate)
 app.command()(torque_twist.torque_twist)

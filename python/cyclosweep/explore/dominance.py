@@ -12,7 +12,7 @@ _Flags = npt.NDArray[np.bool_]
 
 _BLOCK = 2**22
 """Pairs of points compared at a time: 4 MB of flags."""
-_GUARDS = 64
+_GUARDS = 32
 """Points of the front that every new point meets first; they reject most of them."""
 _LEAST_WAITING = 20_000
 """New points that are gathered before they meet the whole front."""
@@ -114,8 +114,14 @@ class Front:
             What identifies each.
         """
         for guard in self._guards:
-            beaten = (points >= guard).all(axis=1) & (points > guard).any(axis=1)
-            points, rows = points[~beaten], rows[~beaten]
+            # Column by column: sums over short rows take ten times as long.
+            not_below, above = np.ones(len(points), bool), np.zeros(len(points), bool)
+            for column, least in zip(points.T, guard, strict=True):
+                not_below &= column >= least
+                above |= column > least
+            left = np.flatnonzero(~(not_below & above))
+            if len(left) < len(points):
+                points, rows = points[left], rows[left]
         self._waiting.append((points, rows))
         self._waiting_count += len(rows)
         if len(self._guards) == 0 or self._waiting_count >= max(_LEAST_WAITING, len(self._rows)):

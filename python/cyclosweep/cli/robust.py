@@ -1,0 +1,151 @@
+"""`cyclosweep robust`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cyclosweep.cli.exploring import Limits, OutTable, Rows, check_out, plain_rows, write_out
+from cyclosweep.cli.frames import titled
+from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
+from cyclosweep.errors import InputError
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from cyclosweep.design.drive import Drive
+    from cyclosweep.sweep.objective import Objective
+    from cyclosweep.sweep.study import StudyModel
+
+_TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsb", ".ods", ".parquet")
+
+
+def robust(
+    designs: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="DESIGNS...", help="Folder of a sweep, a table of designs, or drive files."
+        ),
+    ],
+    tolerances: Annotated[
+        Path, typer.Option("--tolerances", metavar="FILE.toml", help="How far pieces deviate.")
+    ],
+    minimise: Annotated[
+        str | None, typer.Option("--minimise", metavar="EXPR", help="What is to stay small.")
+    ] = None,
+    maximise: Annotated[
+        str | None, typer.Option("--maximise", metavar="EXPR", help="What is to stay great.")
+    ] = None,
+    limit: Limits = None,
+    percentile: Annotated[
+        float, typer.Option("--percentile", help="Pieces [%] at least as good as the figure.")
+    ] = 95.0,
+    candidates: Annotated[
+        int, typer.Option("--candidates", min=1, help="Best variants of a sweep that are tried.")
+    ] = 100,
+    pieces: Annotated[int, typer.Option("--pieces", min=1, help="Pieces of each design.")] = 1024,
+    drive: Annotated[
+        str | None, typer.Option("--drive", help="Drive that a table's columns change.")
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the deviations.")] = 0,
+    rows: Rows = 10,
+    out: OutTable = None,
+    as_json: AsJson = False,
+) -> None:
+    """Order designs by how good they stay within manufacturing tolerances.
+
+    Of each design so many pieces are evaluated; the figure is the percentile at the bad end. A
+    design of which more than 1 % of the pieces cannot be built or miss a limit comes last.
+    """
+    from cyclosweep.explore import robust_choice
+    from cyclosweep.sweep.tolerances import Tolerances
+
+    check_out(out)
+    spread = Tolerances.from_toml(tolerances)
+    with interruptible("nothing was written"):
+        wanted, base, table, model = _designs(designs, minimise, maximise, limit, candidates, drive)
+        found = robust_choice(
+            table,
+            spread,
+            wanted,
+            percentile=percentile,
+            limits=limit,
+            drive=base,
+            count=pieces,
+            seed=seed,
+            model=model,
+        )
+    write_out(found, out)
+    if as_json:
+        print_json(
+            {
+                "schema": "cyclosweep.robust/1",
+                "objective": str(wanted),
+                "tolerances": list(spread.names),
+                "pieces": pieces,
+                "count": found.height,
+                "designs": plain_rows(found.head(rows)),
+            }
+        )
+        return
+    names = [name for name in ("drive", "variant") if name in found.columns]
+    figures = [name for name in found.columns if name.startswith(f"{wanted.column}_")]
+    columns = ["rank", "rank_nominal", *names, "share_ok", *dict.fromkeys(figures)]
+    print_tables([titled(str(wanted), found.select(columns).head(rows))])
+    more = f", the first {rows} shown" if found.height > rows else ""
+    written = f"; written: {out}" if out is not None else ""
+    print(f"{found.height:,} designs, {pieces:,} pieces of each{more}{written}")
+
+
+def _designs(
+    given: list[str],
+    minimise: str | None,
+    maximise: str | None,
+    limit: list[str] | None,
+    candidates: int,
+    drive: str | None,
+) -> tuple[Objective, Drive | None, pl.DataFrame | list[Drive], StudyModel | None]:
+    """What is to be small or great, and the designs as drawn."""
+    from cyclosweep.choose.best import best_variants
+    from cyclosweep.design.drive import Drive
+    from cyclosweep.sweep.stored import open_study
+    from cyclosweep.sweep.table_files import read_table
+
+    wanted = _objective(minimise, maximise)
+    first = Path(given[0])
+    if first.is_dir() or first.suffix.lower() in _TABLES:
+        if len(given) > 1:
+            raise InputError("expected one folder or table, or several drive files")
+        if not first.is_dir():
+            base = Drive.load(drive or "reference-87")
+            return _stated(wanted), base, read_table(first), None
+        if drive is not None:
+            raise InputError("--drive: not for the folder of a sweep, which has its own")
+        stored = open_study(first)
+        objective = wanted or stored.objective
+        best = best_variants(first, _stated(objective), limit, rows=candidates)
+        if best.table.is_empty():
+            raise InputError(f"{first}: no feasible variant within the limits")
+        table = best.table.select("variant", *stored.axes)
+        return _stated(objective), stored.drive, table, stored.model
+    if drive is not None:
+        raise InputError("--drive: only for a table of designs")
+    return _stated(wanted), None, [Drive.load(path) for path in given], None
+
+
+def _objective(minimise: str | None, maximise: str | None) -> Objective | None:
+    from cyclosweep.sweep.objective import Objective
+
+    if minimise is not None and maximise is not None:
+        raise InputError("found --minimise and --maximise, expected one of them")
+    if minimise is None and maximise is None:
+        return None
+    return Objective(minimise or maximise or "", maximise is not None)
+
+
+def _stated(objective: Objective | None) -> Objective:
+    if objective is None:
+        raise InputError("no objective, expected --minimise or --maximise")
+    return objective

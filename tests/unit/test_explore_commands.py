@@ -1,0 +1,109 @@
+"""The commands for exploring a study: what they print, write and refuse."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.cli import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+STUDY = """
+[sample]
+method = "sobol"
+count = 512
+[axes]
+eccentricity_mm = { from = 0.3, to = 1.0 }
+output_pin_diameter_mm = { from = 12, to = 22 }
+[objective]
+minimise = "twist_1tn_deg"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a study file and its sweep."""
+    (tmp_path / "study.toml").write_text(STUDY)
+    cs.sink(cs.Study.from_toml(tmp_path / "study.toml"), tmp_path / "Maße 1")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["cyclosweep", *arguments])
+    with pytest.raises(SystemExit) as caught:
+        main()
+    return int(caught.value.code or 0)
+
+
+TOLERANCES = str(EXAMPLES / "tolerances-87.toml")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "schema"),
+    [
+        (["nearest", "Maße 1", "--target", "twist_1tn_deg=60", "--rows", "3"], "nearest"),
+        (["feasible", "Maße 1", "--limit", "hole_web_mm > 3"], "feasible"),
+        (["feasible", "study.toml"], "feasible"),
+        (["sensitivity", "Maße 1", "--results", "twist_1tn_deg"], "sensitivity"),
+        (["sensitivity", "study.toml", "--results", "hole_web_mm", "--most-draws", "64"],
+         "sensitivity"),
+        (["robust", "Maße 1", "--tolerances", TOLERANCES, "--pieces", "64", "--candidates", "5"],
+         "robust"),
+        (["robust", "reference-87", "--tolerances", TOLERANCES, "--pieces", "64",
+          "--maximise", "hole_web_mm"], "robust"),
+        (["robust", "designs.csv", "--tolerances", TOLERANCES, "--pieces", "64",
+          "--minimise", "twist_1tn_deg"], "robust"),
+    ],
+)  # fmt: skip
+def test_each_prints_a_table_or_json_and_writes_a_table(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    schema: str,
+) -> None:
+    (folder / "designs.csv").write_text("label,eccentricity_mm\na,0.5\nb,0.6\n")
+    if arguments[:2] == ["sensitivity", "study.toml"]:
+        pytest.importorskip("SALib")
+    assert run(monkeypatch, *arguments) == 0
+    assert len(capsys.readouterr().out.splitlines()) > 4
+    assert run(monkeypatch, *arguments, "--json", "--out", "table.csv") == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["schema"] == f"cyclosweep.{schema}/1"
+    assert pl.read_csv("table.csv").height >= 1
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "Maße 1", "designs.csv", "study.toml", "table.csv",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nearest", "Maße 1", "--target", "twist"], "--target: found 'twist', expected"),
+        (["nearest", "Maße 1", "--target", "twist_1=3"], "no column twist_1"),
+        (["feasible", "none"], "none"),
+        (["feasible", "Maße 1", "--out", "x.doc"], "x.doc"),
+        (["feasible", "Maße 1", "--out", "no/x.csv"], "--out: no folder no"),
+        (["sensitivity", "study.toml", "--limit", "hole_web_mm > 3"], "--limit: for the folder"),
+        (["sensitivity", "study.toml", "--results", "twist"], "results: no column twist"),
+        (["robust", "reference-87", "--tolerances", TOLERANCES], "no objective"),
+        (["robust", "Maße 1", "--tolerances", "none.toml"], "none.toml"),
+        (["robust", "a.csv", "b.csv", "--tolerances", TOLERANCES], "expected one folder"),
+    ],
+)
+@pytest.mark.usefixtures("folder")
+def test_bad_input_is_one_line_and_status_2(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    message: str,
+) -> None:
+    assert run(monkeypatch, *arguments) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
