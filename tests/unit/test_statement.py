@@ -107,6 +107,29 @@ def test_what_remains_is_described_and_a_drift_takes_the_place_of_a_calibration(
     assert "Calibration" not in drifting
 
 
+def test_a_repair_that_helps_is_said_where_its_law_may_not_be_named() -> None:
+    stood_in = replace(
+        IDENTIFIED.repaired, rmse_deg=0.48, stand_ins=("friction_hysteresis", "contact_stiffening")
+    )
+    unknown = replace(
+        IDENTIFIED,
+        verdict="UNKNOWN_PHYSICS",
+        effects=(),
+        baseline=Baseline(rmse_deg=4.0, holdout_rmse_deg=0.0),
+        repaired=stood_in,
+    )
+    text = statement_of(unknown)
+    assert "behaves like friction hysteresis and contact stiffening, whose law is not" in text
+    assert "removes 98.6 % of the mismatch (4 deg to 0.48 deg" in text
+    left_out = replace(
+        unknown,
+        baseline=Baseline(rmse_deg=4.0, holdout_rmse_deg=2.0),
+        repaired=replace(stood_in, holdout_rmse_deg=1.9),
+    )
+    assert "behaves like" not in statement_of(left_out)
+    assert "behaves like" not in statement_of(replace(unknown, repaired=IDENTIFIED.repaired))
+
+
 def test_forecasts_have_a_sentence_of_their_own() -> None:
     block = HeldOutBlock(block="run 3", before_deg=1.5, after_deg=0.25)
     assert "forecast" not in statement_of(replace(IDENTIFIED, repaired=with_block(block)))

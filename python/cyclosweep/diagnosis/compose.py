@@ -311,6 +311,7 @@ def _repair(repaired: RepairedModel, verified: Verification) -> Repair:
         holdout_rmse_deg=finite(held.after_deg),
         holdout=held.label,
         blocks=held.blocks,
+        stand_ins=repaired.stand_ins,
     )
 
 

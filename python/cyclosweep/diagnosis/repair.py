@@ -32,6 +32,8 @@ class RepairedModel:
         Calibrated parameters and error on the fitted data, without and with the effects.
     before_deg, after_deg : ndarray of float, shape (samples,)
         Twist of every sample of the recording by both [deg].
+    stand_ins : tuple of str
+        Effects of the model whose laws were not found to hold.
     """
 
     model: Model
@@ -39,6 +41,7 @@ class RepairedModel:
     after: Baseline
     before_deg: Floats
     after_deg: Floats
+    stand_ins: tuple[str, ...] = ()
 
 
 def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
@@ -77,6 +80,7 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
         ),
         before_deg=_at_samples(problem, before.angle_deg, base),
         after_deg=_at_samples(problem, after.angle_deg, fitted),
+        stand_ins=tuple(check.name for check in unnamed),
     )
 
 

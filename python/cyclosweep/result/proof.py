@@ -67,6 +67,9 @@ class Repair(Part):
     """What was held out."""
     blocks: tuple[HeldOutBlock, ...] = ()
     """Errors block by block."""
+    stand_ins: tuple[str, ...] = ()
+    """Effects of the repaired model that are not named: their laws were not found to hold, and
+    stand in for others of their class."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -11,6 +11,8 @@ from cyclosweep.result.proof import HeldOutBlock
 
 SPREAD = 3
 """Classes of behaviour from which something belongs to none of them."""
+MOST = 0.5
+"""Share of the mismatch from which a model removes most of it."""
 WORTH_SAYING = 0.02
 """Share that a law misses inside its class from which the statement says so."""
 
@@ -145,7 +147,31 @@ def _unknown(answer: Answer) -> str:
         )
     return (
         f"Unknown physics:{known} something without a name in the vocabulary remains{remains}."
-        f"{_classes(answer)} It shows most at {place_of(answer.mismatch.regions)}. {calibration}"
+        f"{_classes(answer)}{_stand_ins(answer)} It shows most at "
+        f"{place_of(answer.mismatch.regions)}. {calibration}"
+    )
+
+
+def _stand_ins(answer: Answer) -> str:
+    """Say what a repair removes whose laws may not be named, where that is most of the mismatch."""
+    laws = answer.repaired.stand_ins
+    if not laws:
+        return ""
+    errors, on = (answer.baseline.rmse_deg, answer.repaired.rmse_deg), "of the mismatch"
+    left_out = (answer.baseline.holdout_rmse_deg, answer.repaired.holdout_rmse_deg)
+    if left_out[0]:
+        errors, on = left_out, "of the mismatch on data not used"
+    before, after = errors
+    if not before or after is None or 1.0 - (after / before) ** 2 < MOST:
+        return ""
+    others = [effect.name for effect in answer.effects if effect.name not in laws]
+    beside = f" beside {listed(others)}" if others else ""
+    stand_in = "a stand-in" if len(laws) == 1 else "stand-ins"
+    removed = f"{100 * (1.0 - (after / before) ** 2):.3g} %"
+    return (
+        f" It behaves like {listed(laws)}, whose law is not decided: the repaired model, with "
+        f"{stand_in} of that name{beside}, removes {removed} {on} ({degrees(before)} to "
+        f"{degrees(after)})."
     )
 
 

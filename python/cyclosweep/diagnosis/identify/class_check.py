@@ -109,7 +109,7 @@ class ShownClass:
     visibility: float
 
 
-def check_laws(fitted: FittedStructure) -> tuple[LawCheck, ...]:
+def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> tuple[LawCheck, ...]:
     """Compare the laws of a structure with the flexible groups of all classes.
 
     Laws that share a class are compared with it together: two laws make any curve.
@@ -118,15 +118,19 @@ def check_laws(fitted: FittedStructure) -> tuple[LawCheck, ...]:
     ----------
     fitted : FittedStructure
         The structure.
+    stand_ins : sequence of LawCheck
+        Laws of the structure that were found not to hold. They stay in it, and the others are
+        compared beside the whole of their classes, so that no law is named for their errors.
 
     Returns
     -------
     tuple of LawCheck
-        One for each term that has the law of an effect.
+        One for each other term that has the law of an effect.
     """
+    withdrawn = {each.name for each in stand_ins}
     groups: list[tuple[list[int], set[str]]] = []
     for index, term in enumerate(fitted.terms):
-        if term.effect is None:
+        if term.effect is None or term.name in withdrawn:
             continue
         indices, own = [index], set(own_classes(term))
         for other in [each for each in groups if each[1] & own]:
@@ -136,7 +140,10 @@ def check_laws(fitted: FittedStructure) -> tuple[LawCheck, ...]:
     if not groups:
         return ()
     classes = ClassColumns.of(fitted)
-    found = [_check(fitted, classes, indices, own) for indices, own in groups]
+    taken = {each.behaviour for each in stand_ins if each.behaviour}
+    for term in fitted.terms:
+        taken |= set(own_classes(term)) if term.name in withdrawn else set()
+    found = [_check(fitted, classes, indices, own, taken - own) for indices, own in groups]
     return tuple(check for group in found for check in group)
 
 
@@ -218,6 +225,7 @@ def _check(
     classes: ClassColumns,
     indices: Sequence[int],
     own: Collection[str],
+    taken: Collection[str] = (),
 ) -> list[LawCheck]:
     """Compare laws of the same class, together, with the flexible groups of all classes.
 
@@ -231,6 +239,8 @@ def _check(
         Which of the structure's terms.
     own : collection of str
         Their classes.
+    taken : collection of str
+        Classes that are fitted whole beside them.
 
     Returns
     -------
@@ -243,22 +253,29 @@ def _check(
     charged = (amplitudes, len(places) - amplitudes)
     others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
     known = orthonormal(fitted.sensitivity[:, others], 1e-6)
+    tangent, whole_residual = fitted.tangent, classes.scale * fitted.residual
+    for name in sorted(set(taken) & set(classes.columns)):
+        known, tangent = classes.beside(known, name), classes.beside(tangent, name)
+        whole_residual = whole_residual - tangent @ (tangent.T @ whole_residual)
     single = [
         classes.scale * fitted.whitened_contribution(index, fitted.noise) for index in indices
     ]
     law = np.sum(single, axis=0)
     cancels = _cancel(fitted, single)
     law = law - known @ (known.T @ law)
-    whole_residual = classes.scale * fitted.residual
     residual = whole_residual + law
     residual = residual - known @ (known.T @ residual)
     by_law = _law_evidence(residual, law, charged, classes.freedom)
-    every = {name: classes.evidence(name, known, residual) for name in classes.columns}
+    every = {
+        name: classes.evidence(name, known, residual)
+        for name in classes.columns
+        if name not in taken
+    }
     family = [name for name in every if name in own]
     rivals = [name for name in every if name not in own]
     by_law -= FURTHER_LAW * (len(indices) - 1)
     deficit = max((every[name].evidence for name in family), default=-np.inf) - by_law
-    left = [classes.evidence(k, fitted.tangent, whole_residual) for k in family]
+    left = [classes.evidence(k, tangent, whole_residual) for k in family]
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))
     replaced = False

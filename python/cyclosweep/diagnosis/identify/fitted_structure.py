@@ -7,7 +7,7 @@ the flank being predicted.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -181,6 +181,20 @@ class FittedStructure(ABC):
 
         Its size then has no derivative by single parameters.
         """
+
+    def only(self, names: Collection[str]) -> "FittedStructure | None":
+        """Fit some of the terms alone, to all rows; None where rows in contact were fitted.
+
+        Parameters
+        ----------
+        names : collection of str
+            Names of the terms.
+
+        Returns
+        -------
+        FittedStructure or None
+        """
+        return None
 
     @abstractmethod
     def model(self, drive: str) -> Model:

@@ -50,9 +50,15 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
         joint = _fitted(search, noise, begun)
         if joint is not None and (best is None or joint.rmse_deg < best.rmse_deg):
             best = joint
-    if best is None:
+    # One friction has few optima, two and their presliding many: where a joint fit ended in a bad
+    # one, either friction alone is better.
+    offered = [] if best is None else [_prune(search, noise, best)]
+    for term, _ in usual_effects(search, *STARTS[0]):
+        alone = _fitted(search, noise, [term]) if term.slips else None
+        offered += [] if alone is None else [alone]
+    if not offered:
         return ()
-    best = _prune(search, noise, best)
+    best = min(offered, key=_cost)
     if not any(term.slips for term in best.terms):
         return ()
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2

@@ -44,6 +44,9 @@ class Naming:
 def names_that_hold(search: Search, accepted: Candidate) -> Naming:
     """Withdraw laws that do not stand for their class, until those that are left do.
 
+    Fitted to rows in contact, the laws that are left are fitted again alone. A simulation of whole
+    loops keeps the others as stand-ins: without them friction would take their place.
+
     Parameters
     ----------
     search : Search
@@ -55,6 +58,8 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
     -------
     Naming
     """
+    if accepted.fit.independent_share < 1.0:
+        return _beside_stand_ins(search, accepted)
     part, withdrawn = accepted, list[LawCheck]()
     while True:
         checks = check_laws(part.fit)
@@ -65,3 +70,31 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
         names = {check.name for check in checks if check.holds}
         terms = tuple(term for term in part.fit.terms if term.name in names)
         part = search.refit(terms) if terms else search.baseline
+
+
+def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
+    """Withdraw laws of a simulation, each judged beside the whole classes of those before it.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    accepted : Candidate
+        Structure fitted to whole loops.
+
+    Returns
+    -------
+    Naming
+    """
+    withdrawn = list[LawCheck]()
+    while True:
+        checks = check_laws(accepted.fit, withdrawn)
+        gone = [check for check in checks if not check.holds]
+        if not gone:
+            break
+        withdrawn += gone
+    part = accepted
+    if withdrawn:
+        alone = accepted.fit.only({check.name for check in checks}) if checks else None
+        part = search.baseline if alone is None else search.looked_through(alone)
+    return Naming(part, (*checks, *withdrawn), shown_classes(part.fit))

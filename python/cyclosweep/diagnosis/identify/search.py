@@ -182,6 +182,10 @@ class Search:
         """Fit a structure that was not visited on its own."""
         return self._candidate(fit(self.problem, self.noise, terms, self.baseline.fit), 0.0, 0.0)
 
+    def looked_through(self, fitted: FittedStructure) -> Candidate:
+        """Look for hypotheses in the residual of a structure that was fitted elsewhere."""
+        return self._candidate(fitted, 0.0, 0.0)
+
     def extend(self, parent: Candidate, hypothesis: str) -> Candidate | None:
         """Add one hypothesis to a structure and refit.
 

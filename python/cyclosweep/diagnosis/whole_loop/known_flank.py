@@ -4,7 +4,7 @@ The tables of a diagnosis (sizes, bounds, places) rest on rows in contact and on
 recording shows. This evaluates the model of a `Forecast` there, without fitting anything anew.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,11 +22,14 @@ from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthon
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
 from cyclosweep.diagnosis.whole_loop.findings import findings
-from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, refit
+from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, fit_forecast, refit
 from cyclosweep.diagnosis.whole_loop.run_comparison import steadiness
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.simulate import Model, settle
+
+FEW_STEPS = 5
+"""Iterations of the fit of a part of a simulation, which starts from the whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +81,25 @@ class WholeLoopFit(FittedStructure):
     def follows_path(self, index: int) -> bool:
         """All terms: the flank in contact itself follows from the path of the shaft."""
         return True
+
+    def only(self, names: Collection[str]) -> "WholeLoopFit":
+        """Fit some of the effects alone, as a simulation, to all rows.
+
+        Parameters
+        ----------
+        names : collection of str
+            Names of the effects.
+
+        Returns
+        -------
+        WholeLoopFit
+        """
+        whole = self.forecast
+        kept = [k for k, term in enumerate(self.terms) if term.name in names]
+        model = replace(whole.model, effects=tuple(whole.model.effects[k] for k in kept))
+        terms = tuple(whole.terms[k] for k in kept)
+        alone = fit_forecast(self.problem, model, terms, zero=whole.has_zero, most=FEW_STEPS)
+        return whole_loop_fit(alone, self.before, self.noise)
 
     def model(self, drive: str) -> Model:
         """Return the simulation that was fitted, for a drive of this name."""

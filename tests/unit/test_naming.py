@@ -1,0 +1,77 @@
+"""Which laws of a simulation of whole loops may be named where another of them may not."""
+
+from collections.abc import Sequence
+
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.calibrate import calibrate
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import ODD_CURVE
+from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify import naming
+from cyclosweep.diagnosis.identify.class_check import LawCheck, check_laws
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
+from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, whole_loop_fit
+from cyclosweep.simulation import effects
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import COMPLIANCE, friction, long_recording
+
+NAMES = ("friction_hysteresis", "contact_stiffening")
+WITHDRAWN = LawCheck("contact_stiffening", ODD_CURVE, 0.0, 9.0, holds=False)
+
+
+@pytest.fixture(scope="module")
+def searched() -> Search:
+    """A large friction and a contact that stiffens, calibrated, with nothing searched."""
+    bent = EffectValue("contact_stiffening", {"turn_nm": 3.0}, (0.4,))
+    recording = long_recording(1_500, [friction(3.0), bent])
+    drive = cs.Drive.reference_87()
+    problem = prepare(recording, drive.nominal_line("input"), int(drive.output_pin_count))
+    library = build_library(problem.history, problem.fitted, [effects.find(n) for n in NAMES])
+    return calibrate(problem, library, seed=0)
+
+
+@pytest.fixture(scope="module")
+def whole(searched: Search) -> WholeLoopFit:
+    """Both laws, fitted as a simulation to whole loops."""
+    problem, values = (
+        searched.problem,
+        [friction(3.0), EffectValue(NAMES[1], {"turn_nm": 3.0}, (0.4,))],
+    )
+    terms = [
+        Term(effects.find(NAMES[0]), values[0].shape, None, 3.0 / COMPLIANCE),
+        Term(effects.find(NAMES[1]), values[1].shape),
+    ]
+    base = fit_forecast(problem, starting_model(problem), (), zero=False, most=5)
+    model = cs.Model(COMPLIANCE, 28.0, 0.1, effects=tuple(values))
+    both = fit_forecast(problem, model, terms, zero=False, most=5)
+    return whole_loop_fit(both, base, searched.noise)
+
+
+def test_a_law_is_judged_beside_the_whole_class_of_a_stand_in(whole: WholeLoopFit) -> None:
+    assert [(each.name, each.holds) for each in check_laws(whole)] == [(n, True) for n in NAMES]
+    (check,) = check_laws(whole, [WITHDRAWN])
+    assert check.name == "friction_hysteresis"
+    assert check.holds
+
+
+def test_friction_keeps_its_name_where_the_curve_beside_it_loses_its_own(
+    searched: Search, whole: WholeLoopFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def without_curve(
+        fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()
+    ) -> tuple[LawCheck, ...]:
+        held = [each for each in check_laws(fitted, stand_ins) if each.name != NAMES[1]]
+        return (*held, *(() if stand_ins else (WITHDRAWN,)))
+
+    monkeypatch.setattr(naming, "check_laws", without_curve)
+    found = naming.names_that_hold(searched, searched.looked_through(whole))
+    assert found.names == {"friction_hysteresis"}
+    assert [each.name for each in found.withdrawn] == ["contact_stiffening"]
+    # What is named alone is fitted to whole loops, too.
+    assert isinstance(found.part.fit, WholeLoopFit)
+    assert found.part.fit.names == ("friction_hysteresis",)
