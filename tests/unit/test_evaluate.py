@@ -240,8 +240,7 @@ def test_a_sweep_says_its_size_and_refuses_what_no_disk_holds(tmp_path: Path) ->
         stdin=subprocess.DEVNULL,
     )
     assert run.returncode == 2, run.stderr
-    size, refusal = run.stderr.strip().splitlines()
-    assert size.startswith("1,000,000,000,000,000 variants, about ")
+    (refusal,) = run.stderr.strip().splitlines()
     assert "no room for 1,000,000,000,000,000 variants" in refusal
     assert not (tmp_path / "o").exists()
     few = command("sweep", tmp_path / "study.toml", "--out", tmp_path / "o", "--rows", 50_000)

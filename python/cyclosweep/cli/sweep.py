@@ -92,14 +92,16 @@ def _study(path: Path, rows: int | None) -> Study:
 
 def _say_size(study: Study, out: Path, *, fresh: bool, yes: bool) -> None:
     """Say how much a sweep has to do; refuse, or ask, where the disk has no room for it."""
+    from cyclosweep.sweep.dataset import dataset_of
     from cyclosweep.sweep.size import estimate, rows_left
 
+    dataset_of(study, out).check(resume=True, fresh=fresh)
     size = estimate(study, out, None if fresh else rows_left(study, out))
-    print(f"{size} in {out}", file=sys.stderr)
     if size.fits or yes:
+        print(f"{size} in {out}", file=sys.stderr)
         return
     refusal = f"{out}: no room for {size}; --rows takes fewer variants, --yes begins all the same"
     if not (sys.stdin.isatty() and sys.stderr.isatty()):
         raise InputError(refusal)
-    if not typer.confirm("There is no room for all of it. Begin all the same?", err=True):
+    if not typer.confirm(f"{out}: no room for {size}. Begin all the same?", err=True):
         raise InputError(refusal)

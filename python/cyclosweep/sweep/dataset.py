@@ -124,23 +124,33 @@ class Dataset:
         InputError
             When the folder holds another study, or this one and neither flag is given.
         """
+        self.check(resume=resume, fresh=fresh)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if fresh:
+            for path in [*self._found(), *self.folder.glob("part-*.tmp")]:
+                path.unlink(missing_ok=True)
+        if read_manifest(self.folder) is None:
+            self.write_manifest([])
+
+    def check(self, *, resume: bool, fresh: bool) -> None:
+        """Refuse a folder that :meth:`prepare` would refuse, and touch nothing."""
         if self.folder.exists() and not self.folder.is_dir():
             raise InputError(f"{self.folder}: is a file, expected a folder")
-        self.folder.mkdir(parents=True, exist_ok=True)
-        found = sorted(self.folder.glob("part-*.parquet"))
-        manifests = [self.folder / _MANIFEST, self.folder / _FORMER_MANIFEST]
-        for path in found:
+        found = self._found()
+        for path in (parts := [path for path in found if path.suffix == ".parquet"]):
             if _is_foreign(path):
                 raise InputError(f"{path}: not written by cyclosweep, expected an empty folder")
         if fresh:
-            for path in [*found, *self.folder.glob("part-*.tmp"), *manifests]:
-                path.unlink(missing_ok=True)
-        elif (found or any(path.exists() for path in manifests)) and not resume:
+            return
+        if found and not resume:
             raise InputError(f"{self.folder}: holds a study, expected an empty folder")
-        else:
-            self._refuse_another_study(found)
-        if read_manifest(self.folder) is None:
-            self.write_manifest([])
+        self._refuse_another_study(parts)
+
+    def _found(self) -> list[Path]:
+        """Parts, whole or not, and manifests that are there."""
+        manifests = (self.folder / name for name in (_MANIFEST, _FORMER_MANIFEST))
+        parts = sorted(self.folder.glob("part-*.parquet"))
+        return [*parts, *filter(Path.exists, manifests)]
 
     def _refuse_another_study(self, found: list[Path]) -> None:
         # Broken files are passed over; the first whole part stands for the others.
