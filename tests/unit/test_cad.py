@@ -142,6 +142,17 @@ def test_the_outline_keeps_to_the_profile_both_ways(
     assert 0.05 * chord_error_mm < found < chord_error_mm
 
 
+def test_arcs_touch_one_another_without_an_edge() -> None:
+    outline = cs.cad.drawing(CATALOGUE, 1).parts[0]
+    assert isinstance(outline, cs.cad.Outline)
+    place, bulge = outline.vertices[:, :2], outline.vertices[:, 2]
+    chord = np.roll(place, -1, axis=0) - place
+    direction, half = np.arctan2(chord[:, 1], chord[:, 0]), 2 * np.arctan(bulge)
+    # Direction in which an arc ends, and in which the next one begins.
+    turn = np.roll(direction - half, -1) - (direction + half)
+    assert np.abs(np.sin(turn / 2)).max() < 1e-9
+
+
 @drives
 def test_points_of_the_table_lie_on_the_profile_and_their_chords_keep_to_it(
     drive: cs.Drive, tmp_path: Path
@@ -261,7 +272,7 @@ def test_holes_stand_about_the_pins_at_the_eccentricity(tmp_path: Path) -> None:
         )
 
 
-@drives
+@pytest.mark.parametrize("drive", [*DRIVES.values(), FAT.replace(ratio=10)])
 def test_a_disc_that_is_the_first_one_turned_is_said_to_be(drive: cs.Drive) -> None:
     first = true_points(cs.cad.disc_profile(drive, 1), 101)
     for disc in range(2, drive.disc_count + 1):
