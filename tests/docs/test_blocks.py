@@ -83,6 +83,16 @@ def test_page_runs_from_top_to_bottom(page: Path, folder: Path) -> None:
             exec(compile(match[2], page.name, "exec"), names)
 
 
+def test_every_page_stands_in_the_contents_of_the_site() -> None:
+    contents = (ROOT / "mkdocs.yml").read_text("utf-8")
+    missing = [
+        page.relative_to(DOCS).as_posix()
+        for page in DOCS.rglob("*.md")
+        if f": {page.relative_to(DOCS).as_posix()}\n" not in contents
+    ]
+    assert not missing
+
+
 @pytest.mark.parametrize(
     "notebook", sorted((ROOT / "examples").glob("*.ipynb")), ids=lambda p: p.stem
 )

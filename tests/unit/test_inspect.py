@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import shlex
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
@@ -65,17 +66,18 @@ def inspected(path: Path, *more: str) -> dict[str, Any]:
 def test_a_foreign_file_to_a_recording(tmp_path: Path) -> None:
     time, torque, angle, trial = loop()
     path = write(
-        tmp_path / "loop.csv", "Zeit;Drehmoment;Verdrehwinkel;Versuch;Bemerkung",
+        tmp_path / "loop 1.csv", "Zeit;Drehmoment;Verdrehwinkel;Versuch;Bemerkung",
         time * 1e3, torque / 0.112984829, angle * 60, trial, trial,
         lines="Pruefstand;3\nDatum;11.07.2024\n\n", sep=";",
     )  # fmt: skip
     text = path.read_text().replace("Bemerkung\n", "Bemerkung\n[ms];[lbf in];[arcmin];[-];[-]\n")
     path.write_text(text.replace(".", ",").replace("11,07,2024", "11.07.2024"))
-    out = tmp_path / "loop.toml"
+    out = tmp_path / "loop 1.toml"
     result = run("inspect", str(path), "--drive", "reference-87", "--out", str(out), columns=60)
     assert result.returncode == 0, result.stderr
     assert max(map(len, result.stdout.splitlines()[:40])) <= 60 + len(str(path))
-    assert "Next: cyclosweep diagnose" in result.stdout
+    [line] = [each for each in result.stdout.splitlines() if each.startswith("Next: ")]
+    assert shlex.split(line)[1:4] == ["cyclosweep", "diagnose", str(path)]
     recording = cs.Recording.read(path)
     np.testing.assert_allclose(recording.torque_nm, torque, rtol=1e-6)
     np.testing.assert_allclose(present(recording.angle_deg), angle, rtol=1e-6)

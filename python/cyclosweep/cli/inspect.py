@@ -7,6 +7,7 @@ import os
 import shutil
 import textwrap
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
@@ -155,9 +156,10 @@ def _next(recording: Path, out: Path, found: Inspection) -> str:
     from cyclosweep.recording.reading import stem
 
     beside = out.resolve() == recording.with_name(f"{stem(recording)}.toml").resolve()
-    meta = "" if beside else f" --meta {out}"
+    meta = "" if beside else f" --meta {quote(str(out))}"
     drive = "" if "drive" in found.proposal.meta else " --drive DRIVE"
-    return f"cyclosweep diagnose {recording}{meta}{drive} --out out/{stem(recording)}"
+    folder = quote(f"out/{stem(recording)}")
+    return f"cyclosweep diagnose {quote(str(recording))}{meta}{drive} --out {folder}"
 
 
 def _print(found: Inspection) -> None:
