@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import bisect
+
 import numpy as np
 import numpy.typing as npt
 
@@ -14,6 +16,8 @@ _BLOCK = 2**22
 """Pairs of points compared at a time: 4 MB of flags."""
 _GUARDS = 32
 """Points of the front that every new point meets first; they reject most of them."""
+_SWEPT = 3
+"""Objectives up to which all points are sorted and swept; with more they meet each other."""
 _LEAST_WAITING = 20_000
 """New points that are gathered before they meet the whole front."""
 
@@ -42,7 +46,8 @@ def non_dominated(points: _Reals) -> _Flags:
     if points.shape[1] == 1:
         return np.asarray(points[:, 0] == points[:, 0].min())
     unique, place = np.unique(points, axis=0, return_inverse=True)
-    flags = _staircase(unique) if points.shape[1] == 2 else _culled(unique)
+    find = {2: _staircase, 3: _moving_staircase}.get(points.shape[1], _culled)
+    flags = find(unique)
     return flags[place.reshape(-1)]
 
 
@@ -54,8 +59,34 @@ def _staircase(points: _Reals) -> _Flags:
     return kept
 
 
+def _moving_staircase(points: _Reals) -> _Flags:
+    """Three objectives: unique points, sorted by the first, against the others' staircase so far.
+
+    Kung, Luccio and Preparata, J. ACM 22 (1975): a point is dominated when one before it is at most
+    as great in the other two objectives.
+    """
+    flags = np.zeros(len(points), bool)
+    # The second objective rises along the staircase, the third one falls.
+    seconds: list[float] = []
+    thirds: list[float] = []
+    for k, (second, third) in enumerate(points[:, 1:].tolist()):
+        place = bisect.bisect_right(seconds, second)
+        if place and thirds[place - 1] <= third:
+            continue
+        flags[k] = True
+        first = place
+        while first and seconds[first - 1] == second:
+            first -= 1
+        last = place
+        while last < len(thirds) and thirds[last] >= third:
+            last += 1
+        seconds[first:last] = [second]
+        thirds[first:last] = [third]
+    return flags
+
+
 def _culled(points: _Reals) -> _Flags:
-    """Three objectives and more: a point can only be dominated by one of a smaller rank sum."""
+    """Four objectives and more: a point can only be dominated by one of a smaller rank sum."""
     ranks = sum(np.unique(column, return_inverse=True)[1] for column in points.T)
     order = np.argsort(ranks, kind="stable")
     flags = np.zeros(len(points), bool)
@@ -139,7 +170,7 @@ class Front:
         points = np.concatenate([points for points, _ in self._waiting])
         rows = np.concatenate([rows for _, rows in self._waiting])
         self._waiting, self._waiting_count = [], 0
-        if points.shape[1] <= 2:
+        if points.shape[1] <= _SWEPT:
             points = np.concatenate([self._points, points])
             rows = np.concatenate([self._rows, rows])
             kept = non_dominated(points)
