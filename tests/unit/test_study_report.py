@@ -141,9 +141,7 @@ def test_front_and_chosen_variants(folder: Path) -> None:
 
 def test_robust_percentiles_are_those_of_a_sweep_around_the_drive(folder: Path) -> None:
     tolerances = {"output_pin_diameter_mm": 0.05, "eccentricity_mm": 0.02}
-    from cyclosweep.sweep.tolerances import Tolerances
-
-    facts = gather(folder, tolerances=Tolerances(tolerances))
+    facts = gather(folder, tolerances=cs.Tolerances(tolerances))
     for each in facts.robust[:3]:
         drive = cs.open_study(folder).drive_of(each.variant)
         pieces = cs.Space.around(drive, tolerances, 1024, seed=1)
