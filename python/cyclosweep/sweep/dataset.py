@@ -39,8 +39,7 @@ COMPRESSION: Literal["lz4"] = "lz4"
 _FOOTER = "cyclosweep"
 _FORMAT = "cyclosweep.dataset/1"
 _MANIFEST = "_manifest.json"
-# Programs that read a folder of Parquet files pass over names with a leading underscore.
-_FORMER_MANIFEST = "manifest.json"
+_FORMER_MANIFEST = "manifest.json"  # no underscore: read as a part by other programs
 _PART_NAME = re.compile(r"part-(\d+)\.parquet")
 
 
