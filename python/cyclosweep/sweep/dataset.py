@@ -136,9 +136,9 @@ class Dataset:
         if self.folder.exists() and not self.folder.is_dir():
             raise InputError(f"{self.folder}: is a file, expected a folder")
         found = self._found()
-        for path in (parts := [path for path in found if path.suffix == ".parquet"]):
-            if _is_foreign(path):
-                raise InputError(f"{path}: not written by cyclosweep, expected an empty folder")
+        parts = [path for path in found if path.suffix == ".parquet"]
+        if foreign := next(filter(_is_foreign, parts), None):
+            raise InputError(f"{foreign}: not written by cyclosweep, expected an empty folder")
         if fresh:
             return
         if found and not resume:
@@ -154,8 +154,7 @@ class Dataset:
     def _refuse_another_study(self, found: list[Path]) -> None:
         # Broken files are passed over; the first whole part stands for the others.
         footer = next(filter(None, map(read_footer, found)), None)
-        identities = [read_manifest(self.folder), footer]
-        for identity in filter(None, identities):
+        for identity in filter(None, [read_manifest(self.folder), footer]):
             if identity.get("study") != self.study.hash:
                 self._refuse_another_stretch(identity)
                 raise InputError(
