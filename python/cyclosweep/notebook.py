@@ -7,7 +7,9 @@ from html import escape
 
 __all__ = ["html_table"]
 
-_CELL = "padding:0.1em 1.2em 0.1em 0;border:none;text-align:left;background:none;color:inherit"
+# A page without a doctype gives tables the browser's own black and size.
+_INHERITED = "color:inherit;font-size:inherit"
+_CELL = f"{_INHERITED};padding:0.1em 1.2em 0.1em 0;border:none;text-align:left;background:none"
 
 
 def html_table(title: str, rows: Mapping[str, object], note: str = "") -> str:
@@ -34,7 +36,8 @@ def html_table(title: str, rows: Mapping[str, object], note: str = "") -> str:
     True
     """
     body = "".join(
-        f'<tr style="background:none"><td style="{_CELL};opacity:0.7">{escape(name)}</td>'
+        f'<tr style="{_INHERITED};background:none">'
+        f'<td style="{_CELL};opacity:0.7">{escape(name)}</td>'
         f'<td style="{_CELL}">{escape(str(value))}</td></tr>'
         for name, value in rows.items()
         if value is not None and value != ""
@@ -44,5 +47,6 @@ def html_table(title: str, rows: Mapping[str, object], note: str = "") -> str:
         '<div style="color:inherit;line-height:1.35;max-width:60em">'
         f'<div style="border-bottom:1px solid currentColor;margin-bottom:0.3em">'
         f"<b>{escape(title)}</b></div>"
-        f'<table style="border-collapse:collapse;margin:0">{body}</table>{below}</div>'
+        f'<table style="{_INHERITED};border-collapse:collapse;margin:0">{body}</table>'
+        f"{below}</div>"
     )
