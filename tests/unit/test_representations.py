@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 import cyclosweep as cs
 from cyclosweep.notebook import html_table
 from cyclosweep.simulation.model import EffectValue
+from cyclosweep.sweep.leaders import Leaders
 from cyclosweep.sweep.summary import PartSummary, Summary
 
 DRIVE = cs.Drive.reference_87()
@@ -202,7 +203,7 @@ def test_every_summary_comes_back(
 ) -> None:
     whole = Summary(rows, status, ranges, best, objective)
     assert Summary.from_json(json.dumps(whole.to_json())) == whole
-    part = PartSummary(0, rows, status, ranges, best)
+    part = PartSummary(0, rows, status, ranges, [Leaders("twist_1tn_deg", best)])
     assert PartSummary.from_json(json.loads(json.dumps(part.to_json()))) == part
 
 

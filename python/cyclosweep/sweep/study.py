@@ -90,8 +90,8 @@ class Study:
     objectives: tuple[Objective, ...] = ()
     model: StudyModel = "published"
     solver: Engine = "quadratic"
-    constraints: Mapping[str, Column] = field(default_factory=dict)
-    columns: Mapping[str, Column] = field(default_factory=dict)
+    constraints: Mapping[str, Column] = field(default_factory=dict, hash=False)
+    columns: Mapping[str, Column] = field(default_factory=dict, hash=False)
     keep: tuple[str, ...] | None = None
     only_ok: bool = False
 
