@@ -102,7 +102,7 @@ def test_a_misspelt_attribute_of_a_drive_is_answered_too() -> None:
         ("[axs]\n", "axes"),
         ("[sample]\nmethd = 'grid'\n", "method"),
         ("[sample]\nmethod = 'sobl'\n", "sobol"),
-        ("[objective]\nminimize = 'x'\n", "minimise"),
+        ("[axes]\nratio = { values = [87] }\n[objective]\nminimize = 'x'\n", "minimise"),
         ("[limits]\nhole_web_mm = { mn = 2.0 }\n", "min"),
         ("[axes]\neccentricity_mm = { frm = 0.3, to = 0.8, steps = 5 }\n", "from"),
         ("[axes]\neccentricity_mm = { vals = [0.3] }\n", "values"),

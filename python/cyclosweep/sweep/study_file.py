@@ -117,7 +117,7 @@ class StudyFile(TomlTable):
         try:
             return [_ObjectiveTable.model_validate(table).objective() for table in tables]
         except ValidationError as error:
-            raise InputError(f"objective.{one_line(error)}") from None
+            raise InputError(f"objective.{one_line(error, _ObjectiveTable)}") from None
 
     def own_columns(self) -> dict[str, Column]:
         """Columns that the file defines: the tables below ``columns``."""
@@ -129,7 +129,7 @@ class StudyFile(TomlTable):
             try:
                 own = _OwnColumn.model_validate(table)
             except ValidationError as error:
-                raise InputError(f"columns.{name}.{one_line(error)}") from None
+                raise InputError(f"columns.{name}.{one_line(error, _OwnColumn)}") from None
             found[name] = Column(own.expression, own.unit, own.meaning)
         return found
 
