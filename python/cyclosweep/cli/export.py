@@ -24,7 +24,10 @@ def export(
         typer.Option(help="This disc alone about its centre, from 1; for .csv 1 by default."),
     ] = None,
     chord_error_mm: Annotated[
-        float, typer.Option("--chord-error-mm", help="Largest distance from the true profile.")
+        float,
+        typer.Option(
+            "--chord-error-mm", "--chord-error", help="Largest distance from the true profile [mm]."
+        ),
     ] = 1e-3,
     without_modification: Annotated[
         bool,

@@ -5,6 +5,7 @@ from cyclosweep.explore.influence import input_influence
 from cyclosweep.explore.nearest import nearest_variants
 from cyclosweep.explore.pareto import pareto_front
 from cyclosweep.explore.robust import robust_choice, tolerance_percentiles
+from cyclosweep.explore.short_forms import pareto, sensitivity
 from cyclosweep.explore.sobol import driving_inputs, sobol_indices
 
 __all__ = [
@@ -13,8 +14,10 @@ __all__ = [
     "feasible_ranges",
     "input_influence",
     "nearest_variants",
+    "pareto",
     "pareto_front",
     "robust_choice",
+    "sensitivity",
     "sobol_indices",
     "tolerance_percentiles",
 ]

@@ -26,11 +26,12 @@ class SpaceMakers:
     def around(
         cls,
         drive: Drive,
-        tolerances: Tolerances | Mapping[str, Any],
+        tolerances: Tolerances | Mapping[str, Any] | None = None,
         count: int = 1024,
         /,
         *,
         seed: int = 0,
+        **deviations: Any,
     ) -> Self:
         """Pieces of one drive as manufacturing makes them, each within the tolerances.
 
@@ -38,7 +39,7 @@ class SpaceMakers:
         ----------
         drive : Drive
             The drive as drawn.
-        tolerances : Tolerances or mapping
+        tolerances : Tolerances or mapping, optional
             For each input how far it deviates: ``0.01`` for anything within +-0.01, a pair
             ``(low, high)``, or a distribution of deviations as ``normal(sd=0.004)``; a
             log-uniform one is a factor. :class:`~cyclosweep.sweep.tolerances.Tolerances` has
@@ -47,11 +48,14 @@ class SpaceMakers:
             Number of pieces, up to 2^32; a power of two of them is balanced best.
         seed : int
             Seed of the draws.
+        **deviations
+            The same by keyword, instead of a mapping: ``eccentricity_mm=0.01``.
 
         Raises
         ------
         InputError
-            For an unknown input, one that the drive has no value of, or a whole number.
+            For an unknown input, one that the drive has no value of, a whole number, or
+            tolerances given both ways or neither.
 
         Examples
         --------
@@ -61,8 +65,11 @@ class SpaceMakers:
         >>> round(values.min(), 3), round(values.max(), 3)
         (0.61, 0.63)
         """
+        if (tolerances is None) == (not deviations):
+            raise InputError("tolerances: expected a mapping, or keywords, one of the two")
         make: Any = cls
-        return cast(Self, make.table(drive, pieces(drive, tolerances, count, seed=seed)))
+        allowed = deviations if tolerances is None else tolerances
+        return cast(Self, make.table(drive, pieces(drive, allowed, count, seed=seed)))
 
     @classmethod
     def saltelli(cls, drive: Drive, count: int, /, *, seed: int = 0, **axes: Any) -> Self:
