@@ -108,7 +108,7 @@ def disc_profile(
     >>> drive = cs.Drive.reference_87().replace(ring_pin_radius_mm=2.0, disc_width_mm=12.0)
     >>> profile = cs.cad.disc_profile(drive)
     >>> round(profile.convex_radius_min_mm, 2), round(profile.concave_radius_min_mm, 2)
-    (6.36, 3.64)
+    (0.97, 2.09)
     """
     return checked_disc(drive, disc, modification, min_wall_mm).profile
 
