@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.sweep import shards
+from cyclosweep.sweep import dataset
 from cyclosweep.sweep.dataset import Dataset, Part
 from cyclosweep.sweep.summary import PartSummary
 
@@ -36,7 +36,7 @@ class KillsItsWorker(Dataset):
 
 
 def test_a_killed_process_is_retried(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shards, "Dataset", KillsItsWorker)
+    monkeypatch.setattr(dataset, "Dataset", KillsItsWorker)
     folder = tmp_path / "study"
     cs.sink(space(), folder, rows_per_part=ROWS, engine="processes", workers=2, progress=False)
     assert (folder / "killed").exists()
@@ -46,7 +46,7 @@ def test_a_killed_process_is_retried(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_a_part_that_always_kills_its_worker_is_named_and_the_rest_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shards, "Dataset", KillsItsWorker)
+    monkeypatch.setattr(dataset, "Dataset", KillsItsWorker)
     folder = tmp_path / "study"
     folder.mkdir()
     (folder / "always").touch()
@@ -68,7 +68,7 @@ class FailsAlways(Dataset):
 def test_a_part_that_always_fails_is_tried_thrice_and_told_at_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shards, "Dataset", FailsAlways)
+    monkeypatch.setattr(dataset, "Dataset", FailsAlways)
     with (
         ThreadPoolExecutor(2) as pool,
         pytest.raises(cs.SweepError, match=r"part 5 failed: no luck with this one; 7 of 8"),
