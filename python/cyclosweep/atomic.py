@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import shutil
 import socket
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 __all__ = ["unfinished", "write_bytes", "write_text"]
+
+NO_SPACE_LEFT = 2**20
+"""Free bytes below which a file that could not be written has met a full disk."""
 
 
 @contextlib.contextmanager
@@ -51,6 +56,11 @@ def unfinished(path: str | Path) -> Iterator[Path]:
     try:
         yield temporary
         os.replace(temporary, target)
+    except Exception as error:
+        # A library that writes may say of a full disk that the file is broken.
+        if isinstance(error, OSError) or shutil.disk_usage(target.parent).free >= NO_SPACE_LEFT:
+            raise
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target)) from error
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -52,12 +52,12 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
             best = joint
     # One friction has few optima, two and their presliding many: where a joint fit ended in a bad
     # one, either friction alone is better.
-    offered = [] if best is None else [_prune(search, noise, best)]
+    if best is None:
+        return ()
+    offered = [_prune(search, noise, best)]
     for term, _ in usual_effects(search, *STARTS[0]):
         alone = _fitted(search, noise, [term]) if term.slips else None
         offered += [] if alone is None else [alone]
-    if not offered:
-        return ()
     best = min(offered, key=_cost)
     if not any(term.slips for term in best.terms):
         return ()
