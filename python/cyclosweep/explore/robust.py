@@ -22,13 +22,16 @@ from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Study, StudyModel
 from cyclosweep.sweep.tolerances import Tolerances, deviations, nominal_value
 
-__all__ = ["Designs", "robust_choice", "tolerance_percentiles"]
+__all__ = ["Designs", "by_robustness", "robust_choice", "tolerance_percentiles"]
 
 Designs = Drive | Sequence[Drive] | pl.DataFrame
 """A drive, several, or a table whose columns are inputs of one."""
 
 PIECES = 1024
 """Pieces of each design: percentiles from 5 to 95 of a smooth result to about 1 % of its spread."""
+LEAST_SHARE_OK = 0.99
+"""A design of which fewer pieces are good comes after all others, however good these pieces are:
+one scrapped part in a hundred is what series production of such parts may bear."""
 _ROWS = 100_000
 """Pieces evaluated at a time, at least one design's."""
 
@@ -83,7 +86,9 @@ def tolerance_percentiles(
     -------
     polars.DataFrame
         A row for each design, in order: what the table holds, or the drive's name; ``share_ok``,
-        the share of pieces that can be built and keep the limits; and for each result
+        the share of pieces that can be built and keep the limits; ``refused``, the status that
+        most of the other pieces have, ``limit_COLUMN`` of those outside a limit, null where there
+        are none; and for each result
         ``RESULT_nominal`` as drawn and ``RESULT_p5`` and so on, over all pieces that can be
         built. Null where none can.
 
@@ -128,9 +133,13 @@ def tolerance_percentiles(
                 for name in spread.names
             }
             made = _made(base, block, nominal, drawn, count)
-            values, good = _values(base, made, wanted, limits, settings)
+            values, refused = _values(base, made, wanted, limits, settings)
             drawing, _ = _values(base, block, wanted, None, settings)
-            columns = {"share_ok": good.reshape(-1, count).mean(axis=1)}
+            good = refused.is_null().to_numpy()
+            columns = {
+                "share_ok": good.reshape(-1, count).mean(axis=1),
+                "refused": _most_frequent(refused, count),
+            }
             for text, all_pieces, as_drawn in zip(wanted, values, drawing, strict=True):
                 columns[f"{text}_nominal"] = as_drawn
                 found = _percentiles(all_pieces.reshape(-1, count), ranks)
@@ -150,7 +159,7 @@ def robust_choice(
     objective: Objective | str,
     *,
     percentile: float = 95,
-    least_share_ok: float = 0.99,
+    least_share_ok: float = LEAST_SHARE_OK,
     **settings: Any,
 ) -> pl.DataFrame:
     """Order designs by how good they stay within their tolerances, not by their best.
@@ -195,12 +204,36 @@ def robust_choice(
     found = tolerance_percentiles(designs, tolerances, wanted.column, [worst], **settings)
     by, as_drawn = found.columns[-1], f"{wanted.column}_nominal"
     rank = pl.col(as_drawn).rank("min", descending=wanted.maximise).alias("rank_nominal")
-    found = found.with_columns(rank).sort(
-        pl.col("share_ok") >= least_share_ok, by, descending=[True, wanted.maximise],
-        nulls_last=True, maintain_order=True,
-    )  # fmt: skip
+    found = by_robustness(found.with_columns(rank), by, wanted.maximise, least_share_ok)
     place = pl.int_range(1, pl.len() + 1, dtype=pl.UInt32).alias("rank")
     return found.select(place, "rank_nominal", pl.exclude("rank_nominal"))
+
+
+def by_robustness(
+    found: pl.DataFrame, by: str, maximise: bool, least_share_ok: float = LEAST_SHARE_OK
+) -> pl.DataFrame:
+    """Order designs by a percentile, those with too few good pieces after all others.
+
+    Parameters
+    ----------
+    found : DataFrame
+        Of :func:`tolerance_percentiles`.
+    by : str
+        Column of the percentile.
+    maximise : bool
+        Whether it is to be great.
+    least_share_ok : float
+        Share of pieces [1] that have to be good.
+
+    Returns
+    -------
+    polars.DataFrame
+        The same rows, the best first.
+    """
+    return found.sort(
+        pl.col("share_ok") >= least_share_ok, by, descending=[True, maximise],
+        nulls_last=True, maintain_order=True,
+    )  # fmt: skip
 
 
 def _blocks(
@@ -249,16 +282,42 @@ def _values(
     wanted: Sequence[str],
     limits: Conditions | None,
     settings: Mapping[str, Any],
-) -> tuple[list[_Reals], npt.NDArray[np.bool_]]:
-    """Results of rows of inputs, NaN where a row cannot be built, and which rows are good."""
+) -> tuple[list[_Reals], pl.Series]:
+    """Results of rows of inputs, NaN where one cannot be built; why a row is not good, or null."""
     study = Study.of(Space.table(base, inputs), **settings)
     schema = study.schema()
     values = [number(text, schema, where="results") for text in wanted]
-    good = pl.all_horizontal(*conditions(limits, schema)).fill_null(False)
+    status = pl.col("status").cast(pl.String)
+    reasons = [pl.when(status != "ok").then(status)]
+    for text, each in _one_by_one(limits):
+        inside = pl.all_horizontal(*conditions(each, schema, only_ok=False)).fill_null(False)
+        reasons.append(pl.when(~inside).then(pl.lit(f"limit_{text}")))
     columns = [value.alias(f"__{k}") for k, value in enumerate(values)]
-    found = sweep(study).select(*columns, good.alias("__good"))
+    found = sweep(study).select(*columns, pl.coalesce(*reasons).alias("__refused"))
     reals = [found[f"__{k}"].fill_null(np.nan).to_numpy() for k in range(len(wanted))]
-    return reals, found["__good"].to_numpy()
+    return reals, found["__refused"]
+
+
+def _one_by_one(limits: Conditions | None) -> list[tuple[str, Conditions | None]]:
+    """Each of several limits with its text."""
+    if isinstance(limits, Mapping):
+        return [(text, {text: bounds}) for text, bounds in limits.items()]
+    if isinstance(limits, Sequence) and not isinstance(limits, str):
+        return [(text, [text]) for text in limits]
+    return [] if limits is None else [(str(limits), limits)]
+
+
+def _most_frequent(refused: pl.Series, count: int) -> pl.Series:
+    """The most frequent text of each so many rows, of equally frequent ones the first by name."""
+    place = pl.int_range(pl.len(), dtype=pl.UInt32) // count
+    designs = pl.DataFrame({"design": range(len(refused) // count)}, schema={"design": pl.UInt32})
+    counts = (
+        refused.alias("refused").to_frame().with_columns(design=place)
+        .drop_nulls("refused").group_by("design", "refused").len()
+        .sort("design", "len", "refused", descending=[False, True, False])
+        .unique("design", keep="first", maintain_order=True)
+    )  # fmt: skip
+    return designs.join(counts, on="design", how="left", maintain_order="left")["refused"]
 
 
 def _percentiles(values: _Reals, ranks: Sequence[float]) -> _Reals:

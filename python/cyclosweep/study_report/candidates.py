@@ -11,14 +11,11 @@ import numpy as np
 import polars as pl
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.explore.tables import open_table
+from cyclosweep.explore.robust import by_robustness, tolerance_percentiles
 from cyclosweep.sweep.axes import is_count
-from cyclosweep.sweep.expressions import number
+from cyclosweep.sweep.expressions import names_in
 from cyclosweep.sweep.objective import Objective
-from cyclosweep.sweep.scan import scan
-from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.stored import StoredStudy
-from cyclosweep.sweep.study import Study
 from cyclosweep.sweep.tolerances import Tolerances
 
 __all__ = ["Robust", "assumed_tolerances", "choose_variants", "robust_variants", "spread"]
@@ -41,7 +38,7 @@ class Robust:
     nominal : dict
         Each objective as drawn.
     percentiles : dict
-        5th, 50th and 95th percentile of each objective over the pieces that can be used.
+        5th, 50th and 95th percentile of each objective over the pieces that can be built.
     usable : float
         Share of the pieces that can be built and keep the study's limits.
     refused : str
@@ -148,48 +145,56 @@ def robust_variants(
     -------
     list of Robust
         The one whose bad piece (95th percentile of the first objective, in its bad sense) is
-        best comes first; those with unusable pieces after those without.
+        best comes first; those with more than one unusable piece in a hundred after the others.
+        Empty where an objective or limit reads columns of the user's own, which a stored study
+        does not tell how to compute.
     """
-    found = []
+    texts = [each.column for each in objectives]
+    limits = _limits(study)
+    read = {name for text in (*texts, *limits) for name in names_in(text)}
+    if read & {name for name, _ in study.definition.get("own_columns", ())}:
+        return []
+    parts = []
     for variant in variants:
-        row = study.row(variant)
         drive = study.drive_of(variant)
-        pieces = Study.of(
-            Space.around(drive, _held(tolerances, drive), PIECES[study.model], seed=1),
+        held = _held(tolerances, drive)
+        given = {**drive.values(), **drive.part_values()}
+        shown = {*study.axes, *read, *held.inputs} & given.keys()
+        inputs = {name: [given[name]] for name in sorted(shown) if math.isfinite(given[name])}
+        part = tolerance_percentiles(
+            pl.DataFrame(inputs),
+            held,
+            texts,
+            drive=drive,
+            limits=limits,
+            count=PIECES[study.model],
+            seed=1,
             loads_tn=study.loads_tn,
-            limits=_limits(study),
             model=study.model,
+            progress=False,
         )
-        rows = open_table(pieces)
-        values = [number(o.column, rows.schema, where="objective") for o in objectives]
-        status = pl.col("status").cast(pl.String)
-        whole = (
-            scan(pieces)
-            .select(status, *(v.alias(o.column) for o, v in zip(objectives, values, strict=True)))
-            .collect()
-        )
-        table = whole.filter(pl.col("status") == "ok")
-        refused = whole.filter(pl.col("status") != "ok")["status"].mode().sort()
-        percentiles = {o.column: _percentiles(table[o.column]) for o in objectives}
-        nominal = pl.DataFrame([row]).cast({"status": pl.String})
-        at = nominal.select(v.alias(o.column) for o, v in zip(objectives, values, strict=True))
-        found.append(
-            Robust(
-                variant,
-                {o.column: float(at[o.column][0]) for o in objectives},
-                percentiles,
-                table.height / len(pieces),
-                str(refused[0]) if len(refused) else "",
-            )
-        )
+        at = [name for name in part.columns if name not in inputs]
+        parts.append(part.select(pl.lit(variant).alias("variant"), *at))
     first = objectives[0]
+    bad = f"{first.column}_p{5 if first.maximise else 95}"
+    ordered = by_robustness(pl.concat(parts), bad, first.maximise)
+    return [_robust(row, texts) for row in ordered.rows(named=True)]
 
-    def order(each: Robust) -> tuple[float, float]:
-        low, _, high = each.percentiles[first.column]
-        bad = -low if first.maximise else high
-        return (round(1 - each.usable, 3), bad if math.isfinite(bad) else math.inf)
 
-    return sorted(found, key=order)
+def _robust(row: Mapping[str, Any], texts: Sequence[str]) -> Robust:
+    """One row of percentiles over tolerances."""
+
+    def real(name: str) -> float:
+        value = row[name]
+        return math.nan if value is None else float(value)
+
+    return Robust(
+        row["variant"],
+        {text: real(f"{text}_nominal") for text in texts},
+        {text: (real(f"{text}_p5"), real(f"{text}_p50"), real(f"{text}_p95")) for text in texts},
+        row["share_ok"],
+        row["refused"] or "",
+    )
 
 
 def _held(tolerances: Tolerances, drive: Drive) -> Tolerances:
@@ -205,11 +210,3 @@ def _held(tolerances: Tolerances, drive: Drive) -> Tolerances:
 
 def _limits(study: StoredStudy) -> Mapping[str, tuple[float | None, float | None]]:
     return {name: (float(low), float(high)) for name, low, high in study.definition["limits"]}
-
-
-def _percentiles(values: pl.Series) -> tuple[float, float, float]:
-    kept = values.drop_nulls().drop_nans()
-    if kept.is_empty():
-        return (math.nan, math.nan, math.nan)
-    low, middle, high = np.percentile(kept.to_numpy(), (5, 50, 95))
-    return (float(low), float(middle), float(high))

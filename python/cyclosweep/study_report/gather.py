@@ -21,6 +21,7 @@ from cyclosweep.study_report.candidates import (
     robust_variants,
     spread,
 )
+from cyclosweep.sweep.expressions import names_in, number
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.stored import StoredStudy, open_study
 from cyclosweep.sweep.tolerances import Tolerances
@@ -117,7 +118,8 @@ def gather(
     folder : str or Path
         The study.
     objectives : sequence of str
-        ``min A`` or ``max B``; by default the study's own and what stands against it.
+        ``min A`` or ``max B``; by default the study's own; of a single one also what
+        stands against it.
     limits : sequence of str
         Conditions besides the study's limits, such as ``hole_web_mm > 3``.
     variants : sequence of int
@@ -145,11 +147,11 @@ def gather(
     found = aggregate(study, rows, outcomes, progress=progress)
     front = _front(folder, wanted, limits, progress)
     chosen = choose_variants(front, wanted)
-    chosen.update({number: "asked for" for number in variants if number not in chosen})
-    drives = [study.drive_of(number, name=f"variant {number}") for number in chosen]
+    chosen.update({variant: "asked for" for variant in variants if variant not in chosen})
+    drives = [study.drive_of(variant, name=f"variant {variant}") for variant in chosen]
     held = tolerances or assumed_tolerances(study)
     candidates = list(dict.fromkeys([*chosen, *spread(front, CANDIDATES)["variant"].to_list()]))
-    candidates = [number for number in candidates if study.row(number)["status"] == "ok"]
+    candidates = [variant for variant in candidates if study.row(variant)["status"] == "ok"]
     return StudyFacts(
         study,
         wanted,
@@ -179,17 +181,16 @@ def _front(
 
 
 def _default(study: StoredStudy, rows: Rows) -> list[Objective]:
-    """The study's objective and the result that stands most against it."""
+    """The study's objectives; of a single one also the result that stands most against it."""
+    if len(study.objectives) > 1:
+        return list(study.objectives)
     first = study.objective or Objective("output_stiffness_nm_per_arcmin", maximise=True)
-    if first.column not in study.columns:
+    if study.objective is None and first.column not in rows.schema:
         raise InputError(f"{study.folder}: the study has no objective, expected --pareto A,B")
-    others = [each for each in OPPONENTS if each.column in rows.schema]
-    goods = {each.column: _goodness(each) for each in (first, *others)}
-    pairs = {
-        each: goods[first.column] * goods[each.column]
-        for each in others
-        if each.column != first.column
-    }
+    read = names_in(first.column)
+    others = [each for each in OPPONENTS if each.column in rows.schema and each.column not in read]
+    goods = {each.column: _goodness(each, rows) for each in (first, *others)}
+    pairs = {each: goods[first.column] * goods[each.column] for each in others}
     if not pairs:
         return [first]
     ok = rows.frame.filter(pl.col("status").cast(pl.String) == "ok")
@@ -215,6 +216,6 @@ def _default(study: StoredStudy, rows: Rows) -> list[Objective]:
     return [first, most if correlation(most) < OPPOSED else min(pairs, key=correlation)]
 
 
-def _goodness(objective: Objective) -> pl.Expr:
-    value = pl.col(objective.column).cast(pl.Float64)
+def _goodness(objective: Objective, rows: Rows) -> pl.Expr:
+    value = number(objective.column, rows.schema, where="objective")
     return value if objective.maximise else -value

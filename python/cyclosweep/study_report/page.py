@@ -254,8 +254,9 @@ def _robust(facts: StudyFacts) -> str:
     )
     note = (
         f"{'Assumed, since no tolerance file was given' if facts.are_assumed else 'Tolerances'}: "
-        f"{given}. Percentiles of the pieces that can be built and keep the limits. The first row "
-        "is the candidate whose worst pieces are best."
+        f"{given}. Percentiles of all pieces that can be built; usable ones keep the limits, too. "
+        "The first row is the candidate whose worst pieces are best, of those of which at least "
+        "99 % are usable where there is one."
     )
     return table_html(
         Table(
