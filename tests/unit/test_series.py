@@ -12,6 +12,7 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.atomic import write_text
+from cyclosweep.diagnosis.folder import recordings_in
 from cyclosweep.diagnosis.series import conditions_of, small_loops_of, trends
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.straight_lines import straight_lines
@@ -49,6 +50,25 @@ def folder(tmp_path: Path) -> Path:
         'drive = "reference-87"\nconditions_from_name = "dose(?P<dose>[0-9])"\n'
     )
     return place
+
+
+def test_a_folder_s_recordings_are_all_that_can_be_read(tmp_path: Path) -> None:
+    endings = (
+        "csv", "tsv", "txt", "dat", "asc", "parquet", "pq", "lvm", "tdms", "mat", "h5", "hdf5",
+        "json", "jsonl", "xlsx", "xlsm", "xlsb", "xls", "ods", "csv.gz", "txt.gz", "XLS",
+    )  # fmt: skip
+    wanted = {f"loop{place}.{ending}" for place, ending in enumerate(endings)}
+    others = {"loop.toml", "notes.md", "photo.png", "~$loop0.xlsx", "._loop0.csv", ".csv", "csv",
+              "loop.xls.gz", "loop.csv.part"}  # fmt: skip
+    (tmp_path / "folder.csv").mkdir()
+    for name in others:
+        (tmp_path / name).touch()
+    with pytest.raises(cs.InputError, match=r"found no recording.*\.ods.*\.xlsb") as caught:
+        recordings_in(tmp_path)
+    assert "\n" not in str(caught.value)
+    for name in wanted:
+        (tmp_path / name).touch()
+    assert {path.name for path in recordings_in(tmp_path)} == wanted
 
 
 def test_a_bad_file_keeps_its_row_and_does_not_stop_the_rest(folder: Path) -> None:

@@ -30,6 +30,7 @@ from cyclosweep.display import Steps, shown_steps
 from cyclosweep.errors import DesignError, InputError, instance_of, path_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.columns import metadata_path, stem
+from cyclosweep.recording.endings import ENDINGS, is_recording_name
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.series_page import write_series_page
 from cyclosweep.result.series import Trend
@@ -37,11 +38,6 @@ from cyclosweep.simulation.effects import effects
 
 _LOG = logging.getLogger(__name__)
 
-RECORDING_ENDINGS = (
-    ".csv", ".csv.gz", ".txt", ".lvm", ".tsv", ".parquet", ".xlsx", ".mat", ".tdms", ".json",
-    ".h5", ".hdf5",
-)  # fmt: skip
-"""Endings of the files of a folder that are taken as recordings."""
 ROW_FILE = "row.json"
 """File of a finished recording's row, with the hash of all that it was made from."""
 
@@ -83,12 +79,10 @@ def recordings_in(folder: str | Path) -> list[Path]:
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder, expected recordings in it")
     found = sorted(
-        path
-        for path in folder.iterdir()
-        if path.is_file() and path.name.lower().endswith(RECORDING_ENDINGS)
+        path for path in folder.iterdir() if is_recording_name(path.name) and path.is_file()
     )
     if not found:
-        endings = ", ".join(RECORDING_ENDINGS)
+        endings = ", ".join(f".{ending}" for ending in sorted(ENDINGS))
         raise InputError(f"{folder}: found no recording, expected files that end in {endings}")
     return found
 

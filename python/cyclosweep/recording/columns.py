@@ -7,9 +7,10 @@ import numpy as np
 import polars as pl
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.endings import ENDINGS
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata, conversion
-from cyclosweep.recording.opening import ENDINGS, open_table
+from cyclosweep.recording.opening import open_table
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
 from cyclosweep.recording.units import find_unit, split_name

@@ -10,6 +10,7 @@ import polars as pl
 from cyclosweep.errors import InputError
 from cyclosweep.recording import table
 from cyclosweep.recording.csv_text import CsvText, open_csv, read_bytes, to_utf8
+from cyclosweep.recording.endings import WORKBOOKS
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.formats.excel import read_excel
 from cyclosweep.recording.formats.json_text import read_json
@@ -18,14 +19,7 @@ from cyclosweep.recording.formats.matlab import read_hdf5, read_mat5
 from cyclosweep.recording.formats.tdms import read_tdms
 from cyclosweep.recording.metadata import TableOptions
 
-__all__ = ["ENDINGS", "open_table"]
-
-_WORKBOOKS = {"xlsx", "xlsm", "xlsb", "xls", "ods"}
-ENDINGS = frozenset(
-    {"csv", "tsv", "txt", "dat", "asc", "parquet", "pq", "lvm", "tdms", "mat", "h5", "hdf5",
-     "json", "jsonl"} | _WORKBOOKS
-)  # fmt: skip
-"""Endings of names that say the format and are not part of a recording's name."""
+__all__ = ["open_table"]
 
 
 @dataclass(slots=True)
@@ -105,7 +99,7 @@ def open_table(path: Path, options: TableOptions, wanted: Collection[str]) -> Fi
     if head.startswith(b"TDSm") or ending == "tdms":
         return read_tdms(path, options)
     zipped = head.startswith(b"PK\x03\x04") and zipfile.is_zipfile(path)
-    if ending in _WORKBOOKS or zipped or head.startswith(b"\xd0\xcf\x11\xe0"):
+    if ending in WORKBOOKS or zipped or head.startswith(b"\xd0\xcf\x11\xe0"):
         return read_excel(path, options, wanted)
     if not head:
         read_bytes(path)  # says that the file is empty
