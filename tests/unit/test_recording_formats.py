@@ -9,13 +9,16 @@ from typing import Any
 import h5py
 import numpy as np
 import openpyxl
+import pandas
 import pytest
 import scipy.io
+import xlwt
 from nptdms import ChannelObject, RootObject, TdmsWriter
 
 import cyclosweep as cs
 from cyclosweep.recording.units import find_unit, split_name
 from tests.support.arrays import present
+from tests.support.binary_workbook import write_binary_workbook
 
 TIME = np.arange(40) * 0.5
 TORQUE = 12.0 * np.sin(np.arange(40) / 6.0)
@@ -72,6 +75,25 @@ def write_excel_with_dates(path: Path) -> None:
     for t, *row in zip(*signals().values(), strict=True):
         sheet.append([start + timedelta(seconds=float(t)), *map(float, row)])
     book.save(path)
+
+
+def write_excel_97(path: Path) -> None:
+    book = xlwt.Workbook()
+    sheet = book.add_sheet("Data")
+    for place, (name, values) in enumerate(signals().items()):
+        sheet.write(0, place, name)
+        for row, value in enumerate(values.tolist(), start=1):
+            sheet.write(row, place, value)
+    book.save(path)
+
+
+def write_excel_binary(path: Path) -> None:
+    rows = np.column_stack(list(signals().values())).tolist()
+    write_binary_workbook(path, list(signals()), rows)
+
+
+def write_open_document(path: Path) -> None:
+    pandas.DataFrame(signals()).to_excel(path, engine="odf", index=False)
 
 
 def write_mat5(path: Path) -> None:
@@ -255,6 +277,9 @@ def write_time_of_day(path: Path) -> None:
 WRITERS: dict[str, tuple[str, Callable[[Path], None]]] = {
     "excel": ("loop.xlsx", write_excel),
     "excel-dates": ("loop.xlsx", write_excel_with_dates),
+    "excel-97": ("loop.xls", write_excel_97),
+    "excel-binary": ("loop.xlsb", write_excel_binary),
+    "open-document": ("loop.ods", write_open_document),
     "mat5": ("loop.mat", write_mat5),
     "mat5-struct": ("loop.mat", write_mat5_struct),
     "mat5-matrix": ("loop.mat", write_mat5_matrix),
@@ -309,7 +334,10 @@ def test_a_unit_that_the_file_states_is_converted_and_said(tmp_path: Path, kind:
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
-        ("loop.xlsx", b"PK\x03\x04 no workbook", ["not a readable workbook"]),
+        ("loop.xlsx", b"PK\x03\x04 no workbook", ["not a readable workbook", "CSV"]),
+        ("loop.xls", b"\xd0\xcf\x11\xe0" + bytes(600), ["not a readable workbook", "CSV"]),
+        ("loop.xlsb", b"Time,Torque\n0,1\n", ["not a readable workbook", "CSV"]),
+        ("loop.ods", b"Time;Torque\n0;1\n", ["not a readable workbook", "CSV"]),
         ("loop.mat", b"MATLAB 5.0 MAT-file" + bytes(200), ["MATLAB"]),
         ("loop.mat", b"\x89HDF\r\n\x1a\n" + bytes(99), ["not a readable HDF5"]),
         ("loop.tdms", b"TDSm" + bytes(60), ["TDMS"]),

@@ -53,7 +53,11 @@ def read_excel(path: Path, options: TableOptions, wanted: Collection[str]) -> Gr
     except InputError:
         raise
     except Exception as error:  # calamine has an exception for each format
-        raise InputError(f"{path}: not a readable workbook ({one_line(str(error))})") from None
+        said = one_line(str(error)).rstrip(".")
+        raise InputError(
+            f"{path}: not a readable workbook ({said}); save it again as .xlsx, or export the "
+            "sheet as CSV"
+        ) from None
     if not tables:
         raise InputError(
             f"{path}: no sheet with a row of names above numbers, found {', '.join(names)}"
