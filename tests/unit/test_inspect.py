@@ -216,6 +216,17 @@ def test_facts_are_shown(tmp_path: Path) -> None:
         assert word in plain.stdout
 
 
+def test_a_column_that_is_not_read_is_named(tmp_path: Path) -> None:
+    time, torque, angle, _ = loop()
+    path = write(tmp_path / "loop.csv", "Time [s],Torque [N m],Angle [deg],Position", time, torque,
+                 angle, 7 * time)  # fmt: skip
+    assert inspected(path)["unread_columns"] == ["Position"]
+    assert "numbers, not read: Position\n" in run("inspect", str(path)).stdout
+    path = write(tmp_path / "all.csv", "Time [s],Torque [N m],Angle [deg]", time, torque, angle)
+    assert inspected(path)["unread_columns"] == []
+    assert "not read" not in run("inspect", str(path)).stdout
+
+
 def test_a_row_of_units_under_canonical_names(tmp_path: Path) -> None:
     _, torque, angle, _ = loop()
     path = write(tmp_path / "loop.csv", "torque_nm,angle_deg\nlbf in,mrad",

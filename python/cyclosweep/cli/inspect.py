@@ -171,6 +171,8 @@ def _print(found: Inspection) -> None:
             _column_line(column), width, initial_indent="  ", subsequent_indent="      "
         ):
             print(line)
+    if found.unread_columns:
+        _paragraph("numbers, not read", ", ".join(found.unread_columns), width)
     if found.text_columns:
         _paragraph("text, not read", ", ".join(found.text_columns), width)
     if found.facts:

@@ -95,6 +95,12 @@ class Inspection:
     notes: list[str] = field(default_factory=list)
     facts: dict[str, str] = field(default_factory=dict)
 
+    @property
+    def unread_columns(self) -> list[str]:
+        """Columns of numbers that the proposed metadata do not read."""
+        selected = self.proposal.meta.get("select", {})
+        return [c.name for c in self.columns if c.role is None and c.name not in selected]
+
     def as_dict(self) -> dict[str, Any]:
         """Content for JSON."""
         recording = self.recording
@@ -103,6 +109,7 @@ class Inspection:
             "file": str(self.path),
             "columns": [asdict(column) for column in self.columns],
             "text_columns": self.text_columns,
+            "unread_columns": self.unread_columns,
             "facts": self.facts,
             "notes": self.notes,
             "faults": [
