@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -31,6 +32,21 @@ def run(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess
         cwd=cwd,
         check=False,
     )
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["show", "reference-87"], ["show", "reference-87", "--json"], ["--help"], ["--version"]],
+)
+def test_a_reader_that_has_ended_ends_the_program_quietly(arguments: list[str]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "cyclosweep", *arguments]
+    try:
+        result = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, check=False)
+    finally:
+        os.close(writer)
+    assert (result.returncode, result.stderr) == (141, b"")
 
 
 @pytest.fixture

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
-from typing import Annotated, cast
+from typing import Annotated, NoReturn, cast
 
 import typer
 
@@ -37,6 +39,9 @@ __all__ = ["main"]
 
 # The exception of typer for wrong options; typer may hold its own copy of click.
 _UsageError = cast(type[Exception], typer.BadParameter.__bases__[0])
+
+READER_ENDED = 141
+"""Exit status where the reader of a pipe has ended: 128 and the number of SIGPIPE, as of shells."""
 
 app = typer.Typer(
     add_completion=False,
@@ -109,12 +114,20 @@ def _with_plugins(arguments: list[str]) -> list[str]:
     return rest
 
 
+def _end_without_reader() -> NoReturn:
+    """End quietly where the program that reads the output has ended, as `head` does."""
+    with contextlib.suppress(OSError):  # else Python's own flush at the end fails
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(READER_ENDED)
+
+
 def main() -> None:
     """Run the command line; every error is one line and an exit status."""
     survive_encoding()
     try:
         arguments = _with_plugins(sys.argv[1:])
         status = app(args=arguments or ["--help"], standalone_mode=False)
+        sys.stdout.flush()
     except _UsageError as error:
         message = getattr(error, "format_message", error.__str__)()
         fail(f"{' '.join(message.split()).rstrip('.')}; see --help", 2)
@@ -125,9 +138,12 @@ def main() -> None:
     except SweepError as error:
         fail(error, 1)
     except BrokenPipeError:
-        # The program that reads our output has ended, as `head` does.
-        sys.stderr.close()
-        sys.exit(1)
+        _end_without_reader()
+    except SystemExit as stop:
+        # So typer and rich end where the reader has; elsewhere a command has said its status.
+        if isinstance(stop.__context__, BrokenPipeError):
+            _end_without_reader()
+        raise
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         fail(f"{where}{error.strerror or error}", 1)
