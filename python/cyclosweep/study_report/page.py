@@ -291,6 +291,8 @@ def _drivers(facts: StudyFacts) -> str:
         rows += f"<tr><td>{broken(axis.name)}</td>{cells}</tr>"
     rest = "".join(
         f"<td>{max(1 - sum(axis.shares[name] for axis in axes), 0.0):.0%}</td>"
+        if not math.isclose(*facts.aggregate.ranges[name], rel_tol=1e-9)
+        else "<td>does not vary</td>"
         for name in facts.outcomes
     )
     table = (
