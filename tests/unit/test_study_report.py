@@ -14,6 +14,7 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.explore.influence import variance_share
 from cyclosweep.explore.tables import open_table
 from cyclosweep.study_report.aggregate import CELLS, Aggregate, aggregate
 from cyclosweep.study_report.gather import gather
@@ -112,17 +113,15 @@ def test_shares_of_variance_are_first_order_indices(tmp_path: Path) -> None:
 
 def test_chance_gives_no_share() -> None:
     """An input without effect has no share, though means of few rows differ."""
-    from cyclosweep.study_report.aggregate import _share
-
     rng = np.random.default_rng(3)
     shares = []
     for _ in range(200):
         place, y = rng.integers(0, 20, 400), rng.normal(size=400)
         count = np.bincount(place, minlength=20).astype(float)
         sums, squares = (np.bincount(place, v, 20).astype(float) for v in (y, y * y))
-        shares.append(_share(count, sums, squares))
+        shares.append(variance_share(count, sums, float(squares.sum()), 0.0))
     assert np.mean(shares) < 0.02
-    assert _share(np.array([3.0, 3.0]), np.array([3.0, 6.0]), np.array([3.0, 12.0])) == 1.0
+    assert variance_share(np.array([3.0, 3.0]), np.array([3.0, 6.0]), 15.0, 0.0) == 1.0
 
 
 def test_front_and_chosen_variants(folder: Path) -> None:

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from cyclosweep.sweep.objective import Objective
     from cyclosweep.sweep.study import StudyModel
 
-_TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsb", ".ods", ".parquet")
-
 
 def robust(
     designs: Annotated[
@@ -111,11 +109,11 @@ def _designs(
     from cyclosweep.choose.best import best_variants
     from cyclosweep.design.drive import Drive
     from cyclosweep.sweep.stored import open_study
-    from cyclosweep.sweep.table_files import read_table
+    from cyclosweep.sweep.table_files import is_table_name, read_table
 
     wanted = _objective(minimise, maximise)
     first = Path(given[0])
-    if first.is_dir() or first.suffix.lower() in _TABLES:
+    if first.is_dir() or is_table_name(first):
         if len(given) > 1:
             raise InputError("expected one folder or table, or several drive files")
         if not first.is_dir():

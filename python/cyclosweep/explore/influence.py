@@ -16,7 +16,7 @@ from cyclosweep.explore.tables import Conditions, Table, batches, conditions, op
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.progress import ShowProgress
 
-__all__ = ["input_influence"]
+__all__ = ["input_influence", "variance_share"]
 
 _Reals = npt.NDArray[np.float64]
 
@@ -132,17 +132,40 @@ class _Sums:
         self._square += float(deviation @ deviation)
 
     def share(self) -> float:
-        rows, filled = self._count.sum(), self._count > 0
-        groups = int(filled.sum())
-        if rows <= groups or self._origin is None:
+        if self._origin is None:
             return float("nan")
-        total = self._square - self._sum.sum() ** 2 / rows
-        between = (self._sum[filled] ** 2 / self._count[filled]).sum() - self._sum.sum() ** 2 / rows
-        # Rounding alone is no variance.
-        if total <= 1e-24 * rows * max(self._origin**2, 1e-300):
-            return float("nan")
-        within = max(total - between, 0.0) / (rows - groups)
-        return float(min(max((between - (groups - 1) * within) / total, 0.0), 1.0))
+        return variance_share(self._count, self._sum, self._square, self._origin)
+
+
+def variance_share(count: _Reals, sums: _Reals, square: float, origin: float) -> float:
+    """Correlation ratio epsilon^2 of Kelley (1935) from sums by interval.
+
+    Parameters
+    ----------
+    count, sums : ndarray, shape (intervals,)
+        Number of values and sum of their deviations from `origin`.
+    square : float
+        Sum of all deviations squared.
+    origin : float
+        A value near all of them.
+
+    Returns
+    -------
+    float
+        Share [1] of the variance between intervals, less what chance alone would give; NaN where
+        nothing varies, or there is no more than a value an interval.
+    """
+    rows, filled = count.sum(), count > 0
+    groups = int(filled.sum())
+    if rows <= groups:
+        return float("nan")
+    total = square - sums.sum() ** 2 / rows
+    between = (sums[filled] ** 2 / count[filled]).sum() - sums.sum() ** 2 / rows
+    # Rounding alone is no variance.
+    if total <= 1e-24 * rows * max(origin**2, 1e-300):
+        return float("nan")
+    within = max(total - between, 0.0) / (rows - groups)
+    return float(min(max((between - (groups - 1) * within) / total, 0.0), 1.0))
 
 
 def _places(cut: Cut, batch: pl.DataFrame) -> npt.NDArray[np.intp]:

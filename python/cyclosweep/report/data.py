@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cyclosweep.recording import Recording
+from cyclosweep.report.residual_scale import DEAD_ZONE_SHARE, scale_deg
 from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, answer_of
 
 Floats = NDArray[np.float64]
@@ -134,6 +136,21 @@ class ReportData:
     def scored(self) -> NDArray[np.bool_]:
         """Samples that count: all but conditioning runs and those beyond the limits of [score]."""
         return self.recording.counts
+
+    @cached_property
+    def on_the_way_through(self) -> NDArray[np.bool_]:
+        """Readings at almost no torque that are wrong by a part of the play."""
+        before, after = self.residual_before_deg, self.residual_after_deg
+        assert before is not None
+        assert after is not None
+        torque, scored = self.recording.torque_nm, self.scored
+        sigma, _ = self.noise
+        light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque[scored]).max())
+        found = np.zeros(len(torque), dtype=bool)
+        for residual in (before, after):
+            scale = max(scale_deg(torque[scored], residual[scored]), 4 * sigma)
+            found |= light & (np.abs(residual) > 1.2 * scale)
+        return found
 
     @property
     def noise(self) -> tuple[float, float]:

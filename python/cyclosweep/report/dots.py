@@ -8,16 +8,11 @@ from numpy.typing import NDArray
 
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.regions import located
+from cyclosweep.report.residual_scale import DEAD_ZONE_SHARE, scale_deg
 from cyclosweep.report.thin import DISPLAY_LIMIT
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-DEAD_ZONE_SHARE = 0.05
-"""Share of the largest torque below which a reading may be inside the dead zone."""
-FEW_BEYOND = 3.0
-"""Multiple of the residual that all but one in 200 samples keep, above which the largest do not
-set the scale."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -87,50 +82,10 @@ def residual_dots(data: ReportData, shown: NDArray[np.int64], x: Floats) -> Resi
     )
 
 
-def scale_deg(torque_nm: Floats, residual_deg: Floats) -> float:
-    """Largest residual that an axis has to show: not that of readings inside the dead zone.
-
-    There the twist says nothing of the drive: a crossing that comes a moment early or late is
-    wrong by the whole play.
-
-    Parameters
-    ----------
-    torque_nm, residual_deg : ndarray of float, shape (n,)
-        Torque [N m] and residual [deg] of the readings.
-    """
-    sizes, loaded = np.abs(residual_deg), np.abs(torque_nm)
-    outside = loaded > DEAD_ZONE_SHARE * loaded.max()
-    shown = sizes[outside] if np.count_nonzero(outside) >= len(sizes) // 2 else sizes
-    usual, largest = float(np.quantile(shown, 0.995)), float(shown.max())
-    return largest if largest < FEW_BEYOND * usual else usual
-
-
-def on_the_way_through(data: ReportData) -> Mask:
-    """Readings at almost no torque that are wrong by a part of the play.
-
-    Parameters
-    ----------
-    data : ReportData
-        Recording with both residuals.
-    """
-    before, after = data.residual_before_deg, data.residual_after_deg
-    assert before is not None
-    assert after is not None
-    torque, scored = data.recording.torque_nm, data.scored
-    sigma, _ = data.noise
-    scales = [scale_deg(torque[scored], r[scored]) for r in (before, after)]
-    light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque[scored]).max())
-    wrong = [
-        np.abs(r) > 1.2 * max(s, 4 * sigma) for r, s in zip((before, after), scales, strict=True)
-    ]
-    found: Mask = light & (wrong[0] | wrong[1])
-    return found
-
-
 def _means_of_neighbours(data: ReportData, averaged: int) -> Callable[[Floats], Floats]:
     """Return what averages a quantity over neighbours of one branch and side of the dead zone."""
     recording = data.recording
-    rows = np.flatnonzero(data.scored & ~on_the_way_through(data))
+    rows = np.flatnonzero(data.scored & ~data.on_the_way_through)
     torque = recording.torque_nm[rows]
     light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque).max())
     kinds = (recording.run[rows], recording.structure.loading[rows], np.sign(torque), light)

@@ -22,7 +22,7 @@ from cyclosweep.report.charts import (
     Series,
 )
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.dots import on_the_way_through, residual_dots
+from cyclosweep.report.dots import residual_dots
 from cyclosweep.report.loops import LOST_MOTION_SHARE, dead_zone_crossings, loop_figures
 from cyclosweep.report.regions import axis_values, residual_axis, spans_of
 from cyclosweep.report.residual_figures import map_figure, profiles_figures
@@ -73,7 +73,7 @@ def main_figure(data: ReportData) -> Figure:
     dots = residual_dots(data, rows, x)
     limit = dots.limit_deg
     beyond = int(np.count_nonzero(np.maximum(abs(before), abs(after))[data.scored] > limit))
-    beyond = beyond if dots.averaged == 1 else int(np.count_nonzero(on_the_way_through(data)))
+    beyond = beyond if dots.averaged == 1 else int(np.count_nonzero(data.on_the_way_through))
     result = data.result
     inside = dots.located
     panels = [Placed(panel=loop, row=0, column=0, rows=2)]

@@ -20,7 +20,6 @@ from cyclosweep.report.charts import (
     Series,
 )
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.dots import on_the_way_through
 from cyclosweep.report.profiles import Profile, by_group, profile, residual_map
 from cyclosweep.report.regions import axis_values
 from cyclosweep.report.wording import number
@@ -62,7 +61,7 @@ def profiles_figures(data: ReportData) -> list[Figure]:
 
 def map_figure(data: ReportData) -> Figure:
     """Residual map over torque by run and direction, before and after."""
-    recording, scored = data.recording, data.scored & ~on_the_way_through(data)
+    recording, scored = data.recording, data.scored & ~data.on_the_way_through
     before, after = data.residual_before_deg, data.residual_after_deg
     assert before is not None
     assert after is not None
@@ -108,13 +107,13 @@ def _bins(panel: Panel) -> int:
 
 def _left_out(data: ReportData) -> str:
     """Say how many readings the means leave out; nothing where there are none."""
-    count = int(np.count_nonzero(on_the_way_through(data) & data.scored))
+    count = int(np.count_nonzero(data.on_the_way_through & data.scored))
     return f" {count} readings on the way through the dead zone are left out." if count else ""
 
 
 def _profile_panels(data: ReportData) -> Iterator[Panel]:
     """One panel for every quantity that the recording has."""
-    recording, scored = data.recording, data.scored & ~on_the_way_through(data)
+    recording, scored = data.recording, data.scored & ~data.on_the_way_through
     structure = recording.structure
     side = recording.side
     torque_label = f"torque at the {side} shaft (N m)"

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
+from cyclosweep.explore.influence import variance_share
 from cyclosweep.explore.tables import Rows, batches
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.stored import StoredStudy
@@ -129,7 +130,8 @@ class _Axis:
                 mean = sums / count
                 deviation = np.sqrt(np.maximum(squares / count - mean**2, 0.0))
             means[name], deviations[name] = mean + shifts[k], deviation
-            shares[name] = _share(count, sums, squares)
+            share = variance_share(count, sums, float(squares.sum()), shifts[k])
+            shares[name] = 0.0 if math.isnan(share) else share
         if self.is_listed:
             centres = self.values
         else:
@@ -138,22 +140,6 @@ class _Axis:
         return AxisBins(
             self.name, centres, self.is_listed, self.total, self.feasible, means, deviations, shares
         )
-
-
-def _share(count: Reals, sums: Reals, squares: Reals) -> float:
-    """Share of variance between stretches, less what chance would give so many stretches."""
-    whole = count.sum()
-    filled = count > 0
-    groups = int(filled.sum())
-    if whole <= groups or groups < 2:
-        return 0.0
-    mean = sums.sum() / whole
-    total = squares.sum() - whole * mean**2
-    between = float((sums[filled] ** 2 / count[filled]).sum() - whole * mean**2)
-    if total <= 1e-12 * max(squares.sum(), 1e-300):
-        return 0.0
-    within = (total - between) / (whole - groups)
-    return float(min(max((between - (groups - 1) * within) / total, 0.0), 1.0))
 
 
 def aggregate(

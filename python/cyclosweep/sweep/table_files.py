@@ -14,7 +14,14 @@ import polars as pl
 from cyclosweep.atomic import unfinished, write_bytes
 from cyclosweep.errors import InputError
 
-__all__ = ["MOST_EXCEL_ROWS", "read_table", "row_in_file", "writable", "write_table"]
+__all__ = [
+    "MOST_EXCEL_ROWS",
+    "is_table_name",
+    "read_table",
+    "row_in_file",
+    "writable",
+    "write_table",
+]
 
 MOST_EXCEL_ROWS = 2**20 - 1
 """Rows of an Excel sheet below its header."""
@@ -24,6 +31,11 @@ _READ_AS_WORKBOOK = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _TEXT = (".csv", ".tsv", ".txt", ".csv.gz")
 _WRITTEN = (".csv", ".xlsx", ".parquet")
 _SEPARATORS = ",;\t"
+
+
+def is_table_name(path: str | Path) -> bool:
+    """Whether a file's name has an ending that :func:`read_table` reads."""
+    return _ending(Path(path)) in (*_PARQUET, *_READ_AS_WORKBOOK, *_TEXT)
 
 
 def read_table(path: str | Path, *, keep_blank_rows: bool = False) -> pl.DataFrame:
@@ -51,7 +63,7 @@ def read_table(path: str | Path, *, keep_blank_rows: bool = False) -> pl.DataFra
     """
     path = Path(path)
     ending = _ending(path)
-    if ending not in (*_PARQUET, *_READ_AS_WORKBOOK, *_TEXT):
+    if not is_table_name(path):
         raise InputError(f"{path}: found {ending or 'no ending'}, expected .csv, .xlsx or .parquet")
     try:
         if ending in _PARQUET:
