@@ -6,7 +6,7 @@ import math
 
 import polars as pl
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import cyclosweep as cs
@@ -89,6 +89,9 @@ WORDS = [
 ]
 
 
+@example("eccentricity_mm and eccentricity_mm")
+@example("least()")
+@example("not status")
 @given(st.one_of(st.text(max_size=30), st.lists(st.sampled_from(WORDS), max_size=8).map(" ".join)))
 def test_any_text_is_an_expression_or_an_input_error(text: str) -> None:
     try:

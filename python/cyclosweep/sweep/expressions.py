@@ -83,7 +83,7 @@ def expression(
     spelt = "".join(_spelt(text, columns, where))
     try:
         found = pl.sql_expr(spelt)
-        pl.LazyFrame(schema=dict(columns)).select(found).collect_schema()
+        _some_rows(columns).select(found)
     except pl.exceptions.PolarsError as error:
         reason = str(error).splitlines()[0].replace(f"'{spelt}'", "it")
         raise InputError(f"{where}: found {text!r}, which is no expression: {reason}") from None
@@ -163,6 +163,21 @@ def names_in(text: str) -> list[str]:
     return list(dict.fromkeys(name for k in range(len(tokens)) if (name := _column(tokens, k))))
 
 
+def _some_rows(columns: Mapping[str, pl.DataType]) -> pl.DataFrame:
+    """Rows to try an expression on: polars finds some mistakes of type in computing only."""
+    values = [pl.lit(_some_value(kind), dtype=kind).alias(name) for name, kind in columns.items()]
+    nulls = pl.DataFrame(schema=dict(columns)).clear(1)
+    return pl.concat([nulls.with_columns(values), nulls])
+
+
+def _some_value(kind: pl.DataType) -> str | int | None:
+    if isinstance(kind, pl.Enum):
+        return str(kind.categories[0])
+    if kind == pl.String():
+        return "ok"
+    return 1 if kind.is_numeric() or kind == pl.Boolean() else None
+
+
 def _dtype(found: pl.Expr, columns: Mapping[str, pl.DataType]) -> pl.DataType:
     frame = pl.LazyFrame(schema=dict(columns))
     return frame.select(found.alias("value")).collect_schema()["value"]
@@ -199,6 +214,9 @@ def _spelt(text: str, columns: Mapping[str, pl.DataType], where: str) -> Iterato
                     f"{where}: found {token[0]}(...) in {text!r}, expected functions of one row, "
                     "such as abs, sqrt, power, sin, ln, least and greatest"
                 )
+            follow = "".join(sign[0] for sign in tokens[place + 1 : place + 3])
+            if word in FUNCTIONS - {"pi"} and follow == "()":
+                raise InputError(f"{where}: found {token[0]}() in {text!r}, expected {token[0]}(a)")
             yield f" {token[0]} "
         elif token.lastgroup == "number" and "." in token[0] and "e" not in token[0].lower():
             # Without an exponent polars would take it as a decimal of that many digits.
