@@ -69,7 +69,14 @@ class Study:
     def axis_at(self, name: str, indices: npt.NDArray[np.uint64]) -> _Reals: ...
     def evaluate_range(self, start: int, stop: int, outputs: Sequence[str]) -> _Evaluated: ...
     def fill_range(
-        self, start: int, stop: int, outputs: Sequence[str], memory: _Reals
+        self,
+        start: int,
+        stop: int,
+        axes: Sequence[str],
+        outputs: Sequence[str],
+        are_counts: Sequence[bool],
+        real_memory: _Reals,
+        count_memory: npt.NDArray[np.uint32],
     ) -> tuple[npt.NDArray[np.uint8], bool]: ...
     def evaluate_at(
         self, indices: npt.NDArray[np.uint64], outputs: Sequence[str]

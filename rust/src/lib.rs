@@ -100,4 +100,4 @@ pub mod model;
 mod py;
 pub mod sampling;
 
-pub use kernel::{Columns, Kind, Limit, Limited, Output, Study, StudyError, check};
+pub use kernel::{Columns, Kind, Limit, Limited, Output, Source, Study, StudyError, Target, check};

@@ -6,6 +6,7 @@ import gc
 from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 import polars as pl
 import pytest
 
@@ -82,9 +83,15 @@ def test_only_so_much_is_kept() -> None:
     assert sum(block.nbytes for block in memory._free) <= memory.MOST_KEPT
 
 
+def _counts(count: int) -> npt.NDArray[np.uint32]:
+    return np.empty(count, np.uint32)
+
+
 def test_memory_of_another_size_is_refused() -> None:
     core = cs.Study.of(cs.Space.grid(cs.Drive.reference_87())).core
     with pytest.raises(ValueError, match="memory for 3 numbers, expected 1 times 1"):
-        core.fill_range(0, 1, ["hole_web_mm"], np.empty(3))
+        core.fill_range(0, 1, [], ["hole_web_mm"], [False], np.empty(3), _counts(0))
+    with pytest.raises(ValueError, match="memory for 3 numbers, expected 1 times 1"):
+        core.fill_range(0, 1, [], ["active_pins_min"], [True], np.empty(0), _counts(3))
     with pytest.raises(ValueError, match="memory for 3 numbers"):
         core.fill_axes([], 0, 1, np.empty(3))

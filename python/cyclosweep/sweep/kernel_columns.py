@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
 
     from cyclosweep.sweep.study import Study
 
-__all__ = ["axis_columns", "result_columns"]
+    _Column = npt.NDArray[np.float64] | npt.NDArray[np.uint32]
+    _Columns = Mapping[str, _Column]
+
+__all__ = ["axis_columns", "result_columns", "stretch_columns"]
 
 
 def axis_columns(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
@@ -41,11 +45,44 @@ def axis_columns(study: Study, names: list[str], start: int, stop: int) -> pl.Da
     -------
     polars.DataFrame
     """
-    dtypes = study.schema()
     axes = [name for name in names if name != "variant"]
     memory = take(len(axes) * (stop - start))
     study.core.fill_axes(axes, start, stop, memory)
     values = dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
+    return pl.DataFrame(_axis_series(study, names, values, start, stop))
+
+
+def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
+    """Values of axes, numbers and results of all variants of a stretch, in one pass.
+
+    Parameters
+    ----------
+    study : Study
+        What they belong to.
+    names : list of str
+        ``variant``, axes, ``status`` and result columns.
+    start, stop : int
+        Variants of the whole space, slices not applied.
+
+    Returns
+    -------
+    polars.DataFrame
+        Columns in the order of ``names``.
+    """
+    varying = {"variant", *(axis.name for axis in study.space.axes)}
+    inputs = [name for name in names if name in varying]
+    axes = [name for name in inputs if name != "variant"]
+    results = [name for name in names if name not in varying]
+    series, values = _results(study, results, start, stop, None, axes)
+    found = _axis_series(study, inputs, values, start, stop) + series
+    return pl.DataFrame(found).select(names)
+
+
+def _axis_series(
+    study: Study, names: list[str], values: _Columns, start: int, stop: int
+) -> list[pl.Series]:
+    """Numbers of variants, and axes with the type that they have in a table."""
+    dtypes = study.schema()
     columns = []
     for name in names:
         if name == "variant":
@@ -55,7 +92,7 @@ def axis_columns(study: Study, names: list[str], start: int, stop: int) -> pl.Da
             columns.append(codes.cat.to(dtypes[name]))
         else:
             columns.append(pl.Series(name, values[name]).cast(dtypes[name]))
-    return pl.DataFrame(columns)
+    return columns
 
 
 def result_columns(
@@ -82,6 +119,18 @@ def result_columns(
     -------
     list of polars.Series
     """
+    return _results(study, names, start, stop, picked, [])[0]
+
+
+def _results(
+    study: Study,
+    names: list[str],
+    start: int,
+    stop: int,
+    picked: npt.NDArray[np.uint64] | None,
+    axes: list[str],
+) -> tuple[list[pl.Series], _Columns]:
+    """Statuses and results as columns; values of axes beside them, where all variants are meant."""
     wanted = [name for name in names if name != "status"]
     of_train = [name for name in wanted if name in TRAIN_COLUMNS]
     with_parts = study.model == "components"
@@ -90,17 +139,17 @@ def result_columns(
         outputs = list(dict.fromkeys([*outputs, *needed_results(with_parts)]))
     of_parts = [name for name in outputs if name in _PARTS and study.model == "components"]
     published = [name for name in outputs if name not in of_parts]
-    status, any_refused, columns = _evaluated(study.core, published, start, stop, picked)
-    values = dict(zip(published, columns, strict=True))
+    status, any_refused, inputs, columns = _evaluated(study, axes, published, start, stop, picked)
+    values = dict(columns)
     may_not_apply = dict(zip(published, study.core.may_not_apply(published), strict=True))
     if study.model == "components":
-        status, any_refused, columns = _solved(study, of_parts, start, stop, picked)
-        values.update(zip(of_parts, columns, strict=True))
+        status, any_refused, solved = _solved(study, of_parts, start, stop, picked)
+        values.update(zip(of_parts, solved, strict=True))
         may_not_apply.update(dict.fromkeys(of_parts, True))
     if of_train:
-        inputs = _train_inputs(study, with_parts, start, stop, picked)
-        results = {name: values[name] for name in needed_results(with_parts)}
-        values.update(train_columns(of_train, {**inputs, **results}, with_parts))
+        train = _train_inputs(study, with_parts, start, stop, picked)
+        train.update((name, np.asarray(values[name], float)) for name in needed_results(with_parts))
+        values.update(train_columns(of_train, train, with_parts))
         may_not_apply.update(dict.fromkeys(of_train, True))
     outputs = wanted
     dtypes = study.schema()
@@ -113,10 +162,10 @@ def result_columns(
         built = pl.col("status") == 0
         table = table.with_columns(pl.when(built).then(pl.col(*outputs)))
     table = table.with_columns(
-        *(_cast(name, dtypes[name]) for name in outputs if dtypes[name] != pl.Float64()),
+        *(_cast(name, dtypes[name]) for name in outputs if dtypes[name] != table.schema[name]),
         pl.col("status").cat.to(dtypes["status"]),
     )
-    return [table[name] for name in names]
+    return [table[name] for name in names], inputs
 
 
 def _train_inputs(
@@ -151,18 +200,36 @@ def _cast(name: str, dtype: pl.DataType) -> pl.Expr:
 
 
 def _evaluated(
-    core: _core.Study,
+    study: Study,
+    axes: list[str],
     outputs: list[str],
     start: int,
     stop: int,
     picked: npt.NDArray[np.uint64] | None,
-) -> tuple[npt.NDArray[np.uint8], bool, npt.NDArray[np.float64]]:
-    """Statuses of the published model and its columns."""
-    if picked is None:
-        memory = take(len(outputs) * (stop - start))
-        status, any_refused = core.fill_range(start, stop, outputs, memory)
-        return status, any_refused, memory.reshape(len(outputs), stop - start)
-    return core.evaluate_at(picked, outputs)
+) -> tuple[npt.NDArray[np.uint8], bool, _Columns, _Columns]:
+    """Statuses of the published model, axes, of all variants only, and its columns."""
+    if picked is not None:
+        status, any_refused, columns = study.core.evaluate_at(picked, outputs)
+        return status, any_refused, {}, dict(zip(outputs, columns, strict=True))
+    dtypes = study.schema()
+    names, height = [*axes, *outputs], stop - start
+    are_counts = [dtypes[name] == pl.UInt32() for name in names]
+    counts = sum(are_counts)
+    reals = len(names) - counts
+    real_memory = take(reals * height)
+    count_memory = take(-(-counts * height // 2)).view(np.uint32)[: counts * height]
+    status, any_refused = study.core.fill_range(
+        start, stop, axes, outputs, are_counts, real_memory, count_memory
+    )
+    of_reals: Iterator[_Column] = iter(real_memory.reshape(reals, height))
+    of_counts: Iterator[_Column] = iter(count_memory.reshape(counts, height))
+    written = [next(of_counts if is_count else of_reals) for is_count in are_counts]
+    return (
+        status,
+        any_refused,
+        dict(zip(axes, written[: len(axes)], strict=True)),
+        dict(zip(outputs, written[len(axes) :], strict=True)),
+    )
 
 
 def _solved(

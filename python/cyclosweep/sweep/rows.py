@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from cyclosweep.sweep.derived import constants, with_derived
-from cyclosweep.sweep.kernel_columns import axis_columns, result_columns
+from cyclosweep.sweep.kernel_columns import axis_columns, result_columns, stretch_columns
 
 if TYPE_CHECKING:
     from cyclosweep.sweep.study import Study
@@ -51,18 +51,19 @@ def frame(
     first = dict.fromkeys(name for name in needed if name in cheap)
     for condition in before:
         first.update(dict.fromkeys(condition.meta.root_names()))
-    if before:
+    if not before:
+        if results:
+            whole = stretch_columns(study, [*first, *results], start, stop)
+        else:
+            # A frame without columns has no height: the number of the variant stands in.
+            whole = axis_columns(study, list(first) or ["variant"], start, stop)
+    else:
         inputs = axis_columns(study, list(dict.fromkeys(["variant", *first])), start, stop)
         inputs = inputs.filter(*before)
         if not results:
             return inputs.select(columns)
         picked = None if inputs.height == stop - start else inputs["variant"].to_numpy()
-    else:
-        # A frame without columns has no height: the number of the variant stands in.
-        inputs, picked = axis_columns(study, list(first) or ["variant"], start, stop), None
-    if not results:
-        return inputs.select(columns)
-    whole = inputs.with_columns(result_columns(study, results, start, stop, picked))
+        whole = inputs.with_columns(result_columns(study, results, start, stop, picked))
     if after:
         whole = whole.filter(*after)
     return whole.select(columns)

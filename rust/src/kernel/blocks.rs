@@ -111,12 +111,13 @@ impl Stages {
         }
     }
 
-    /// Stages and assembly of one block, and the status that follows from them.
+    /// Stages and assembly of one block, and the status that follows from them; `fill` writes the
+    /// values of an axis, in the user's unit.
     #[inline(always)]
     pub(crate) fn evaluate(
         &self,
-        space: &Space,
         rows: Rows<'_>,
+        fill: impl Fn(usize, &mut [f64]),
         wanted: Wanted,
         scratch: &mut Scratch,
         status: &mut [u8],
@@ -130,7 +131,7 @@ impl Stages {
         if !self.open_axes.is_empty() {
             for (axis, input) in &self.open_axes {
                 let lanes = scratch.inputs.at_mut(*input);
-                space.fill(*axis, rows, &mut lanes[..len]);
+                fill(*axis, &mut lanes[..len]);
                 let factor = factor(*input);
                 if factor != 1.0 {
                     for value in lanes {

@@ -5,15 +5,13 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 
 use crate::kernel::blocks::{Scratch, Stages, Wanted};
+use crate::kernel::columns::{Source, Target, Task, check_shape, part, reals, tasks};
 use crate::kernel::lanes::{BLOCK, Wide, with_widest};
 use crate::kernel::outputs::Output;
 use crate::kernel::study::{Limited, Study, StudyError};
 use crate::model::error::Status;
 use crate::model::inputs::factor;
 use crate::sampling::{Rows, Space};
-
-/// Variants a thread takes at a time.
-const TASK: usize = 32 * BLOCK;
 
 /// The columns of a stretch of variants. Refused variants have NaN in every one.
 #[derive(Debug, Clone, Default)]
@@ -31,13 +29,6 @@ pub struct Columns {
 enum Path {
     Blocks,
     OneByOne,
-}
-
-/// A stretch of the result columns that one thread writes.
-struct Task<'a> {
-    first: usize,
-    status: &'a mut [u8],
-    values: Vec<&'a mut [f64]>,
 }
 
 impl Study {
@@ -69,16 +60,15 @@ impl Study {
         rows: Rows<'_>,
         values: Vec<&mut [f64]>,
     ) -> Result<(), StudyError> {
-        let count = self.space.axes().len();
-        if let Some(axis) = axes.iter().find(|axis| **axis >= count) {
-            let (axis, axes) = (*axis, count);
-            return Err(StudyError::NoSuchAxis { axis, axes });
+        for axis in axes {
+            self.check_axis(*axis)?;
         }
         let (space, mut nothing) = (&self.space, Vec::new());
         nothing.resize(values.first().map_or(0, |column| column.len()), 0);
         self.check_rows(rows, nothing.len())?;
-        check_shape(axes.len(), nothing.len(), &values)?;
-        tasks(&mut nothing, values)
+        let targets = reals(values);
+        check_shape(axes.len(), nothing.len(), &targets)?;
+        tasks(&mut nothing, targets)
             .into_par_iter()
             .for_each(|task| {
                 with_widest(AxesWork {
@@ -118,7 +108,23 @@ impl Study {
         status: &mut [u8],
         values: Vec<&mut [f64]>,
     ) -> Result<bool, StudyError> {
-        self.run(rows, outputs, status, values, Path::Blocks)
+        let sources: Vec<Source> = outputs.iter().copied().map(Source::Output).collect();
+        self.run(rows, &sources, status, reals(values), Path::Blocks)
+    }
+
+    /// [`Study::evaluate_into`] for a table: axes beside results, counts as such. True when any
+    /// variant is refused.
+    ///
+    /// # Errors
+    /// As [`Study::evaluate_into`], and for an axis that the study does not have.
+    pub fn table_into(
+        &self,
+        rows: Rows<'_>,
+        sources: &[Source],
+        status: &mut [u8],
+        targets: Vec<Target<'_>>,
+    ) -> Result<bool, StudyError> {
+        self.run(rows, sources, status, targets, Path::Blocks)
     }
 
     /// [`Study::evaluate`] the slow way, for tests: every variant alone, without the machine's own
@@ -145,8 +151,9 @@ impl Study {
         self.check_rows(rows, len)?;
         let mut status = vec![0; len];
         let mut values: Vec<Vec<f64>> = outputs.iter().map(|_| vec![0.0; len]).collect();
-        let slices = values.iter_mut().map(Vec::as_mut_slice).collect();
-        let any_refused = self.run(rows, outputs, &mut status, slices, path)?;
+        let targets = values.iter_mut().map(|column| Target::Real(column));
+        let sources: Vec<Source> = outputs.iter().copied().map(Source::Output).collect();
+        let any_refused = self.run(rows, &sources, &mut status, targets.collect(), path)?;
         Ok(Columns {
             status,
             any_refused,
@@ -157,28 +164,31 @@ impl Study {
     fn run(
         &self,
         rows: Rows<'_>,
-        outputs: &[Output],
+        sources: &[Source],
         status: &mut [u8],
-        values: Vec<&mut [f64]>,
+        targets: Vec<Target<'_>>,
         path: Path,
     ) -> Result<bool, StudyError> {
         self.check_rows(rows, status.len())?;
-        check_shape(outputs.len(), status.len(), &values)?;
-        for output in outputs {
-            self.check_load(*output)?;
+        check_shape(sources.len(), status.len(), &targets)?;
+        for source in sources {
+            match source {
+                Source::Axis(axis) => self.check_axis(*axis)?,
+                Source::Output(output) => self.check_load(*output)?,
+            }
         }
         self.evaluated
             .fetch_add(status.len() as u64, Ordering::Relaxed);
         let stages = self
             .stages
             .get_or_init(|| Stages::new(&self.space, &self.base, &self.kinds));
-        let wanted = self.wanted(outputs, path);
+        let wanted = self.wanted(sources, path);
         let work = |scratch: &mut Scratch, task: Task<'_>| {
             let work = TaskWork {
                 study: self,
                 stages,
                 wanted,
-                outputs,
+                sources,
                 rows: part(rows, task.first, task.status.len()),
                 scratch,
                 task,
@@ -188,10 +198,20 @@ impl Study {
                 Path::OneByOne => work.run(),
             }
         };
-        Ok(tasks(status, values)
+        Ok(tasks(status, targets)
             .into_par_iter()
             .map_init(|| stages.scratch(&self.base), work)
             .reduce(|| false, |a, b| a | b))
+    }
+
+    /// Requires an axis of this study.
+    fn check_axis(&self, axis: usize) -> Result<(), StudyError> {
+        let axes = self.space.axes().len();
+        if axis < axes {
+            Ok(())
+        } else {
+            Err(StudyError::NoSuchAxis { axis, axes })
+        }
     }
 
     /// Requires rows of this study, `len` of them.
@@ -217,12 +237,16 @@ impl Study {
     }
 
     /// What of the stages the outputs and limits need.
-    fn wanted(&self, outputs: &[Output], path: Path) -> Wanted {
+    fn wanted(&self, sources: &[Source], path: Path) -> Wanted {
+        let outputs = sources.iter().filter_map(|source| match source {
+            Source::Output(output) => Some(*output),
+            Source::Axis(_) => None,
+        });
         let limited = self.limits.iter().filter_map(|limit| match limit.column {
             Limited::Output(output) => Some(output),
             Limited::Input(_) => None,
         });
-        let needed = || outputs.iter().copied().chain(limited.clone());
+        let needed = || outputs.clone().chain(limited.clone());
         Wanted {
             map: needed().any(|output| !output.is_free_of_map()),
             every_criterion: needed().any(Output::needs_every_criterion),
@@ -273,23 +297,6 @@ impl Study {
     }
 }
 
-/// Requires `columns` columns of `rows` rows to write to; without rows there is nothing to write.
-fn check_shape(columns: usize, rows: usize, values: &[&mut [f64]]) -> Result<(), StudyError> {
-    if rows > 0 && values.len() != columns {
-        return Err(StudyError::Shape {
-            expected: columns,
-            found: values.len(),
-        });
-    }
-    match values.iter().find(|column| column.len() != rows) {
-        Some(column) => Err(StudyError::Shape {
-            expected: rows,
-            found: column.len(),
-        }),
-        None => Ok(()),
-    }
-}
-
 /// Axes of one task.
 struct AxesWork<'a> {
     space: &'a Space,
@@ -304,8 +311,10 @@ impl Wide for AxesWork<'_> {
     #[inline(always)]
     fn run(self) {
         let rows = part(self.rows, self.task.first, self.task.status.len());
-        for (axis, column) in self.axes.iter().zip(self.task.values) {
-            self.space.fill(*axis, rows, column);
+        for (axis, target) in self.axes.iter().zip(self.task.targets) {
+            if let Target::Real(column) = target {
+                self.space.fill(*axis, rows, column);
+            }
         }
     }
 }
@@ -315,7 +324,7 @@ struct TaskWork<'a> {
     study: &'a Study,
     stages: &'a Stages,
     wanted: Wanted,
-    outputs: &'a [Output],
+    sources: &'a [Source],
     rows: Rows<'a>,
     scratch: &'a mut Scratch,
     task: Task<'a>,
@@ -332,53 +341,53 @@ impl Wide for TaskWork<'_> {
         for from in (0..len).step_by(BLOCK) {
             let to = (from + BLOCK).min(len);
             let rows = part(self.rows, from, to - from);
+            self.write_axes(rows, from, to);
+            let (space, sources, targets) = (&self.study.space, self.sources, &self.task.targets);
+            let fill = |axis: usize, lanes: &mut [f64]| {
+                let written = sources.iter().position(|s| *s == Source::Axis(axis));
+                match written {
+                    Some(place) => targets[place].read(from, lanes),
+                    None => space.fill(axis, rows, lanes),
+                }
+            };
             let status = &mut self.task.status[from..to];
             self.stages
-                .evaluate(&self.study.space, rows, self.wanted, self.scratch, status);
+                .evaluate(rows, fill, self.wanted, self.scratch, status);
             if !self.study.limits.is_empty() {
                 self.study.limit_block(self.scratch, rows, status);
             }
             let refused = status.iter().fold(0, |any, status| any | status) != Status::Ok as u8;
             any_refused |= refused;
-            for (output, column) in self.outputs.iter().zip(&mut self.task.values) {
-                let column = &mut column[from..to];
-                self.scratch.write(*output, &self.study.loads, column);
-                if refused {
-                    for (value, status) in column.iter_mut().zip(&*status) {
-                        if *status != Status::Ok as u8 {
-                            *value = f64::NAN;
+            for (source, target) in self.sources.iter().zip(&mut self.task.targets) {
+                let Source::Output(output) = *source else {
+                    continue;
+                };
+                target.write(from, to, |column| {
+                    self.scratch.write(output, &self.study.loads, column);
+                    if refused {
+                        for (value, status) in column.iter_mut().zip(&*status) {
+                            if *status != Status::Ok as u8 {
+                                *value = f64::NAN;
+                            }
                         }
                     }
-                }
+                });
             }
         }
         any_refused
     }
 }
 
-/// The result columns cut into stretches, one a task.
-fn tasks<'a>(status: &'a mut [u8], values: Vec<&'a mut [f64]>) -> Vec<Task<'a>> {
-    let mut tasks: Vec<Task<'a>> = status
-        .chunks_mut(TASK)
-        .enumerate()
-        .map(|(k, status)| Task {
-            first: k * TASK,
-            status,
-            values: Vec::with_capacity(values.len()),
-        })
-        .collect();
-    for column in values {
-        for (task, part) in tasks.iter_mut().zip(column.chunks_mut(TASK)) {
-            task.values.push(part);
+impl TaskWork<'_> {
+    /// Writes the axes of the rows from..to of the task.
+    #[inline(always)]
+    fn write_axes(&mut self, rows: Rows<'_>, from: usize, to: usize) {
+        for (source, target) in self.sources.iter().zip(&mut self.task.targets) {
+            if let Source::Axis(axis) = *source {
+                target.write(from, to, |column| {
+                    self.study.space.fill(axis, rows, column);
+                });
+            }
         }
-    }
-    tasks
-}
-
-/// Rows `first .. first + len` of the rows asked for.
-fn part(rows: Rows<'_>, first: usize, len: usize) -> Rows<'_> {
-    match rows {
-        Rows::From(start) => Rows::From(start + first as u64),
-        Rows::At(indices) => Rows::At(&indices[first..first + len]),
     }
 }

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod cache;
+mod columns;
 mod evaluate;
 pub(crate) mod lanes;
 mod map_stage;
@@ -11,6 +12,7 @@ mod shaft_plan;
 mod stages;
 mod study;
 
+pub use columns::{Source, Target};
 pub use evaluate::Columns;
 pub use outputs::{Kind, Output};
 pub use study::{Limit, Limited, Study, StudyError, check};

@@ -11,7 +11,7 @@ use crate::model::design::{Design, ShaftSegment};
 use crate::model::inputs::{Input, input_index, segment_input};
 use crate::model::shaft::SegmentKind;
 use crate::sampling::{Axis, Layout, Rows, Space, Values};
-use crate::{Limit, Limited, Output, Study, StudyError};
+use crate::{Limit, Limited, Output, Source, Study, StudyError, Target};
 
 impl From<StudyError> for PyErr {
     fn from(error: StudyError) -> Self {
@@ -165,6 +165,10 @@ impl PyStudy {
         found.ok_or_else(|| PyValueError::new_err(format!("{name} does not vary in this study")))
     }
 
+    fn axis_numbers(&self, names: &[String]) -> PyResult<Vec<usize>> {
+        names.iter().map(|name| self.axis_number(name)).collect()
+    }
+
     fn chosen(&self, names: &[String]) -> PyResult<Vec<Output>> {
         let find = |name: &String| {
             let found = self.outputs.iter().find(|(known, _)| known == name);
@@ -221,7 +225,7 @@ impl PyStudy {
 }
 
 /// Memory as this many columns of a length.
-fn columns_of(memory: &mut [f64], count: usize, len: usize) -> PyResult<Vec<&mut [f64]>> {
+fn columns_of<T>(memory: &mut [T], count: usize, len: usize) -> PyResult<Vec<&mut [T]>> {
     if memory.len() != count * len {
         let found = memory.len();
         return Err(PyValueError::new_err(format!(
@@ -337,10 +341,7 @@ impl PyStudy {
         stop: u64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let len = self.check_range(start, stop)?;
-        let axes = names
-            .iter()
-            .map(|name| self.axis_number(name))
-            .collect::<PyResult<Vec<_>>>()?;
+        let axes = self.axis_numbers(&names)?;
         // One array, as in `evaluate`.
         let columns = PyArray2::<f64>::zeros(py, [axes.len(), len], false);
         {
@@ -365,10 +366,7 @@ impl PyStudy {
         mut memory: PyReadwriteArray1<'_, f64>,
     ) -> PyResult<()> {
         let len = self.check_range(start, stop)?;
-        let axes = names
-            .iter()
-            .map(|name| self.axis_number(name))
-            .collect::<PyResult<Vec<_>>>()?;
+        let axes = self.axis_numbers(&names)?;
         let columns = columns_of(memory.as_slice_mut()?, axes.len(), len)?;
         py.detach(|| self.study.axes_into(&axes, Rows::From(start), columns))?;
         Ok(())
@@ -403,30 +401,48 @@ impl PyStudy {
         self.evaluate(py, Rows::From(start), len, &outputs)
     }
 
-    /// Evaluates variants start..stop into memory, one column after the other.
+    /// Writes axes, then results, of variants start..stop to memory, one column after the other:
+    /// to that of counts where `are_counts`, else to that of real numbers. The status codes, and
+    /// whether any variant is refused.
     #[expect(
         clippy::needless_pass_by_value,
-        reason = "a list and an array from Python arrive by value"
+        clippy::too_many_arguments,
+        reason = "lists and arrays from Python arrive by value, in one call a table"
     )]
     fn fill_range<'py>(
         &self,
         py: Python<'py>,
         start: u64,
         stop: u64,
+        axes: Vec<String>,
         outputs: Vec<String>,
-        mut memory: PyReadwriteArray1<'py, f64>,
+        are_counts: Vec<bool>,
+        mut real_memory: PyReadwriteArray1<'py, f64>,
+        mut count_memory: PyReadwriteArray1<'py, u32>,
     ) -> PyResult<(Bound<'py, PyArray1<u8>>, bool)> {
         let len = self.check_range(start, stop)?;
+        let axes = self.axis_numbers(&axes)?.into_iter().map(Source::Axis);
         let outputs = self.chosen(&outputs)?;
         VARIANTS.fetch_add(len as u64, Ordering::Relaxed);
         VALUES.fetch_add((len * outputs.len()) as u64, Ordering::Relaxed);
-        let columns = columns_of(memory.as_slice_mut()?, outputs.len(), len)?;
+        let sources: Vec<Source> = axes
+            .chain(outputs.into_iter().map(Source::Output))
+            .collect();
+        let counts = are_counts.iter().filter(|is_count| **is_count).count();
+        let reals = are_counts.len() - counts;
+        let mut reals = columns_of(real_memory.as_slice_mut()?, reals, len)?.into_iter();
+        let mut counts = columns_of(count_memory.as_slice_mut()?, counts, len)?.into_iter();
+        let target = |is_count: &bool| match is_count {
+            true => counts.next().map(Target::Count),
+            false => reals.next().map(Target::Real),
+        };
+        let targets = are_counts.iter().filter_map(target).collect();
         let status = PyArray1::<u8>::zeros(py, len, false);
         let any_refused = {
             let mut status = status.readwrite();
             let status = status.as_slice_mut()?;
             let rows = Rows::From(start);
-            py.detach(|| self.study.evaluate_into(rows, &outputs, status, columns))?
+            py.detach(|| self.study.table_into(rows, &sources, status, targets))?
         };
         Ok((status, any_refused))
     }
