@@ -30,7 +30,8 @@ def unfinished(path: str | Path) -> Iterator[Path]:
     Yields
     ------
     Path
-        The temporary file, in the same folder, named ``<name>.<host>-<process>-<thread>.tmp``.
+        The temporary file, in the same folder, named ``.<name>.<host>-<process>-<thread>.tmp``:
+        programs that read a folder of Parquet files pass over names with a leading dot.
 
     Raises
     ------
@@ -52,7 +53,7 @@ def unfinished(path: str | Path) -> Iterator[Path]:
         yield target
         return
     writer = f"{socket.gethostname()}-{os.getpid()}-{threading.get_native_id()}"
-    temporary = target.with_name(f"{target.name}.{writer}.tmp")
+    temporary = target.with_name(f".{target.name}.{writer}.tmp")
     try:
         yield temporary
         os.replace(temporary, target)

@@ -15,6 +15,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 import cyclosweep as cs
+from cyclosweep.atomic import unfinished
 
 SPACE = cs.Space.grid(
     cs.Drive.reference_87(), eccentricity_mm=[0.4, 0.6, 0.9], output_pin_count=[6, 8, 9]
@@ -35,6 +36,19 @@ def test_pandas_reads_the_folder(folder: Path) -> None:
     for name in COLUMNS:
         found = pl.Series(name, table[name].to_numpy(), nan_to_null=name.startswith("twist"))
         assert found.to_list() == expected[name].to_list()
+
+
+def test_a_part_that_is_being_written_is_passed_over_and_later_deleted(folder: Path) -> None:
+    with unfinished(folder / "part-000001.parquet") as file:
+        file.write_text("half a part")
+        assert len(pd.read_parquet(folder)) == len(SPACE)
+        assert pyarrow.dataset.dataset(folder).count_rows() == len(SPACE)
+        killed = [Path(f"{file}.killed.tmp"), folder / "part-000002.parquet.host-1-1.tmp"]
+        for path in killed:
+            path.write_text("what a killed writer left")
+        cs.sink(SPACE, folder, rows_per_part=4, resume=True)
+        assert not any(path.exists() for path in killed)
+        file.write_bytes((folder / "part-000001.parquet").read_bytes())
 
 
 def test_pyarrow_reads_the_folder(folder: Path) -> None:

@@ -40,6 +40,7 @@ _FOOTER = "cyclosweep"
 _FORMAT = "cyclosweep.dataset/1"
 _MANIFEST = "_manifest.json"
 _FORMER_MANIFEST = "manifest.json"  # no underscore: read as a part by other programs
+_UNFINISHED = "*part-*.tmp"  # of today with a leading dot, of former versions without
 _PART_NAME = re.compile(r"part-(\d+)\.parquet")
 
 
@@ -126,7 +127,7 @@ class Dataset:
         self.check(resume=resume, fresh=fresh)
         self.folder.mkdir(parents=True, exist_ok=True)
         if fresh:
-            for path in [*self._found(), *self.folder.glob("part-*.tmp")]:
+            for path in [*self._found(), *self.folder.glob(_UNFINISHED)]:
                 path.unlink(missing_ok=True)
         if read_manifest(self.folder) is None:
             self.write_manifest([])
@@ -170,11 +171,8 @@ class Dataset:
     def _refuse_another_stretch(self, identity: dict[str, Any]) -> None:
         """Refuse a folder that holds other variants of the same study, as `--rows` makes them."""
         there, here = identity.get("definition"), self.study.definition()
-        if not isinstance(there, dict) or {**there, "start": 0, "stop": 0} != {
-            **here,
-            "start": 0,
-            "stop": 0,
-        }:
+        whole = {"start": 0, "stop": 0}
+        if not isinstance(there, dict) or {**there, **whole} != {**here, **whole}:
             return
         raise InputError(
             f"{self.folder}: holds variants {there.get('start'):,} to {there.get('stop'):,} of "
@@ -290,8 +288,9 @@ class Dataset:
 
     def finish(self, summaries: list[PartSummary]) -> None:
         """Write the manifest of the parts that are there and delete what killed writers left."""
-        for path in self.folder.glob("part-*.tmp"):
-            with contextlib.suppress(Timeout), self.lock(path.name.split(".")[0], timeout=0):
+        for path in self.folder.glob(_UNFINISHED):
+            stem = path.name.lstrip(".").split(".")[0]
+            with contextlib.suppress(Timeout), self.lock(stem, timeout=0):
                 path.unlink(missing_ok=True)
         self.write_manifest(summaries)
 
