@@ -481,3 +481,23 @@ def test_units_are_known_however_written() -> None:
         unit = find_unit(spelling, "torque_nm")
         assert unit is not None
         assert unit.factor == pytest.approx(LBF_IN)
+
+
+@pytest.mark.parametrize(("unit", "newton"), [("kg", 9.80665), ("g", 9.80665e-3)])
+def test_weights_on_a_lever_are_read_as_their_mass(
+    tmp_path: Path, unit: str, newton: float
+) -> None:
+    lines = [
+        f"{torque / 0.2 / newton:.9g};{angle:.9g}"
+        for torque, angle in zip(TORQUE, ANGLE, strict=True)
+    ]
+    path = tmp_path / "loop.csv"
+    path.write_text("\n".join([f"Weight [{unit}];Angle [deg]", *lines]))
+    path.with_name("loop.toml").write_text(
+        'side = "output"\n[columns]\n'
+        f'torque_nm = {{ column = "Weight [{unit}]", unit = "{unit}", lever_arm_m = 0.2 }}\n'
+        'angle_deg = "Angle [deg]"\n'
+    )
+    found = cs.Recording.read(path)
+    np.testing.assert_allclose(found.torque_nm, TORQUE, rtol=1e-6, atol=1e-7)
+    assert find_unit(unit, "torque_nm") is not None

@@ -27,7 +27,7 @@ QUANTITIES: dict[str, tuple[Kind, ...]] = {
 """What each canonical column may be computed from, first what it is itself."""
 
 UNIT_EXAMPLES = {
-    "torque_nm": "'N m', 'lbf in', 'kN' with lever_arm_m, 'A' with nm_per_a",
+    "torque_nm": "'N m', 'lbf in', 'kN', 'kg' or 'g' with lever_arm_m, 'A' with nm_per_a",
     "angle_deg": "'deg', 'mrad', 'arcmin', 'turns', 'counts' with counts_per_turn",
     "time_s": "'s', 'ms', 'min'",
     "crank_deg": "'deg', 'turns', 'counts' with counts_per_turn",
@@ -94,7 +94,9 @@ _FORCE = {
     "kn": 1e3,
     "mn": 1e-3,
     **dict.fromkeys(("lbf", "lb", "lbs"), POUND_FORCE_N),
-    **dict.fromkeys(("kgf", "kp"), KILOPOND_N),
+    # A weight on a lever is written down as its mass.
+    **dict.fromkeys(("kgf", "kp", "kg", "kgs"), KILOPOND_N),
+    **dict.fromkeys(("gf", "g"), KILOPOND_N / 1000),
 }
 _CURRENT = {"a": 1.0, "amp": 1.0, "amps": 1.0, "ampere": 1.0, "ma": 1e-3}
 _ANGLE = {
