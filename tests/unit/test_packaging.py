@@ -6,9 +6,12 @@ import re
 import subprocess
 import tomllib
 from importlib import resources
+from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 
 ROOT = Path(__file__).parents[2]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
@@ -37,6 +40,20 @@ def test_one_wheel_is_for_every_python_that_is_supported() -> None:
     assert f"cp{stable.removeprefix('abi3-py')}-abi3" in (
         ROOT / "tests" / "support" / "try_wheel.py"
     ).read_text("utf-8")
+
+
+def test_pinned_versions_install_on_the_oldest_python() -> None:
+    oldest = f"{PROJECT['project']['requires-python'].removeprefix('>=')}.0"
+    pins = (ROOT / "constraints.txt").read_text("utf-8").splitlines()
+    needs: dict[str, str] = {}
+    for name in (Requirement(pin).name for pin in pins if pin and not pin.startswith("#")):
+        try:
+            needs[name] = str(metadata(name).json.get("requires_python", ""))
+        except PackageNotFoundError:
+            continue
+    assert len(needs) > 50
+    refused = {name: need for name, need in needs.items() if oldest not in SpecifierSet(need)}
+    assert not refused
 
 
 def test_versions_agree() -> None:

@@ -165,17 +165,18 @@ def names_in(text: str) -> list[str]:
 
 def _some_rows(columns: Mapping[str, pl.DataType]) -> pl.DataFrame:
     """Rows to try an expression on: polars finds some mistakes of type in computing only."""
-    values = [pl.lit(_some_value(kind), dtype=kind).alias(name) for name, kind in columns.items()]
-    nulls = pl.DataFrame(schema=dict(columns)).clear(1)
-    return pl.concat([nulls.with_columns(values), nulls])
+    values = {name: [_some_value(kind), None] for name, kind in columns.items()}
+    return pl.DataFrame(values, schema=dict(columns))
 
 
-def _some_value(kind: pl.DataType) -> str | int | None:
+def _some_value(kind: pl.DataType) -> str | float | None:
     if isinstance(kind, pl.Enum):
         return str(kind.categories[0])
     if kind == pl.String():
         return "ok"
-    return 1 if kind.is_numeric() or kind == pl.Boolean() else None
+    if kind == pl.Boolean():
+        return True
+    return 1 if kind.is_numeric() else None
 
 
 def _dtype(found: pl.Expr, columns: Mapping[str, pl.DataType]) -> pl.DataType:

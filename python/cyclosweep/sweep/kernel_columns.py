@@ -26,30 +26,7 @@ if TYPE_CHECKING:
     _Column = npt.NDArray[np.float64] | npt.NDArray[np.uint32]
     _Columns = Mapping[str, _Column]
 
-__all__ = ["axis_columns", "result_columns", "stretch_columns"]
-
-
-def axis_columns(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
-    """Values of axes, and numbers, of variants.
-
-    Parameters
-    ----------
-    study : Study
-        What they belong to.
-    names : list of str
-        ``variant`` and axes.
-    start, stop : int
-        Variants of the whole space, slices not applied.
-
-    Returns
-    -------
-    polars.DataFrame
-    """
-    axes = [name for name in names if name != "variant"]
-    memory = take(len(axes) * (stop - start))
-    study.core.fill_axes(axes, start, stop, memory)
-    values = dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
-    return pl.DataFrame(_axis_series(study, names, values, start, stop))
+__all__ = ["result_columns", "stretch_columns"]
 
 
 def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
@@ -60,7 +37,8 @@ def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl
     study : Study
         What they belong to.
     names : list of str
-        ``variant``, axes, ``status`` and result columns.
+        ``variant``, axes, ``status`` and result columns; without the last two the models are not
+        evaluated.
     start, stop : int
         Variants of the whole space, slices not applied.
 
@@ -73,9 +51,19 @@ def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl
     inputs = [name for name in names if name in varying]
     axes = [name for name in inputs if name != "variant"]
     results = [name for name in names if name not in varying]
-    series, values = _results(study, results, start, stop, None, axes)
+    if results:
+        series, values = _results(study, results, start, stop, None, axes)
+    else:
+        series, values = [], _axis_values(study, axes, start, stop)
     found = _axis_series(study, inputs, values, start, stop) + series
     return pl.DataFrame(found).select(names)
+
+
+def _axis_values(study: Study, axes: list[str], start: int, stop: int) -> _Columns:
+    """Values of axes alone."""
+    memory = take(len(axes) * (stop - start))
+    study.core.fill_axes(axes, start, stop, memory)
+    return dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
 
 
 def _axis_series(

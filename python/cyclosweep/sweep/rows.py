@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from cyclosweep.sweep.derived import constants, with_derived
-from cyclosweep.sweep.kernel_columns import axis_columns, result_columns, stretch_columns
+from cyclosweep.sweep.kernel_columns import result_columns, stretch_columns
 
 if TYPE_CHECKING:
     from cyclosweep.sweep.study import Study
@@ -52,13 +52,10 @@ def frame(
     for condition in before:
         first.update(dict.fromkeys(condition.meta.root_names()))
     if not before:
-        if results:
-            whole = stretch_columns(study, [*first, *results], start, stop)
-        else:
-            # A frame without columns has no height: the number of the variant stands in.
-            whole = axis_columns(study, list(first) or ["variant"], start, stop)
+        # A frame without columns has no height: the number of the variant stands in.
+        whole = stretch_columns(study, [*first, *results] or ["variant"], start, stop)
     else:
-        inputs = axis_columns(study, list(dict.fromkeys(["variant", *first])), start, stop)
+        inputs = stretch_columns(study, list(dict.fromkeys(["variant", *first])), start, stop)
         inputs = inputs.filter(*before)
         if not results:
             return inputs.select(columns)
@@ -79,7 +76,7 @@ def _extended(
     asked = dict.fromkeys(columns)
     for term in after:
         asked.update(dict.fromkeys(term.meta.root_names()))
-    inputs = axis_columns(study, ["variant", *(axis.name for axis in space.axes)], start, stop)
+    inputs = stretch_columns(study, ["variant", *(axis.name for axis in space.axes)], start, stop)
     inputs = with_derived(inputs, space.drive, space.derived).filter(*before)
     if cheap.issuperset(asked):
         return inputs.select(columns)

@@ -1,9 +1,11 @@
 //! Columns of a table: what is in them, the memory they are written to, and its cut into tasks.
 
+use std::ops::Range;
+
 use crate::kernel::lanes::BLOCK;
 use crate::kernel::outputs::Output;
 use crate::kernel::study::StudyError;
-use crate::sampling::Rows;
+use crate::sampling::{Rows, Space};
 
 /// Variants a thread takes at a time.
 pub(crate) const TASK: usize = 32 * BLOCK;
@@ -42,16 +44,16 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// Writes rows from..to by a function that writes real numbers.
+    /// Writes some rows, a block at most, by a function that writes real numbers.
     #[inline(always)]
-    pub(crate) fn write(&mut self, from: usize, to: usize, write: impl FnOnce(&mut [f64])) {
+    pub(crate) fn write(&mut self, rows: Range<usize>, write: impl FnOnce(&mut [f64])) {
         match self {
-            Target::Real(values) => write(&mut values[from..to]),
+            Target::Real(values) => write(&mut values[rows]),
             Target::Count(values) => {
                 let mut reals = [0.0; BLOCK];
-                let reals = &mut reals[..to - from];
+                let reals = &mut reals[..rows.len()];
                 write(reals);
-                for (value, real) in values[from..to].iter_mut().zip(reals) {
+                for (value, real) in values[rows].iter_mut().zip(reals) {
                     *value = *real as u32;
                 }
             }
@@ -77,6 +79,25 @@ pub(crate) struct Task<'a> {
     pub first: usize,
     pub status: &'a mut [u8],
     pub targets: Vec<Target<'a>>,
+}
+
+impl Task<'_> {
+    /// Writes those of its columns that are axes: the places `at` of the task, which are `rows` of
+    /// the space.
+    #[inline(always)]
+    pub(crate) fn write_axes(
+        &mut self,
+        space: &Space,
+        sources: &[Source],
+        rows: Rows<'_>,
+        at: Range<usize>,
+    ) {
+        for (source, target) in sources.iter().zip(&mut self.targets) {
+            if let Source::Axis(axis) = *source {
+                target.write(at.clone(), |column| space.fill(axis, rows, column));
+            }
+        }
+    }
 }
 
 /// The columns cut into stretches, one a task.

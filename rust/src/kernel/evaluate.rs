@@ -68,12 +68,14 @@ impl Study {
         self.check_rows(rows, nothing.len())?;
         let targets = reals(values);
         check_shape(axes.len(), nothing.len(), &targets)?;
+        let sources: Vec<Source> = axes.iter().copied().map(Source::Axis).collect();
+        let sources = sources.as_slice();
         tasks(&mut nothing, targets)
             .into_par_iter()
             .for_each(|task| {
                 with_widest(AxesWork {
                     space,
-                    axes,
+                    sources,
                     rows,
                     task,
                 })
@@ -300,7 +302,7 @@ impl Study {
 /// Axes of one task.
 struct AxesWork<'a> {
     space: &'a Space,
-    axes: &'a [usize],
+    sources: &'a [Source],
     rows: Rows<'a>,
     task: Task<'a>,
 }
@@ -309,12 +311,14 @@ impl Wide for AxesWork<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        let rows = part(self.rows, self.task.first, self.task.status.len());
-        for (axis, target) in self.axes.iter().zip(self.task.targets) {
-            if let Target::Real(column) = target {
-                self.space.fill(*axis, rows, column);
-            }
+    fn run(mut self) {
+        let len = self.task.status.len();
+        let rows = part(self.rows, self.task.first, len);
+        for from in (0..len).step_by(BLOCK) {
+            let to = (from + BLOCK).min(len);
+            let rows = part(rows, from, to - from);
+            self.task
+                .write_axes(self.space, self.sources, rows, from..to);
         }
     }
 }
@@ -341,8 +345,9 @@ impl Wide for TaskWork<'_> {
         for from in (0..len).step_by(BLOCK) {
             let to = (from + BLOCK).min(len);
             let rows = part(self.rows, from, to - from);
-            self.write_axes(rows, from, to);
-            let (space, sources, targets) = (&self.study.space, self.sources, &self.task.targets);
+            let (space, sources) = (&self.study.space, self.sources);
+            self.task.write_axes(space, sources, rows, from..to);
+            let targets = &self.task.targets;
             let fill = |axis: usize, lanes: &mut [f64]| {
                 let written = sources.iter().position(|s| *s == Source::Axis(axis));
                 match written {
@@ -362,7 +367,7 @@ impl Wide for TaskWork<'_> {
                 let Source::Output(output) = *source else {
                     continue;
                 };
-                target.write(from, to, |column| {
+                target.write(from..to, |column| {
                     self.scratch.write(output, &self.study.loads, column);
                     if refused {
                         for (value, status) in column.iter_mut().zip(&*status) {
@@ -375,19 +380,5 @@ impl Wide for TaskWork<'_> {
             }
         }
         any_refused
-    }
-}
-
-impl TaskWork<'_> {
-    /// Writes the axes of the rows from..to of the task.
-    #[inline(always)]
-    fn write_axes(&mut self, rows: Rows<'_>, from: usize, to: usize) {
-        for (source, target) in self.sources.iter().zip(&mut self.task.targets) {
-            if let Source::Axis(axis) = *source {
-                target.write(from, to, |column| {
-                    self.study.space.fill(axis, rows, column);
-                });
-            }
-        }
     }
 }
