@@ -27,6 +27,8 @@ if _TYPE_CHECKING:
     from cyclosweep import cad as cad
     from cyclosweep.choose.best import BestVariants, best_variants
     from cyclosweep.choose.comparison import Comparison, compare
+    from cyclosweep.design.drive_modes import dimension_sensitivities, modes
+    from cyclosweep.design.events import Event, transient
     from cyclosweep.diagnosis import Diagnosis, Series, diagnose, diagnose_folder
     from cyclosweep.explore import (
         FeasibleRanges,
@@ -51,17 +53,20 @@ _LATER = {
     "BestVariants": "choose.best",
     "Comparison": "choose.comparison",
     "Diagnosis": "diagnosis",
+    "Event": "design.events",
     "FeasibleRanges": "explore",
     "Model": "simulation.simulate",
     "Recording": "recording",
     "Series": "diagnosis",
     "best_variants": "choose.best",
     "compare": "choose.comparison",
+    "dimension_sensitivities": "design.drive_modes",
     "diagnose": "diagnosis",
     "diagnose_folder": "diagnosis",
     "driving_inputs": "explore",
     "feasible_ranges": "explore",
     "input_influence": "explore",
+    "modes": "design.drive_modes",
     "nearest_variants": "explore",
     "pareto": "explore",
     "pareto_front": "explore",
@@ -71,6 +76,7 @@ _LATER = {
     "simulate": "simulation.simulate",
     "sobol_indices": "explore",
     "tolerance_percentiles": "explore",
+    "transient": "design.events",
     "validate": "reference.rows",
 }
 _FOLDERS = {
@@ -107,6 +113,7 @@ __all__ = [
     "Distribution",
     "Drive",
     "Evaluator",
+    "Event",
     "FeasibleRanges",
     "Frustum",
     "InputError",
@@ -126,6 +133,7 @@ __all__ = [
     "compare",
     "diagnose",
     "diagnose_folder",
+    "dimension_sensitivities",
     "driving_inputs",
     "evaluate_table",
     "feasible_ranges",
@@ -133,6 +141,7 @@ __all__ = [
     "kernel_evaluations",
     "linspace",
     "log_uniform",
+    "modes",
     "nearest_variants",
     "normal",
     "open_study",
@@ -149,6 +158,7 @@ __all__ = [
     "sobol_indices",
     "sweep",
     "tolerance_percentiles",
+    "transient",
     "triangular",
     "uniform",
     "validate",

@@ -6,13 +6,13 @@ import dataclasses
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.design.events import Event, transient
 from cyclosweep.design.excitation import campbell, excitation_orders
 from cyclosweep.dynamics import SlipElement, TrainSpring, backbone_frequency_hz
 from cyclosweep.simulation.effect_value import EffectValue
@@ -250,7 +250,7 @@ def test_a_recorded_torque_is_followed(tmp_path: Path) -> None:
         'kind = "recorded"\nrecording = "torque.csv"\nduration_s = 0.3\n'
     )
     train = cs.Train([0.0035], [21.0], grounded=True)
-    run = transient(train, Event.from_toml(tmp_path / "event.toml"))
+    run = cs.transient(train, cs.Event.from_toml(tmp_path / "event.toml"))
     again = train.transient({0: ([0, 0.1, 0.1, 0.2], [0, 5, -5, -5])}, 0.3)
     assert run.table.equals(again.table)
 
@@ -258,8 +258,8 @@ def test_a_recorded_torque_is_followed(tmp_path: Path) -> None:
 def test_a_blocked_output_stops_what_turns() -> None:
     drive = cs.Drive.reference_87()
     train = drive.train(load_inertia_kg_m2=5.0)
-    event = Event(kind="blocked-output", duration_s=0.1).of_drive(drive)
-    run = transient(train, event)
+    event = cs.Event(kind="blocked-output", duration_s=0.1).of_drive(drive)
+    run = cs.transient(train, event)
     energy = run.table["kinetic_energy_j"][0]
     speed = drive.input_speed_rpm * math.pi / 30
     assert energy == pytest.approx(0.5 * 0.002 * speed**2)
@@ -318,3 +318,53 @@ def test_a_wrong_event_is_one_line(
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("model", ["published", "components"])
+def test_dimensions_move_a_frequency_as_their_small_changes_do(model: str) -> None:
+    drive = cs.Drive.reference_87().replace(**PARTS)
+    options: dict[str, Any] = {"model": model, "load_inertia_kg_m2": 5.0, "torque_nm": 5.0}
+    table = cs.dimension_sensitivities(drive, **options)
+    first = table.filter(pl.col("mode") == 2)
+    named = dict(first.select("dimension", "hz_per_unit").iter_rows())
+    assert {"output_pin_diameter_mm", "shaft_1_length_mm", "input_inertia_kg_m2"} <= set(named)
+    assert ("ring_pin_radius_mm" in named) == (model == "components")
+    assert not {"ratio", "input_speed_rpm", "output_pin_count"} & set(named)
+    for name, step in (("output_pin_diameter_mm", 0.01), ("shaft_1_diameter_mm", 0.01)):
+        at = [
+            cs.modes(
+                drive.replace(**{name: drive.values()[name] + sign * step}), **options
+            ).frequencies_hz[1]
+            for sign in (-1, 1)
+        ]
+        assert named[name] == pytest.approx((at[1] - at[0]) / (2 * step), rel=1e-3)
+    # The published frequency goes with the root of the stiffness, which goes with the modulus.
+    elasticity = first.filter(pl.col("dimension") == "youngs_modulus_gpa")["percent_per_percent"]
+    assert model == "components" or elasticity[0] == pytest.approx(0.5, abs=1e-7)
+
+
+def test_a_dimension_at_its_limit_is_moved_to_the_other_side() -> None:
+    drive = cs.Drive.reference_87().replace(poisson_ratio=0.5)
+    found = cs.dimension_sensitivities(drive)
+    assert "poisson_ratio" in found["dimension"].to_list()
+
+
+def test_parts_that_are_not_given_are_the_drive_s_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from cyclosweep.cli import main
+
+    drive = cs.Drive.reference_87().replace(load_inertia_kg_m2=5.0, eccentric_inertia_kg_m2=1e-3)
+    expected = drive.train().modes(drive.nominal_torque_nm).frequencies_hz
+    assert len(expected) == 2
+    drive.to_toml(tmp_path / "drive.toml")
+    monkeypatch.setattr("sys.argv", ["cyclosweep", "modes", str(tmp_path / "drive.toml"), "--json"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["frequencies_hz"] == pytest.approx(expected.tolist())
+    assert answer["dimension_sensitivities"][0]["mode"] == 2
+    assert cs.Event(kind="start", train={"load_inertia_kg_m2": 2.0}).parts == {  # type: ignore[arg-type]
+        "load_inertia_kg_m2": 2.0, "damping_s": 0.0,
+    }  # fmt: skip

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.design.events import Event
 from cyclosweep.errors import did_you_mean, one_of
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.simulation import effects
@@ -122,4 +121,4 @@ def test_misspelt_keys_of_other_files(tmp_path: Path) -> None:
         Metadata.read(path)
     path.write_text("kind = 'emergency-stop'\ndurations_s = 0.5\n")
     with pytest.raises(cs.InputError, match=r"did you mean duration_s\?"):
-        Event.from_toml(path)
+        cs.Event.from_toml(path)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,8 +12,10 @@ from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, print_json, print_tables, refuse_file
 
 if TYPE_CHECKING:
-    from cyclosweep.design.drive import Drive
-    from cyclosweep.dynamics.train import Train
+    import polars as pl
+
+MOST_DIMENSIONS = 8
+"""Dimensions of a mode that fit on a screen; ``--json`` has them all."""
 
 DriveName = Annotated[str, typer.Argument(metavar="DRIVE", help="Built-in drive or drive file.")]
 
@@ -34,8 +35,8 @@ def modes(
         float | None, typer.Option("--input-inertia", help="Motor [kg m^2]; the drive's own.")
     ] = None,
     eccentric_inertia: Annotated[
-        float, typer.Option("--eccentric-inertia", help="Eccentric and input shaft [kg m^2].")
-    ] = 0.0,
+        float | None, typer.Option("--eccentric-inertia", help="With the input shaft [kg m^2].")
+    ] = None,
     input_shaft_stiffness: Annotated[
         float | None, typer.Option("--input-shaft-stiffness", help="Before it [N m/rad].")
     ] = None,
@@ -58,21 +59,24 @@ def modes(
     Small oscillations under a load that keeps the play closed.
     """
     from cyclosweep.design.drive import Drive
+    from cyclosweep.design.drive_modes import dimension_sensitivities
+    from cyclosweep.design.drive_modes import modes as modes_of
     from cyclosweep.design.excitation import campbell, excitation_orders
 
     chosen = Drive.load(drive)
-    train = _train(
-        chosen,
-        model,
-        with_efficiency=not without_efficiency,
-        load_inertia_kg_m2=load_inertia,
-        input_inertia_kg_m2=input_inertia,
-        eccentric_inertia_kg_m2=eccentric_inertia,
-        input_shaft_stiffness_nm_per_rad=input_shaft_stiffness,
-        flange_inertia_kg_m2=flange_inertia,
-        coupling_stiffness_nm_per_rad=coupling_stiffness,
-    )
-    found = train.modes(chosen.nominal_torque_nm)
+    springs = _springs(model)
+    named: Any = model
+    options: dict[str, Any] = {
+        "with_efficiency": not without_efficiency,
+        "load_inertia_kg_m2": load_inertia,
+        "input_inertia_kg_m2": input_inertia,
+        "eccentric_inertia_kg_m2": eccentric_inertia,
+        "input_shaft_stiffness_nm_per_rad": input_shaft_stiffness,
+        "flange_inertia_kg_m2": flange_inertia,
+        "coupling_stiffness_nm_per_rad": coupling_stiffness,
+    }
+    found = modes_of(chosen, springs, **options)
+    moved = dimension_sensitivities(chosen, named, **options) if springs is model else None
     orders = excitation_orders(chosen)
     meetings = campbell(found, orders, speed or chosen.input_speed_rpm)
     if as_json:
@@ -83,15 +87,18 @@ def modes(
                 "modes": found.table().to_dicts(),
                 "energy_shares": found.energy_shares.to_dicts(),
                 "sensitivities": found.sensitivities.to_dicts(),
+                "dimension_sensitivities": None if moved is None else moved.to_dicts(),
                 "excitation_orders": orders.to_dicts(),
                 "excited_at": meetings.to_dicts(),
             }
         )
         return
+    dimensions = [] if moved is None else [_largest(moved)]
     print_tables(
         [
             titled("natural frequencies and shapes", found.table()),
             titled("who holds the energy; percent per percent of it", found.summary()),
+            *[titled("percent per percent of a dimension", table) for table in dimensions],
             titled(f"excited below {speed or chosen.input_speed_rpm:g} rpm", meetings),
         ]
     )
@@ -116,7 +123,7 @@ def shock(
 
     chosen = Drive.load(drive)
     what = Event.from_toml(event).of_drive(chosen)
-    train = _train(chosen, what.model, with_efficiency=True, **asdict(what.parts))
+    train = chosen.train(_springs(what.model), with_efficiency=True, **what.parts)
     run = transient(train, what)
     refuse_file(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -147,9 +154,18 @@ def shock(
     print(f"{out}: transient.parquet, events.csv, shock.json{', shock.png' if pictured else ''}")
 
 
-def _train(drive: Drive, model: str, **options: Any) -> Train:
-    if model.endswith(".json"):
-        from cyclosweep.simulation.model import Model
+def _springs(model: str) -> Any:
+    """Whose springs an option means: a name, or a calibrated model from its file."""
+    if not model.endswith(".json"):
+        return model
+    from cyclosweep.simulation.model import Model
 
-        return drive.train(Model.from_json(model), **options)
-    return drive.train(model, **options)  # type: ignore[arg-type]
+    return Model.from_json(model)
+
+
+def _largest(moved: pl.DataFrame) -> pl.DataFrame:
+    """Dimensions that move a frequency by a hundredth of their own change or more."""
+    import polars as pl
+
+    shown = moved.filter(pl.col("percent_per_percent").abs() >= 0.01)
+    return shown.group_by("mode", maintain_order=True).head(MOST_DIMENSIONS).drop("hz_per_unit")

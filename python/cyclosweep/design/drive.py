@@ -273,8 +273,8 @@ class Drive(PublishedDrive):
             every low frequency falls by the root of the efficiency.
         **parts
             What the drive's file does not hold: the fields of
-            :class:`cyclosweep.design.drive_train.TrainParts`, before those that the drive has as
-            keys. Without ``load_inertia_kg_m2`` the output is locked.
+            :class:`cyclosweep.design.drive_train.TrainParts`. A part that is not given, or None,
+            is the drive's own key. Without ``load_inertia_kg_m2`` the output is locked.
 
         Returns
         -------
@@ -304,5 +304,6 @@ class Drive(PublishedDrive):
                 f"{unknown[0]}: no such part of a train, expected one of {known}{hint}"
             )
         own = {name: getattr(self, name) for name in TRAIN_INPUTS}
-        given = {**{name: value for name, value in own.items() if value is not None}, **parts}
-        return train_of(self, model, TrainParts(**given), with_efficiency)
+        given = {name: part for name, part in parts.items() if part is not None}
+        stated = {name: part for name, part in own.items() if part is not None}
+        return train_of(self, model, TrainParts(**{**stated, **given}), with_efficiency)

@@ -11,7 +11,6 @@ import numpy.typing as npt
 import polars as pl
 from pydantic import Field, ValidationError
 
-from cyclosweep.design.drive_train import TrainParts
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import NonNegative, Positive
 from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
@@ -42,7 +41,7 @@ class _Parts(TomlTable):
 
     load_inertia_kg_m2: Positive | None = None
     input_inertia_kg_m2: Positive | None = None
-    eccentric_inertia_kg_m2: NonNegative = 0.0
+    eccentric_inertia_kg_m2: NonNegative | None = None
     input_shaft_stiffness_nm_per_rad: Positive | None = None
     flange_inertia_kg_m2: Positive | None = None
     coupling_stiffness_nm_per_rad: Positive | None = None
@@ -159,9 +158,9 @@ class Event(TomlTable):
         return self.model_copy(update=changes)
 
     @property
-    def parts(self) -> TrainParts:
-        """Inertias and springs around the drive."""
-        return TrainParts(**self.train.model_dump())
+    def parts(self) -> dict[str, float]:
+        """What ``[train]`` states of the inertias and springs around the drive."""
+        return self.train.model_dump(exclude_none=True)
 
 
 def transient(train: Train, event: Event) -> Transient:

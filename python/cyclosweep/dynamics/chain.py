@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -133,13 +134,13 @@ class Chain:
         except ValueError as error:
             raise InputError(f"train: {error}") from None
 
-    @property
+    @cached_property
     def node_ratios(self) -> Reals:
         """Speed of the first shaft over that of each node's, shape (nodes,) [1]."""
         between = self.ratios[: len(self.inertias_kg_m2) - 1]
         return np.cumprod(np.array([1.0, *between]), dtype=np.float64)
 
-    @property
+    @cached_property
     def spring_ratios(self) -> Reals:
         """Speed of the first shaft over that on which each spring is given, (springs,) [1]."""
         return self.node_ratios[: len(self.springs)]

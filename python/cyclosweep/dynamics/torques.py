@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -62,6 +63,9 @@ def knots(train: Chain, torques: Torques, duration_s: float) -> tuple[Reals, Rea
     times = np.repeat(np.r_[0.0, inner, duration_s], 2)[1:-1]
     table = np.zeros((len(times), len(train.names)))
     for node, (own, values) in histories.items():
+        if len(values) == 1:
+            table[:, node] = values
+            continue
         table[0::2, node] = _side(own, values, times[0::2], "right")
         table[1::2, node] = _side(own, values, times[1::2], "left")
     return times, table
@@ -85,14 +89,10 @@ def _history(name: str | int, torque: float | History) -> tuple[Reals, Reals]:
     return times, values
 
 
-def _side(times: Reals, values: Reals, at: Reals, side: str) -> Reals:
+def _side(times: Reals, values: Reals, at: Reals, side: Literal["left", "right"]) -> Reals:
     """Value just behind (``right``) or just before (``left``) each time of a history."""
-    if side == "right":
-        after = np.clip(np.searchsorted(times, at, "right"), 0, len(times))
-    else:
-        after = np.clip(np.searchsorted(times, at, "left"), 0, len(times))
-    low = np.clip(after - 1, 0, len(times) - 1)
-    high = np.clip(after, 0, len(times) - 1)
+    after = np.searchsorted(times, at, side)
+    low, high = np.maximum(after - 1, 0), np.minimum(after, len(times) - 1)
     width = times[high] - times[low]
     share = np.where(width > 0, (at - times[low]) / np.where(width > 0, width, 1.0), 0.0)
-    return np.asarray(values[low] + np.clip(share, 0.0, 1.0) * (values[high] - values[low]))
+    return np.asarray(values[low] + share * (values[high] - values[low]))

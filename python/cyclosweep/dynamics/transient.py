@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +20,7 @@ __all__ = ["Transient", "follow"]
 Reals = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Transient:
     """What a train did.
 
@@ -26,13 +28,6 @@ class Transient:
     ----------
     train : Chain
         The train.
-    table : polars.DataFrame
-        Samples: ``time_s``, ``angle_<node>_rad``, ``speed_<node>_rad_per_s``,
-        ``torque_<spring>_nm`` (friction included), ``kinetic_energy_j``, ``elastic_energy_j`` and
-        ``friction_loss_j`` so far. Every shaft in its own terms.
-    events : polars.DataFrame
-        ``time_s``, ``spring``, ``event`` (contact, separation, knee, slide, stick), ``twist_rad``
-        and ``speed_rad_per_s`` of the twist on the spring's own shaft.
     peak_torques_nm : dict of str to float
         Largest torque of each spring on its own shaft, with its sign [N m]; found by bounds, not
         from the samples.
@@ -46,12 +41,63 @@ class Transient:
     """
 
     train: Chain
-    table: pl.DataFrame
-    events: pl.DataFrame
     peak_torques_nm: dict[str, float]
     peak_times_s: dict[str, float]
     static_torques_nm: dict[str, float]
     friction_losses_j: dict[str, float]
+    _times_s: Reals = field(repr=False)
+    _spring_ratios: Reals = field(repr=False)
+    _core_columns: dict[str, Any] = field(repr=False)
+
+    @cached_property
+    def table(self) -> pl.DataFrame:
+        """The samples, every shaft in its own terms.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``time_s``, ``angle_<node>_rad``, ``speed_<node>_rad_per_s``, ``torque_<spring>_nm``
+            (friction included), ``kinetic_energy_j``, ``elastic_energy_j`` and
+            ``friction_loss_j`` so far.
+        """
+        found, names, rows = self._core_columns, self.train.names, len(self._times_s)
+        nodes = self.train.node_ratios
+        angles = found["angles"].reshape(rows, -1) / nodes
+        speeds = found["speeds"].reshape(rows, -1) / nodes
+        torques = found["torques"].reshape(rows, -1) * self._spring_ratios
+        columns = {
+            "time_s": self._times_s,
+            **_by_name("angle_{}_rad", names, angles),
+            **_by_name("speed_{}_rad_per_s", names, speeds),
+            **_by_name("torque_{}_nm", self.peak_torques_nm, torques),
+            "kinetic_energy_j": found["kinetic"],
+            "elastic_energy_j": found["potential"],
+            "friction_loss_j": found["lost"],
+        }
+        return pl.DataFrame({name: np.ascontiguousarray(c) for name, c in columns.items()})
+
+    @cached_property
+    def events(self) -> pl.DataFrame:
+        """What ended the branches of the springs' laws, in order.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``time_s``, ``spring``, ``event`` (contact, separation, knee, slide, stick),
+            ``twist_rad`` and ``speed_rad_per_s`` of the twist on the spring's own shaft.
+        """
+        found, names = self._core_columns, list(self.peak_torques_nm)
+        springs = np.asarray(found["event_springs"], dtype=np.int64)
+        own = self._spring_ratios[springs]
+        columns = {
+            "time_s": found["event_times"],
+            "spring": [names[k] for k in springs],
+            "event": found["event_kinds"],
+            "twist_rad": found["event_twists"] / own,
+            "speed_rad_per_s": found["event_speeds"] / own,
+        }
+        texts = {"spring": pl.String, "event": pl.String}
+        return pl.DataFrame(columns, schema_overrides=texts)
 
     @property
     def shock_factors(self) -> dict[str, float | None]:
@@ -99,7 +145,7 @@ class Transient:
     def __repr__(self) -> str:
         peaks = ", ".join(f"{name} {peak:.4g}" for name, peak in self.peak_torques_nm.items())
         factor = "none" if self.shock_factor is None else f"{self.shock_factor:.4g}"
-        end = self.table["time_s"][-1]
+        end = self._times_s[-1]
         return (
             f"Transient({end:g} s, {len(self.impacts)} impacts, peak torques [N m]: {peaks}, "
             f"shock factor {factor})"
@@ -169,8 +215,6 @@ def follow(
     ratios = np.r_[springs, [] if brake is None else nodes[brake.node]]
     return Transient(
         train,
-        _table(train, names, ratios, at, found),
-        _events(names, ratios, found),
         dict(zip(names, (found["peaks"] * ratios).tolist(), strict=True)),
         dict(zip(names, found["peak_times"].tolist(), strict=True)),
         {
@@ -178,45 +222,12 @@ def follow(
             **({} if brake is None else {"brake": 0.0}),
         },
         dict(zip(names, found["lost_in"].tolist(), strict=True)),
+        at,
+        ratios,
+        found,
     )
 
 
-def _table(
-    train: Chain, names: list[str], ratios: Reals, at: Reals, found: dict[str, Reals]
-) -> pl.DataFrame:
-    nodes = train.node_ratios
-    angles = found["angles"].reshape(len(at), -1) / nodes
-    speeds = found["speeds"].reshape(len(at), -1) / nodes
-    torques = found["torques"].reshape(len(at), -1) * ratios
-    columns: dict[str, Reals] = {"time_s": at}
-    for k, name in enumerate(train.names):
-        columns[f"angle_{name}_rad"] = angles[:, k]
-    for k, name in enumerate(train.names):
-        columns[f"speed_{name}_rad_per_s"] = speeds[:, k]
-    for k, name in enumerate(names):
-        columns[f"torque_{name}_nm"] = torques[:, k]
-    columns["kinetic_energy_j"] = found["kinetic"]
-    columns["elastic_energy_j"] = found["potential"]
-    columns["friction_loss_j"] = found["lost"]
-    return pl.DataFrame({name: np.ascontiguousarray(column) for name, column in columns.items()})
-
-
-def _events(names: list[str], ratios: Reals, found: dict[str, Reals]) -> pl.DataFrame:
-    springs = np.asarray(found["event_springs"], dtype=np.int64)
-    own = ratios[springs]
-    return pl.DataFrame(
-        {
-            "time_s": found["event_times"],
-            "spring": [names[k] for k in springs],
-            "event": list(found["event_kinds"]),
-            "twist_rad": found["event_twists"] / own,
-            "speed_rad_per_s": found["event_speeds"] / own,
-        },
-        schema={
-            "time_s": pl.Float64,
-            "spring": pl.String,
-            "event": pl.String,
-            "twist_rad": pl.Float64,
-            "speed_rad_per_s": pl.Float64,
-        },
-    )
+def _by_name(pattern: str, names: Iterable[str], columns: Reals) -> dict[str, Reals]:
+    """Columns of a matrix under their names."""
+    return dict(zip(map(pattern.format, names), columns.T, strict=True))
