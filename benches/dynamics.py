@@ -137,7 +137,7 @@ def _transients() -> dict[str, float]:
     scipy_time = _fastest(lambda: _scipy_transient(angles), 3)
     return {
         "transient of .1 s, 5 inertias, 9 events, 100 samples, core [us]": 1e6 * core_time,
-        "the same with its tables in Python [us]": 1e6 * whole_time,
+        "the same from Python, train.transient [us]": 1e6 * whole_time,
         "the same by scipy DOP853 with events, rtol 1e-10 [us]": 1e6 * scipy_time,
         "ratio to the core": scipy_time / core_time,
     }

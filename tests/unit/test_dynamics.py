@@ -237,6 +237,11 @@ def test_a_train_that_cannot_be_is_refused(arguments: tuple[object, ...], messag
         cs.Train(*arguments)  # type: ignore[arg-type]
 
 
+def test_an_input_inertia_of_zero_is_refused() -> None:
+    with pytest.raises(cs.InputError, match="inertia of input: found 0 kg m"):
+        cs.Drive.reference_87().train(input_inertia_kg_m2=0.0)
+
+
 def test_a_preload_that_nothing_holds_is_refused() -> None:
     train = cs.Train([1.0, 2.0], [3.0])
     with pytest.raises(cs.InputError, match="2 N m left over at the first shaft of a train that"):

@@ -140,7 +140,9 @@ def train_of(
     DesignError
         When the drive cannot be built.
     """
-    inertia = parts.input_inertia_kg_m2 or drive.input_inertia_kg_m2
+    inertia = parts.input_inertia_kg_m2
+    if inertia is None:
+        inertia = drive.input_inertia_kg_m2
     if inertia is None:
         raise InputError(
             f"{drive.name}: input_inertia_kg_m2: missing, expected the motor's inertia"
