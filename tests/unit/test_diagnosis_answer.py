@@ -15,7 +15,7 @@ from cyclosweep.result.statement import statement_of
 from tests.support.bench_rig import record
 from tests.support.published_schema import check_content
 
-ONLY_WHERE_THEY_APPLY = {"unknown", "drift", "change", "thinning"}
+ONLY_WHERE_THEY_APPLY = {"unknown", "drift", "change", "thinning", "play_and_stiffness"}
 KEYS = {entry.name for entry in dataclasses.fields(Answer)} - ONLY_WHERE_THEY_APPLY
 
 
@@ -75,7 +75,15 @@ def test_a_refusal_says_why_and_gives_no_model(case: str) -> None:
     assert refusal.content["stationary"] is None
     assert refusal.content["mismatch"]["evidence"] is None
     assert refusal.content["self_check"]["false_alarm"] is None
-    assert "repeat" in refusal.content["next_experiment"]["program"]
+    program = refusal.content["next_experiment"]["program"]
+    assert {
+        "too few": "repeat the recording with more readings",
+        "wrong unit": "correct unit, side or drive in the settings (the TOML file) or the drive",
+        "time runs back": "look first at the column and unit of the time",
+    }[case] in program
+    # A wrong setting is no reason to go back to the rig.
+    assert ("nothing has to be recorded anew" in program) is (case == "wrong unit")
+    assert refusal.answer.do_now.lower().rstrip(".") == program.lower()
     assert refusal.statement.startswith(refusal.recording.name)
 
 

@@ -75,8 +75,9 @@ STAGES = {
     "verification": DECIDED | {"verify", "change"},
     "effects_found": DECIDED,
     "remainder": DECIDED | {"verify", "verification"},
+    "finish": DECIDED | {"verification", "repair"},
     "compose": DECIDED
-    | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility"},
+    | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility", "finish"},
 }
 
 

@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.effects_found import (
     found_effects,
     tried_effects,
 )
+from cyclosweep.diagnosis.finish import finished
 from cyclosweep.diagnosis.identify.alarm import probability
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import hidden_effects
@@ -40,7 +41,6 @@ from cyclosweep.result import (
     Untestable,
 )
 from cyclosweep.result.part import finite
-from cyclosweep.result.statement import statement_of
 
 MODEL_FILE = "model.json"
 EVEN_SPREAD = float(np.sqrt(12.0))
@@ -79,8 +79,7 @@ def compose(
     remarks = doubts(
         answer.baseline.parameters, answer.repaired.parameters, recording, float(drive.ratio)
     )
-    answer = replace(answer, plausibility=remarks)
-    answer = replace(answer, statement=statement_of(answer))
+    answer = finished(replace(answer, plausibility=remarks), drive, concluded, repaired, verified)
     hidden = tuple(row.name for row in answer.not_testable)
     return Diagnosis(
         recording=recording,
@@ -329,8 +328,8 @@ def _findings(concluded: Conclusion, verified: Verification) -> tuple[Finding, .
     -------
     tuple of Finding
     """
-    repeats = None if concluded.repetition is None else concluded.repetition.correlation
-    return concluded.accepted.fit.findings(repeats, unsteady=verified.drift is not None)
+    unsteady = verified.drift is not None
+    return concluded.accepted.fit.findings(concluded.repetition, unsteady=unsteady)
 
 
 def _rated_torque(drive: Drive, recording: Recording) -> float:

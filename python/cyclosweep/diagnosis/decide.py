@@ -6,6 +6,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import explained_share
 from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
+from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, testability
 from cyclosweep.diagnosis.identify.verdict import (
@@ -16,7 +17,7 @@ from cyclosweep.diagnosis.identify.verdict import (
     no_more_than_fits,
 )
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
-from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition, repetition
+from cyclosweep.diagnosis.whole_loop.run_comparison import repetition
 from cyclosweep.result import Explained, Verdict
 
 DEFAULT_TOLERANCE = 0.01

@@ -1,11 +1,13 @@
 """The accepted effects with size, interval, parameters and evidence."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
+from scipy import stats
 
 from cyclosweep.diagnosis.decide import Conclusion
-from cyclosweep.diagnosis.identify.alarm import DRAWS
+from cyclosweep.diagnosis.identify.alarm import DRAWS, probability
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -78,6 +80,9 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
     else:
         spread = spread_of_size(fitted, index)
     half = NORMAL_95 * spread
+    p_value = _p_value(search, accepted, effect.name)
+    if half >= size:  # the interval holds nothing at all: the same spread judges the probability
+        p_value = max(p_value, 2.0 * float(stats.norm.sf(size / max(spread, 1e-300))))
     return FoundEffect(
         name=effect.name,
         physics=f"{effect.physics} {_found_law(fitted, index)}".rstrip(),
@@ -87,7 +92,7 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
         size_arcmin=60.0 * size,
         size_nm=finite(size / fitted.history.compliance_deg_per_nm),
         rms_deg=float(np.sqrt(np.mean(twist**2))),
-        p_value=_p_value(search, accepted, effect.name),
+        p_value=p_value,
         e_value=finite(e_value),
         detectability=strength,
     )
@@ -306,11 +311,39 @@ def tried_effects(
         Accepted ones first, then those with a bound, then what cannot be tested.
     """
     at_baseline = {bound.name: bound for bound in concluded.beyond_baseline}
+    chance = _chance_beside(concluded)
     return (
         *(_accepted(effect, at_baseline.get(effect.name)) for effect in found),
-        *(_bounded(bound, bound.name in concluded.excluded) for bound in concluded.beyond_accepted),
+        *(
+            replace(_bounded(bound, bound.name in concluded.excluded), p_value=chance(bound))
+            for bound in concluded.beyond_accepted
+        ),
         *(Hypothesis(name=name, outcome="not testable") for name in hidden),
     )
+
+
+def _chance_beside(concluded: Conclusion) -> Callable[[Testability], float | None]:
+    """Probability of as much evidence for an effect where the accepted ones are all there is.
+
+    None where the residual is error of the model: it is no noise, so that nothing has a chance.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+
+    Returns
+    -------
+    callable
+        From the bound of an effect to its probability.
+    """
+    search, accepted = concluded.search, concluded.accepted
+    if accepted is search.baseline:
+        return lambda bound: bound.p_value
+    if search.noise.structured:
+        return lambda bound: None
+    null, excesses = search.null(accepted), accepted.excesses
+    return lambda bound: probability(null, excesses.get(bound.name, 0.0))
 
 
 def _accepted(effect: FoundEffect, bound: Testability | None) -> Hypothesis:

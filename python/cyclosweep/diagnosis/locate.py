@@ -41,6 +41,7 @@ class _Cell:
     run: tuple[int, int] | None = None
     time: tuple[float, float] | None = None
     crank: tuple[float, float] | None = None
+    readings: tuple[int, int] | None = None
 
 
 def locate(concluded: Conclusion) -> tuple[Region, ...]:
@@ -99,9 +100,10 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     testable = size > 1e-6 * max(float(size.max()), 1e-300)
     size = np.where(testable, size, np.inf)
     maxima = _largest_by_chance(gram, size, draws, np.random.default_rng([search.seed, 2]))
-    excess = max(fitted.chi2 - search.noise.freedom, 1e-9)
     raw = (problem.angle_deg - fitted.mean_deg)[use]
     residual = fitted.residual
+    beyond_noise = max(fitted.chi2, float(residual @ residual)) - search.noise.freedom
+    excess, shared = max(beyond_noise, 1e-9), 0.0
     found: list[Region] = []
     for _ in range(MOST_REGIONS):
         z = np.abs(white.T @ residual) / size
@@ -110,7 +112,9 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
         if p > LEVEL or not testable[best]:
             break
         cell = cells[best]
-        share = float(z[best] ** 2) / excess
+        # The parts are at right angles to each other, so that together they are no more than all.
+        share = min(float(z[best] ** 2) / excess, 1.0 - shared)
+        shared += share
         found.append(_region(problem, cell, float(raw[cell.rows[use]].mean()), share, p))
         direction = white[:, best] / np.linalg.norm(white[:, best])
         residual = residual - direction * (direction @ residual)
@@ -175,6 +179,7 @@ def _region(problem: Problem, cell: _Cell, mean: float, share: float, p: float) 
         direction=cell.direction,
         run=cell.run,
         time_s=cell.time,
+        readings=cell.readings,
         crank_deg=cell.crank,
         temperature_c=temperature,
         mean_residual_deg=mean,
@@ -244,5 +249,24 @@ def _time_cells(problem: Problem) -> Iterator[_Cell]:
             yield _Cell(
                 rows=rows,
                 time=span if history.time_s is not None else None,
+                readings=None if history.time_s is not None else _readings(problem, first, last),
                 run=(labels[history.run[first]], labels[history.run[last]]),
             )
+
+
+def _readings(problem: Problem, first: int, last: int) -> tuple[int, int]:
+    """First and last reading of a stretch of rows, counted from 1.
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording prepared for fitting.
+    first, last : int
+        First and last row.
+
+    Returns
+    -------
+    (int, int)
+    """
+    samples = np.flatnonzero((problem.rows.row >= first) & (problem.rows.row <= last))
+    return int(samples[0]) + 1, int(samples[-1]) + 1

@@ -18,20 +18,53 @@ PLAUSIBLE = (0.1, 10.0)
 """Compliance, as a multiple of its nominal value, outside which units or sides are mistaken."""
 
 
+RECORD_AGAIN = "mend the fault and repeat the recording"
+RECORD_MORE = "repeat the recording with {}"
+SETTINGS = (
+    "correct {} in the settings (the TOML file) or the drive file and diagnose the same file again;"
+    " nothing has to be recorded anew"
+)
+SETTINGS_OR_RIG = (
+    "look first at {} in the settings (the TOML file) and diagnose the same file again; only where "
+    "they are right, {} and repeat the recording"
+)
+MEND = {
+    "absurd_value": SETTINGS.format("the unit or the column"),
+    "unrelated": SETTINGS_OR_RIG.format(
+        "the columns of torque and angle", "mend the sensor that does not follow"
+    ),
+    "missing_values": SETTINGS_OR_RIG.format(
+        "the columns of torque and angle", "mend what loses the readings"
+    ),
+    "run_split": SETTINGS_OR_RIG.format(
+        "the column of the run and the order of the rows", "number the runs as they are recorded"
+    ),
+    "time_backwards": SETTINGS_OR_RIG.format(
+        "the column and unit of the time and the column of the run", "mend the clock"
+    ),
+    "too_few_samples": RECORD_MORE.format("more readings: loading, unloading, both directions"),
+    "constant_torque": RECORD_MORE.format("a load that rises and falls in both directions"),
+    "constant_angle": SETTINGS_OR_RIG.format("the column of the angle", "mend the angle sensor"),
+    "saturation": RECORD_MORE.format("a range of the sensor that holds the whole load"),
+}
+"""What to do about a fault that was found on reading, by its kind."""
+
+
 class NoDiagnosisError(Exception):
     """A stage found that the recording cannot be diagnosed; `diagnose` turns it into an answer."""
 
-    def __init__(self, verdict: Verdict, reason: str) -> None:
+    def __init__(self, verdict: Verdict, reason: str, mend: str = RECORD_AGAIN) -> None:
         super().__init__(reason)
         self.verdict: Verdict = verdict
         self.reason = reason
+        self.mend = mend
 
 
 def check_recording(recording: Recording) -> None:
     """Raise `NoDiagnosisError` where reading the recording found a fault that forbids it."""
     fault = recording.blocking_fault
     if fault is not None and fault.verdict is not None:
-        raise NoDiagnosisError(fault.verdict, fault.reason)
+        raise NoDiagnosisError(fault.verdict, fault.reason, MEND.get(fault.kind, RECORD_AGAIN))
 
 
 def check_prepared(problem: Problem, drive: Drive) -> None:
@@ -54,11 +87,14 @@ def check_prepared(problem: Problem, drive: Drive) -> None:
             "INSUFFICIENT_DATA",
             f"only {problem.count} readings are in contact and to be fitted; at least "
             f"{FEWEST_ROWS} are needed to calibrate stiffness, free play and datum",
+            RECORD_MORE.format("more readings under load, loading and unloading"),
         )
     torque = problem.history.applied_nm[problem.fitted]
     if float(np.ptp(np.abs(torque))) < LEAST_CHANGE * float(np.abs(torque).max()):
         raise NoDiagnosisError(
-            "INSUFFICIENT_DATA", "the torque hardly changes, so no compliance can be read"
+            "INSUFFICIENT_DATA",
+            "the torque hardly changes, so no compliance can be read",
+            RECORD_MORE.format("a load that rises and falls in both directions"),
         )
     check_compliance(problem, drive, problem.history.compliance_deg_per_nm)
 
@@ -92,6 +128,7 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
             "DATA_FAULT",
             f"the angle falls as the torque rises ({compliance:.4g} deg/(N m)): the sign of angle "
             "or torque is reversed, or the drive turned under the load",
+            SETTINGS_OR_RIG.format("the sign of angle and torque", "hold the locked shaft"),
         )
     likely = _likely(problem, ratio, float(drive.ratio)) if ratio > 0 else ()
     hint = "; check units, side and drive file"
@@ -101,6 +138,7 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
         "DATA_FAULT",
         f"the compliance at the {problem.recording.side} shaft is {compliance:.4g} deg/(N m), "
         f"{ratio:.4g} times the nominal {problem.nominal_compliance:.4g}{hint}",
+        SETTINGS.format("unit, side or drive"),
     )
 
 
@@ -147,6 +185,7 @@ def check_positive(compliance: float) -> None:
         f"the best fit has a compliance of {compliance:.4g} deg/(N m), which no drive has: the "
         "angle changes where the torque does not, as while parts slide on each other or where the "
         "motion is driven instead of the torque; no stiffness can be read from it",
+        RECORD_MORE.format("the torque controlled, below the friction limit of the drive"),
     )
 
 
@@ -171,10 +210,12 @@ def refused(recording: Recording, drive: Drive, refusal: NoDiagnosisError, seed:
     answer = Answer(
         verdict=refusal.verdict,
         statement=f"{recording.name}: {refusal.reason.rstrip('.')}.",
+        summary=f"{refusal.reason[:1].upper()}{refusal.reason[1:].rstrip('.')}.",
+        do_now=f"{refusal.mend[:1].upper()}{refusal.mend[1:]}.",
         noise=NoiseEstimate(resolution_deg=recording.angle_resolution_deg),
         repaired=Repair(holdout="nothing"),
         self_check=SelfCheck(),
-        next_experiment=NextExperiment(program="repeat the recording once the fault is mended"),
+        next_experiment=NextExperiment(program=refusal.mend),
         notes=(*recording.notes, *(fault.reason for fault in recording.faults)),
     )
     return Diagnosis(

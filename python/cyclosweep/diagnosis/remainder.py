@@ -6,9 +6,9 @@ import numpy as np
 
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.verification import Verification
-from cyclosweep.diagnosis.whole_loop.run_comparison import Repetition
 from cyclosweep.result import DriveChange, Region, Remainder
 
 STRONG_WAVE = 5.0
@@ -155,6 +155,9 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     fitted = accepted.fit
     left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
     shape, place = "misfit of the model", "which does not repeat from run to run"
+    if repeats.correlation > LEAST_REPEAT:
+        how = f"correlation {repeats.correlation:.2f}"
+        place = f"which repeats only in part from run to run ({how})"
     if repeats.is_physics:
         shape = "staircase tied to the position of the mesh"
         place = f"repeating from run to run (correlation {repeats.correlation:.2f})"

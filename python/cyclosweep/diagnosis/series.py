@@ -8,22 +8,23 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.errors import InputError
 from cyclosweep.recording import Recording
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.lost_motion import lost_motion_deg
-from cyclosweep.report.straight_lines import straight_lines
+from cyclosweep.report.play_and_stiffness import mean_and_interval
+from cyclosweep.result import PlayAndStiffness
 from cyclosweep.result.series import MEASURES, Level, Trend
 
 Row = dict[str, Any]
 
+READ_BY = {True: "straight lines", False: "published model"}
+"""How play and compliance were read, by whether lines through the branches could be laid."""
+
 PERMUTATIONS = 9999
 """Random orders by which a trend is judged: the smallest probability is one in ten thousand."""
-CONFIDENCE = 0.95
-"""Confidence of the intervals."""
 
 
 def conditions_of(name: str, meta: Metadata) -> dict[str, float | str]:
@@ -129,15 +130,19 @@ def row_of(found: Diagnosis) -> Row:
     }
     if recording.temperature_c is not None:
         row["mean_temperature_c"] = float(np.mean(recording.temperature_c))
-    lines = straight_lines(recording)
-    for column, values in (
-        ("friction_nm", [line.friction_nm for line in lines]),
-        ("play_deg", [line.play_deg for line in lines]),
-        ("loop_compliance_deg_per_nm", [line.compliance_deg_per_nm for line in lines]),
+    read = answer.play_and_stiffness or PlayAndStiffness()
+    for column, reading in (
+        ("friction_nm", read.friction_nm),
+        ("play_deg", read.free_play_deg),
+        ("loop_compliance_deg_per_nm", read.compliance_deg_per_nm),
+        ("stiffness_at_output_nm_per_arcmin", read.stiffness_at_output_nm_per_arcmin),
     ):
-        mean, interval = mean_and_interval(values)
-        row[column] = mean
-        row[f"{column}_low"], row[f"{column}_high"] = interval or (None, None)
+        row[column] = None if reading is None else reading.estimate
+        ends = None if reading is None else reading.ci95
+        row[f"{column}_low"], row[f"{column}_high"] = ends or (None, None)
+    row["side"] = recording.side
+    row["read_by"] = None if not read.definition else READ_BY[read.runs > 0]
+    row["not_read"] = read.reason
     for name, value in answer.repaired.parameters.items():
         row[f"fitted_{name}"] = value.estimate
         row[f"fitted_{name}_std_error"] = value.std_error
@@ -148,38 +153,6 @@ def row_of(found: Diagnosis) -> Row:
         row[f"{effect.name}_deg_low"], row[f"{effect.name}_deg_high"] = effect.size_deg.ci95
     row["remarks"] = "; ".join(doubt.text for doubt in answer.plausibility)
     return row
-
-
-def mean_and_interval(
-    values: Sequence[float],
-) -> tuple[float | None, tuple[float, float] | None]:
-    """Mean with its 95 % interval by Student's t.
-
-    Parameters
-    ----------
-    values : sequence of float
-        Independent readings.
-
-    Returns
-    -------
-    mean : float or None
-        None without values.
-    interval : (float, float) or None
-        None for fewer than two.
-
-    Examples
-    --------
-    >>> mean_and_interval([1.0])
-    (1.0, None)
-    """
-    if not values:
-        return None, None
-    mean = float(np.mean(values))
-    if len(values) < 2:
-        return mean, None
-    quantile = stats.t.ppf(0.5 + 0.5 * CONFIDENCE, len(values) - 1)
-    half = float(quantile * stats.sem(values))
-    return mean, (mean - half, mean + half)
 
 
 def trends(rows: Sequence[Row], conditions: Sequence[str], seed: int = 0) -> list[Trend]:

@@ -7,8 +7,9 @@ import numpy as np
 
 from cyclosweep.diagnosis.change import find_change
 from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.verdict import MOSTLY, Decision
-from cyclosweep.diagnosis.verify.experiment import next_experiment
+from cyclosweep.diagnosis.verify.experiment import next_experiment, rig_programme
 from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
@@ -17,8 +18,16 @@ from cyclosweep.result import DriveChange, NextExperiment, RunToRunDrift, SelfCh
 NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, 1.0, "")
 MOST_RIVALS = 2
 """Other explanations of which synthetic twins are made."""
-EXAMPLE_EFFECT = "friction_hysteresis"
-"""Effect that the next experiment is to show where the cause has no name."""
+ONCE_MORE = (
+    "the same programme once more, unchanged: what remains belongs to no listed effect, and "
+    "whether it repeats at the same torques and positions decides whether it is the drive's"
+)
+"""Next experiment where no effect of the vocabulary is left to be shown or ruled out."""
+SETTLE = (
+    "the same programme once more after the drive has settled: repeat loops until two in a row "
+    "agree, then record"
+)
+"""Next experiment where the drive changed while it was tested."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +91,12 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
     say("checking on synthetic twins")
     checked = _self_check(concluded)
     say("choosing the next experiment")
-    following = _next_experiment(concluded, decision)
+    if drift is not None or change is not None:
+        following = NextExperiment(
+            program=SETTLE, rig_programme=rig_programme(concluded.search.problem.recording)
+        )
+    else:
+        following = _next_experiment(concluded, decision)
     return Verification(decision, held, drift, change, checked, following)
 
 
@@ -148,6 +162,40 @@ def _next_experiment(concluded: Conclusion, decision: Decision) -> NextExperimen
     bounds = concluded.beyond_baseline
     if decision.verdict == "INSUFFICIENT_DATA" and bounds:
         weakest = max(bounds, key=lambda bound: bound.upper95_deg).name
-    elif decision.verdict == "UNKNOWN_PHYSICS":
-        weakest = EXAMPLE_EFFECT
+    elif decision.verdict in ("UNKNOWN_PHYSICS", "MOSTLY_EXPLAINED"):
+        weakest = _least_known(concluded)
+        if weakest is None:
+            recording = concluded.search.problem.recording
+            return NextExperiment(program=ONCE_MORE, rig_programme=rig_programme(recording))
     return next_experiment(concluded.search, rivals, weakest, concluded.tolerance_deg)
+
+
+def _least_known(concluded: Conclusion) -> str | None:
+    """Effect to show or rule out where something has no name; none of those that are named.
+
+    Those of a class of behaviour that the recording shows come first, then the one that may be
+    largest.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        Verdict and accepted structure.
+
+    Returns
+    -------
+    str or None
+        None where every effect is named or ruled out.
+    """
+    naming = concluded.naming
+    open_bounds = {
+        bound.name: bound.upper95_deg
+        for bound in concluded.beyond_accepted
+        if bound.name not in concluded.excluded and bound.name not in naming.names
+    }
+    alike = {
+        name
+        for each in naming.shown
+        for name in candidates_of(each.behaviour, concluded.search.library)
+    }
+    first = {name: bound for name, bound in open_bounds.items() if name in alike} or open_bounds
+    return max(first, key=lambda name: first[name], default=None)

@@ -17,6 +17,7 @@ from cyclosweep.result.effects import (
 from cyclosweep.result.json_form import answer_of, content_of, json_text
 from cyclosweep.result.mismatch import Explained, Mismatch, Region
 from cyclosweep.result.plausibility import Doubt
+from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.proof import (
     HeldOutBlock,
     NextExperiment,
@@ -45,6 +46,8 @@ __all__ = [
     "Mismatch",
     "NextExperiment",
     "NoiseEstimate",
+    "PlayAndStiffness",
+    "Reading",
     "Region",
     "Remainder",
     "Repair",

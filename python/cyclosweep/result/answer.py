@@ -16,6 +16,7 @@ from cyclosweep.result.effects import (
 from cyclosweep.result.mismatch import Explained, Mismatch
 from cyclosweep.result.part import EMPTY, LEFT_OUT, Part
 from cyclosweep.result.plausibility import Doubt
+from cyclosweep.result.play_and_stiffness import PlayAndStiffness
 from cyclosweep.result.proof import NextExperiment, Repair, SelfCheck, Sufficiency
 from cyclosweep.result.verdict import Verdict
 
@@ -56,6 +57,10 @@ class Answer(Part):
     """The conclusion."""
     statement: str = ""
     """One paragraph that an engineer can act on."""
+    summary: str = ""
+    """The same in one or two sentences."""
+    do_now: str = ""
+    """What to look at or to do first."""
     noise: NoiseEstimate = field(default_factory=NoiseEstimate)
     """How far the measured angle scatters."""
     thinning: Thinning | None = field(default=None, metadata=LEFT_OUT)
@@ -99,6 +104,9 @@ class Answer(Part):
     """Whether all runs are of one drive; null where there is no diagnosis."""
     drift: RunToRunDrift | None = field(default=None, metadata=LEFT_OUT)
     """How far they are not."""
+    play_and_stiffness: PlayAndStiffness | None = field(default=None, metadata=LEFT_OUT)
+    """The free play, the stiffness and the friction of the drive; left out where nothing could be
+    diagnosed."""
     change: DriveChange | None = field(default=None, metadata=LEFT_OUT)
     """How far the compliance moved while the drive was tested."""
     findings: tuple[Finding, ...] = ()

@@ -1,6 +1,6 @@
 """Types of the dictionaries that `Diagnosis.effects` and `Diagnosis.mismatch` return."""
 
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 
 from cyclosweep.result.mismatch import Direction
 
@@ -46,6 +46,7 @@ class RegionContent(TypedDict):
     direction: Direction | None
     run: list[int] | None
     time_s: list[float] | None
+    readings: NotRequired[list[int]]
     crank_deg: list[float] | None
     temperature_c: list[float] | None
     mean_residual_deg: float

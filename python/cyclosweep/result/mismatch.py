@@ -1,9 +1,9 @@
 """Where recording and calibrated model differ."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
-from cyclosweep.result.part import Part
+from cyclosweep.result.part import LEFT_OUT, Part
 
 Direction = Literal["loading", "unloading", "both"]
 
@@ -23,6 +23,8 @@ class Region(Part):
     """First and last run, numbered as in the recording."""
     time_s: tuple[float, float] | None = None
     """Range of time [s]."""
+    readings: tuple[int, int] | None = field(default=None, metadata=LEFT_OUT)
+    """First and last reading, counted from 1, where there is no clock."""
     crank_deg: tuple[float, float] | None = None
     """Range of the mesh position [deg]."""
     temperature_c: tuple[float, float] | None = None

@@ -98,3 +98,7 @@ class NextExperiment(Part):
     """Expected signal-to-noise ratio of what separates them."""
     minutes: int | None = None
     """How long it takes."""
+    loads_nm: tuple[float, ...] = ()
+    """Torques at the measured shaft between which the load is ramped, in order [N m]."""
+    rig_programme: str = ""
+    """Programme of ``examples/rigs`` for such a rig, to start from."""

@@ -9,7 +9,15 @@ import sys
 from typing import Any
 
 from cyclosweep.atomic import write_text
-from cyclosweep.result import answer, calibration, effects, mismatch, plausibility, proof
+from cyclosweep.result import (
+    answer,
+    calibration,
+    effects,
+    mismatch,
+    plausibility,
+    play_and_stiffness,
+    proof,
+)
 from cyclosweep.result.json_form import answer_type
 from cyclosweep.result.part import Part
 
@@ -26,7 +34,15 @@ def json_schema() -> dict[str, Any]:
     schema = answer_type().json_schema()
     types = {
         part.__name__: part
-        for module in (answer, calibration, effects, mismatch, plausibility, proof)
+        for module in (
+            answer,
+            calibration,
+            effects,
+            mismatch,
+            plausibility,
+            play_and_stiffness,
+            proof,
+        )
         for part in vars(module).values()
         if isinstance(part, type) and issubclass(part, Part) and part is not Part
     }

@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import (
     TorqueZero,
 )
 from cyclosweep.diagnosis.identify.joint_fit import JointFit, usual_change
+from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
@@ -165,12 +166,12 @@ class ContactFit(FittedStructure):
         """Nothing: on a known flank, drift from run to run is an effect like others."""
         return []
 
-    def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
+    def findings(self, repeats: Repetition | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Nothing: a loop is described only where it is predicted as a whole.
 
         Parameters
         ----------
-        repeats : float, optional
+        repeats : Repetition, optional
             Not needed.
         unsteady : bool
             Not needed.

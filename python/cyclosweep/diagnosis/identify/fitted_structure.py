@@ -15,6 +15,7 @@ from typing import Self
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -227,13 +228,13 @@ class FittedStructure(ABC):
         """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
 
     @abstractmethod
-    def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
+    def findings(self, repeats: Repetition | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Return topics and sentences on the measured loop, where the structure predicts it.
 
         Parameters
         ----------
-        repeats : float, optional
-            Correlation of the residual between runs.
+        repeats : Repetition, optional
+            How well the residual of one run predicts that of another.
         unsteady : bool
             Whether the loops drift from run to run.
 

@@ -10,7 +10,9 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.recording import Recording
 from cyclosweep.result import NextExperiment
+from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.simulation.effects.history import Floats, History
 
 Load = tuple[Floats, Floats, Floats, Floats]
@@ -21,10 +23,21 @@ STEP_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A load programme in words and the history it makes, for a largest torque."""
+    """A load programme in words and the history it makes, for a largest torque.
+
+    Attributes
+    ----------
+    words : str
+        What to do.
+    make : callable
+        History of a largest torque [N m].
+    shares : tuple of float
+        Torques between which one run is ramped, over the largest torque.
+    """
 
     words: str
     make: Callable[[float], Load]
+    shares: tuple[float, ...]
 
 
 def _line(points: Sequence[float], seconds: float) -> Floats:
@@ -69,15 +82,22 @@ def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0)
     return np.concatenate(torques), run, crank, 20.0 + warm * share
 
 
+LOOP = (0.0, 1.0, -1.0, 0.0)
+NESTED = (0.0, 1.0, -1.0, 0.6, -0.4, 1.0, 0.4, 0.8, 0.0)
+LADDER = (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)
+"""Ends of the ramps of a loop, of nested loops, and amplitudes of a ladder of loops, each over the
+largest torque."""
+
+
 def _nested(top: float) -> Load:
     """Nested and biased loops, twice."""
-    points = [0, top, -top, 0.6 * top, -0.4 * top, top, 0.4 * top, 0.8 * top, 0]
+    points = [share * top for share in NESTED]
     return _runs([_line(points, 500), _line(points, 500)], [0, 0])
 
 
 def _rates(top: float) -> Load:
     """The same loop at three rates."""
-    points = [0, top, -top, 0]
+    points = [share * top for share in LOOP]
     return _runs([_line(points, s) for s in (60, 200, 700)], [0, 0, 0])
 
 
@@ -90,7 +110,7 @@ def _holds(top: float) -> Load:
 
 def _places(top: float) -> Load:
     """The same loop at eight positions of the mesh."""
-    points = [0, top, -top, 0]
+    points = [share * top for share in LOOP]
     spots = [0, 45, 90, 135, 180, 225, 270, 315]
     return _runs([_line(points, 120) for _ in spots], spots)
 
@@ -110,9 +130,7 @@ def _soak(top: float) -> Load:
 
 def _ladder(top: float) -> Load:
     """Loops of growing amplitude, then a small one."""
-    return _runs(
-        [_line([0, s * top, -s * top, 0], 150) for s in (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)], [0] * 6
-    )
+    return _runs([_line([0, s * top, -s * top, 0], 150) for s in LADDER], [0] * 6)
 
 
 def _wide(top: float) -> Load:
@@ -121,14 +139,34 @@ def _wide(top: float) -> Load:
 
 
 MENU: tuple[Plan, ...] = (
-    Plan("nested and biased loops to the largest torque, twice", _nested),
-    Plan("the same loop at three rates, one to ten", _rates),
-    Plan("holds of five minutes at full load and without load, both directions", _holds),
-    Plan("the same loop at eight positions of the mesh zone", _places),
-    Plan("small loops returning to three positions while the rig warms up by 4 K", _returns),
-    Plan("small loops at one position while the rig warms up by 10 K", _soak),
-    Plan("loops of growing amplitude, then a small one again", _ladder),
-    Plan("two loops to 1.4 times the largest torque", _wide),
+    Plan("nested and biased loops to the largest torque, twice", _nested, NESTED),
+    Plan("the same loop at three rates, one to ten", _rates, LOOP),
+    Plan(
+        "holds of five minutes at full load and without load, both directions",
+        _holds,
+        (0.0, 1.0, 0.0, -1.0, 0.0),
+    ),
+    Plan("the same loop at eight positions of the mesh zone", _places, LOOP),
+    Plan(
+        "small loops returning to three positions while the rig warms up by 4 K",
+        _returns,
+        tuple(0.5 * share for share in LOOP),
+    ),
+    Plan(
+        "small loops at one position while the rig warms up by 10 K",
+        _soak,
+        tuple(0.3 * share for share in LOOP),
+    ),
+    Plan(
+        "loops of growing amplitude, then a small one again",
+        _ladder,
+        (0.0, *(sign * share for share in LADDER for sign in (1.0, -1.0)), 0.0),
+    ),
+    Plan(
+        "two loops to 1.4 times the largest torque, if the drive may be loaded so far",
+        _wide,
+        tuple(1.4 * share for share in LOOP),
+    ),
 )
 
 
@@ -160,7 +198,7 @@ def next_experiment(
     elif weakest is not None:
         names = [weakest]
     else:
-        return NextExperiment(program="none needed", minutes=0)
+        return NextExperiment(program=NONE_NEEDED, minutes=0)
     best: tuple[float, Plan, int] | None = None
     for plan in MENU:
         history = _history(search, plan)
@@ -171,14 +209,38 @@ def next_experiment(
         if np.isfinite(value) and (best is None or value > 1.05 * best[0]):
             best = (value, plan, len(history))
     if best is None:
-        return NextExperiment(program=MENU[0].words, separates=tuple(names), minutes=20)
-    value, plan, rows = best
+        value, plan, rows = 0.0, MENU[0], 900
+    else:
+        value, plan, rows = best
+    top = search.baseline.fit.history.largest_torque_nm
     return NextExperiment(
         program=plan.words,
         separates=tuple(names),
-        detectability=round(float(value), 2),
+        loads_nm=tuple(float(f"{share * top:.3g}") for share in plan.shares),
+        rig_programme=rig_programme(search.problem.recording),
+        detectability=None if best is None else round(float(value), 2),
         minutes=int(np.ceil(rows * STEP_S / 60.0)) + 5,
     )
+
+
+def rig_programme(recording: Recording) -> str:
+    """Name the programme of ``examples/rigs`` for a rig like that of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+        Says at which shaft was measured, whether with a clock, and whence the torque is.
+
+    Returns
+    -------
+    str
+        As it is called in docs/rigs.md.
+    """
+    if recording.torque_from == "motor-current":
+        return "motor-current"
+    if recording.side == "output":
+        return "torque-sensor-and-encoder"
+    return "weights-and-protractor"
 
 
 def _contested(rivals: list[Candidate]) -> list[tuple[str, list[Term], Candidate]]:

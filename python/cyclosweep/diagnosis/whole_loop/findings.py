@@ -3,6 +3,7 @@
 import numpy as np
 from scipy import stats
 
+from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_words
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
@@ -15,10 +16,6 @@ LEAST_MOVEMENT = 0.6
 """Share of the nominal dead zone below which friction has held the shaft inside its play."""
 MOST_FRICTION = 0.35
 """Share of the largest torque from which Coulomb friction decides what the loop looks like."""
-LEAST_REPEAT = 0.3
-"""Correlation between runs from which a residual is worth naming as a staircase."""
-GAUGE_SHARE = 0.03
-"""Share of the largest torque at which a gauge reads play."""
 STEPS = (3.0, 40.0)
 """Fewest and most steps of a staircase over the range of the angle."""
 CLEAR_PERIOD = 0.1
@@ -27,15 +24,17 @@ NORMAL_95 = 1.96
 """Half width of a 95 % interval in standard errors."""
 
 
-def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
+def findings(
+    forecast: Forecast, repeats: Repetition | None, *, unsteady: bool
+) -> tuple[Finding, ...]:
     """Topics and sentences, in the order in which a loop is read.
 
     Parameters
     ----------
     forecast : Forecast
         The simulation fitted to the loops.
-    repeats : float or None
-        Correlation of the residual between runs.
+    repeats : Repetition or None
+        How well the residual of one run predicts that of another.
     unsteady : bool
         Whether the loops drift from run to run.
 
@@ -60,7 +59,7 @@ def findings(forecast: Forecast, repeats: float | None, *, unsteady: bool) -> tu
     named = _named_staircase(forecast)
     if named is not None:
         found.append(named)
-    elif repeats is not None and repeats > LEAST_REPEAT and not unsteady:
+    elif repeats is not None and repeats.correlation > LEAST_REPEAT and not unsteady:
         found.append(_staircase(problem, forecast, repeats))
     return tuple(found)
 
@@ -161,7 +160,7 @@ def _amplitude_of(forecast: Forecast, place: int) -> str:
 
 
 def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
-    """Dead zone, and what a gauge reads as play.
+    """Dead zone of the simulation, and how it differs from the free play of the drive.
 
     Parameters
     ----------
@@ -180,15 +179,15 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
         return _finding("play", "Not reported: only one flank was loaded.")
     dead = 2.0 * forecast.model.free_play_deg
     half = 2 * _half_interval(forecast, "play")
-    text = f"Dead zone of {_angle(dead)} ± {half:.2g} deg in all."
+    text = (
+        f"Dead zone of the fitted simulation: {_angle(dead)} ± {half:.2g} deg (95 %) from flank to "
+        "flank, a parameter of that model."
+    )
     law = elastic_law(forecast.model, problem.history.largest_torque_nm)
     if law is not None:
-        level = GAUGE_SHARE * problem.history.largest_torque_nm
-        soft = float(np.interp(level, law.torque_nm, law.twist_deg))
-        soft -= float(np.interp(-level, law.torque_nm, law.twist_deg))
         text += (
-            f" With the soft start of the contacts the elastic line spans {_angle(dead + soft)} "
-            f"between ±{level:.2g} N m, which a gauge reads as play."
+            " It leaves out the soft start of the contacts, which the free play by straight lines "
+            "contains."
         )
     return _finding("play", text)
 
@@ -199,7 +198,7 @@ def _friction(forecast: Forecast) -> Finding:
     half = _half_interval(forecast, "nonlinear", "friction_hysteresis")
     return _finding(
         "friction hysteresis",
-        f"Coulomb friction of {limit:.3g} ± {half:.2g} N m at the measured shaft: the "
+        f"Coulomb friction of {limit:.3g} ± {half:.2g} N m (95 %) at the measured shaft: the "
         f"loop is {2 * limit:.3g} N m wide where the shaft leaves a flank.",
     )
 
@@ -210,8 +209,8 @@ def _load_friction(forecast: Forecast) -> Finding:
     half = _half_interval(forecast, "nonlinear", "load_dependent_friction")
     return _finding(
         "friction that grows with load",
-        f"{100 * share:.0f} ± {100 * half:.0f} % of the transmitted torque on top of it: the loop "
-        "opens with load, and unloading starts with a stretch on which the shaft stands still.",
+        f"{100 * share:.0f} ± {100 * half:.0f} % (95 %) of the transmitted torque on top of "
+        "it: the loop opens with load, and the shaft stands still where unloading starts.",
     )
 
 
@@ -302,15 +301,16 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
     if len(values) < 2:
         text = "Not reported: too few loading branches reach half of the torque."
         return _finding("stiffness", text)
+    top = float(np.abs(problem.history.applied_nm[problem.fitted]).max(initial=0.0))
     mean = float(values.mean())
     half = float(stats.t.ppf(0.975, len(values) - 1) * stats.sem(values))
     low, high = max(mean - half, 0.0), mean + half
     return _finding(
         "stiffness",
-        f"Secant between 50 and 100 % of the torque, loading: {mean:.2g} N m/arcmin, 95 % interval "
-        f"{low:.2g} to {high:.2g} ({60 * 180 / np.pi * mean:.3g} N m/rad); single branches from "
-        f"{values.min():.2g} to {values.max():.2g}. It contains what friction that grows with load "
-        "takes of the torque.",
+        f"Loading branches alone, from {0.5 * top:.3g} to {top:.3g} N m: {mean:.2g} N m/arcmin, "
+        f"95 % interval {low:.2g} to {high:.2g} ({60 * 180 / np.pi * mean:.3g} N m/rad); single "
+        f"branches from {values.min():.2g} to {values.max():.2g}. Unlike the stiffness by straight "
+        "lines it contains what friction takes of the torque on the way up.",
     )
 
 
@@ -324,15 +324,15 @@ def _named_staircase(forecast: Forecast) -> Finding | None:
     return None
 
 
-def _staircase(problem: Problem, forecast: Forecast, repeats: float) -> Finding:
+def _staircase(problem: Problem, forecast: Forecast, repeats: Repetition) -> Finding:
     """Steps that repeat at the same positions.
 
     Parameters
     ----------
     problem : Problem
     forecast : Forecast
-    repeats : float
-        Correlation of the residual between runs.
+    repeats : Repetition
+        How well the residual of one run predicts that of another.
 
     Returns
     -------
@@ -345,9 +345,32 @@ def _staircase(problem: Problem, forecast: Forecast, repeats: float) -> Finding:
     return _finding(
         "staircase",
         f"Steps of about {_angle(float(np.quantile(np.abs(left), 0.9)))} remain that no effect "
-        f"explains{spaced}. They repeat at the same positions from run to run (correlation "
-        f"{repeats:.2f}): they are tied to the position of mesh and motor, not to noise."
-        f"{in_words(direction_correlation(problem))}",
+        f"explains{spaced}. {_repeated(problem, repeats)}",
+    )
+
+
+def _repeated(problem: Problem, repeats: Repetition) -> str:
+    """Say how far the steps repeat, by the same measure as the verdict.
+
+    Parameters
+    ----------
+    problem : Problem
+    repeats : Repetition
+        How well the residual of one run predicts that of another.
+
+    Returns
+    -------
+    str
+    """
+    if not repeats.is_physics:
+        return (
+            f"They repeat only in part from run to run (correlation {repeats.correlation:.2f}): "
+            "too little to tie them to the position of the mesh."
+        )
+    return (
+        "They repeat at the same positions from run to run (correlation "
+        f"{repeats.correlation:.2f}): they are tied to the position of mesh and motor, not to "
+        f"noise.{in_words(direction_correlation(problem))}"
     )
 
 

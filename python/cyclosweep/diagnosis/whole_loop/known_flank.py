@@ -18,6 +18,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import (
     Prediction,
     TorqueZero,
 )
+from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
@@ -153,13 +154,13 @@ class WholeLoopFit(FittedStructure):
         """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
         return [(each.own_deg, each.other_deg) for each in steadiness(self.forecast)]
 
-    def findings(self, repeats: float | None, *, unsteady: bool) -> tuple[Finding, ...]:
+    def findings(self, repeats: Repetition | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Return topics and sentences on the measured loop.
 
         Parameters
         ----------
-        repeats : float, optional
-            Correlation of the residual between runs.
+        repeats : Repetition, optional
+            How well the residual of one run predicts that of another.
         unsteady : bool
             Whether the loops drift from run to run.
 

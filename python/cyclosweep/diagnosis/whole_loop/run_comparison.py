@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
 from cyclosweep.simulation.effects.history import Flags, Floats
@@ -19,29 +20,6 @@ FEWEST_ROWS = 40
 """Least rows of a run that is compared with another."""
 MOST_RUNS = 6
 """Runs that are fitted alone to see whether they differ."""
-REPEATING = 0.5
-"""Correlation between runs above which a residual is a property of the drive."""
-
-
-@dataclass(frozen=True)
-class Repetition:
-    """How well the residual of one run predicts that of another.
-
-    Attributes
-    ----------
-    correlation : float
-        Between mean residuals in the cells that both runs have visited.
-    cells : int
-        Number of these cells: bands of torque by flank and direction.
-    """
-
-    correlation: float
-    cells: int
-
-    @property
-    def is_physics(self) -> bool:
-        """Whether something remains that repeats."""
-        return self.cells >= 12 and self.correlation > REPEATING
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,98 @@
+"""Last parts of an answer: play and stiffness, words, and its check against itself."""
+
+from dataclasses import replace
+
+from cyclosweep.design.drive import Drive
+from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.repair import RepairedModel
+from cyclosweep.diagnosis.verification import Verification
+from cyclosweep.diagnosis.whole_loop.findings import hidden_by_friction
+from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit
+from cyclosweep.report.play_and_stiffness import play_and_stiffness
+from cyclosweep.report.summary import do_now, summary_of
+from cyclosweep.result import Answer, NextExperiment, PlayAndStiffness
+from cyclosweep.result.contradictions import NONE_NEEDED, contradictions
+from cyclosweep.result.statement import statement_of
+
+CHECK_FIRST = (
+    "settle what stands under Check first: load the drive with a known weight on a known arm and "
+    "compare both columns of the file with it"
+)
+"""What to do before any other experiment where a calibrated value is far from the drive file."""
+
+
+def finished(
+    answer: Answer,
+    drive: Drive,
+    concluded: Conclusion,
+    repaired: RepairedModel,
+    verified: Verification,
+) -> Answer:
+    """Add play and stiffness, statement and summary, and say what in the answer cannot both hold.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer without these parts.
+    drive : Drive
+        The drive that was diagnosed.
+    concluded : Conclusion
+        Verdict and accepted structure.
+    repaired : RepairedModel
+        The model before and after the repair.
+    verified : Verification
+        Whether the loops drift.
+
+    Returns
+    -------
+    Answer
+    """
+    read = _play_and_stiffness(drive, concluded, repaired, verified)
+    plan = answer.next_experiment
+    if answer.plausibility and plan is not None:
+        plan = _after_check(plan)
+    answer = replace(answer, play_and_stiffness=read, next_experiment=plan)
+    answer = replace(answer, statement=statement_of(answer))
+    answer = replace(answer, summary=summary_of(answer), do_now=do_now(answer))
+    faults = tuple(f"This answer contradicts itself: {each}." for each in contradictions(answer))
+    return replace(answer, notes=(*answer.notes, *faults))
+
+
+def _after_check(plan: NextExperiment) -> NextExperiment:
+    """Put the check of what is far from the drive file before the next programme."""
+    if plan.program == NONE_NEEDED:
+        return NextExperiment(program=CHECK_FIRST)
+    return replace(plan, program=f"{CHECK_FIRST}; then {plan.program}")
+
+
+def _play_and_stiffness(
+    drive: Drive, concluded: Conclusion, repaired: RepairedModel, verified: Verification
+) -> PlayAndStiffness:
+    """Read the free play and the stiffness from the loop, where friction does not hide them.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive that was diagnosed.
+    concluded : Conclusion
+        Verdict and accepted structure.
+    repaired : RepairedModel
+        The model before the repair stands in where no lines can be laid.
+    verified : Verification
+        Whether the loops drift.
+
+    Returns
+    -------
+    PlayAndStiffness
+    """
+    fitted, problem = concluded.accepted.fit, concluded.search.problem
+    hidden = None
+    if isinstance(fitted, WholeLoopFit):
+        hidden = hidden_by_friction(fitted.problem, fitted.forecast)
+    return play_and_stiffness(
+        problem.recording,
+        repaired.before.parameters,
+        float(drive.ratio),
+        hidden=hidden,
+        unsteady=verified.drift is not None,
+    )

@@ -1,0 +1,149 @@
+"""The answer in one or two sentences, and what to look at or to do first."""
+
+from cyclosweep.report.look_at import LOOK_AT
+from cyclosweep.report.wording import number
+from cyclosweep.result import Answer
+from cyclosweep.result.contradictions import NONE_NEEDED
+from cyclosweep.result.statement import degrees, listed, readable, with_article
+
+
+def summary_of(answer: Answer) -> str:
+    """Say in one or two sentences what was found and how much it explains.
+
+    Parameters
+    ----------
+    answer : Answer
+        The whole answer.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> summary_of(Answer(verdict="DATA_FAULT", statement="loop: Time runs backwards."))
+    'loop: Time runs backwards.'
+    """
+    if answer.summary:
+        return answer.summary
+    match answer.verdict:
+        case "NOTHING_MISSING":
+            return (
+                "The calibrated model and the recording agree within the noise of "
+                f"{degrees(answer.noise.sigma_deg)}."
+            )
+        case "INSUFFICIENT_DATA":
+            return _open(answer)
+        case "AMBIGUOUS":
+            return f"Something is missing, and this recording cannot say which: {_options(answer)}."
+        case "DATA_FAULT":
+            return answer.statement
+    if answer.verdict == "UNKNOWN_PHYSICS" and answer.mismatch.p_value is None:
+        return answer.statement  # refused before anything was fitted
+    return f"{_named(answer)}{_rest(answer)}"
+
+
+def do_now(answer: Answer) -> str:
+    """Say what to look at on the drive or what to do first; empty where nothing is known.
+
+    Parameters
+    ----------
+    answer : Answer
+        The whole answer.
+
+    Returns
+    -------
+    str
+    """
+    if answer.do_now:
+        return answer.do_now
+    if answer.plausibility:
+        text = answer.plausibility[0].text
+        return f"Check first: {text}."
+    if answer.verdict == "NOTHING_MISSING":
+        return "Nothing: the calibrated model describes this drive."
+    largest = max(answer.effects, key=lambda effect: effect.size_deg.estimate, default=None)
+    if largest is not None and largest.name in LOOK_AT and answer.change is None:
+        return f"Look at {LOOK_AT[largest.name]}"
+    plan = answer.next_experiment
+    if plan is None or not plan.program or plan.program == NONE_NEEDED:
+        return ""
+    return f"Record next: {plan.program}."
+
+
+def _named(answer: Answer) -> str:
+    """Say which effects explain how much; empty where none is named."""
+    if not answer.effects:
+        return ""
+    names = listed([effect.name for effect in answer.effects])
+    verb = "explains" if len(answer.effects) == 1 else "explain"
+    what = "of what the calibrated model misses"
+    share = answer.explained.share
+    if share is None or answer.verdict == "IDENTIFIED":
+        verb = "is" if len(answer.effects) == 1 else "are"
+        rivals = answer.explanation_set
+        sure = f" ({100 * rivals[0].probability:.0f} %)" if len(rivals) > 1 else ""
+        text = f"{names} {verb} missing from the model{sure}: "
+        text += f"{_errors(answer)}."
+    else:
+        ends = answer.explained.ci95
+        of = "" if ends is None else f" (95 %: {100 * ends[0]:.0f} to {100 * ends[1]:.0f})"
+        text = f"{names} {verb} {100 * share:.0f} %{of} {what}."
+    return text[:1].upper() + text[1:]
+
+
+def _errors(answer: Answer) -> str:
+    """Errors before and after, on data that were not used where there are such."""
+    before, after, on = answer.baseline.rmse_deg, answer.repaired.rmse_deg, ""
+    if answer.baseline.holdout_rmse_deg:
+        before, after = answer.baseline.holdout_rmse_deg, answer.repaired.holdout_rmse_deg
+        on = " on data not used"
+    return f"with it the error{on} falls from {number(before)} to {number(after)} deg"
+
+
+def _rest(answer: Answer) -> str:
+    """Say what remains without a name; empty where nothing does."""
+    space = " " if answer.effects else ""
+    if answer.drift is not None and answer.change is None:
+        return f"{space}The drive is not the same in all runs: no stiffness can be read from them."
+    if answer.change is not None:
+        change = answer.change
+        went = "rose" if change.share > 0 else "fell"
+        return (
+            f"{space}The drive changed while it was tested: its compliance {went} by "
+            f"{100 * abs(change.share):.2g} %."
+        )
+    rest = answer.unknown
+    if rest is None:
+        return ""
+    what = f"{with_article(rest.shape)} of {rest.size_deg:.2g} deg"
+    if answer.effects:
+        return f"{space}What is left, {what}, no listed effect explains."
+    text = f"The model misses something that no listed effect explains: {what}."
+    laws = answer.repaired.stand_ins
+    return text + (f" It behaves like {listed(laws)}." if laws else "")
+
+
+def _open(answer: Answer) -> str:
+    """Say what may be missing, or how large it could be."""
+    if answer.classes and answer.explanation_set:
+        return (
+            f"Something is missing, most likely {_options(answer)}, but the readings are too few "
+            "to tell."
+        )
+    bounds = sorted(answer.undecided, key=lambda bound: -bound.upper95_deg)
+    if not bounds:
+        return answer.statement
+    return (
+        f"No difference was found, but {readable(bounds[0].name)} could be as large as "
+        f"{degrees(bounds[0].upper95_deg)}, above the tolerance of {degrees(answer.tolerance_deg)}."
+    )
+
+
+def _options(answer: Answer) -> str:
+    """Explanations with their probabilities."""
+    return " or ".join(
+        f"{' + '.join(map(readable, (*each.effects, *each.without_name)))} "
+        f"({100 * each.probability:.0f} %)"
+        for each in answer.explanation_set
+    )

@@ -1,0 +1,43 @@
+"""The next experiment: loads in newton metres, a programme to start from, nothing that is known."""
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.verify.experiment import MENU, rig_programme
+from tests.unit.test_diagnosis_answer import found
+
+
+def test_the_loads_are_said_in_newton_metres() -> None:
+    for case in ("ambiguous", "too noisy"):
+        diagnosis = found(case)
+        plan = diagnosis.answer.next_experiment
+        assert plan is not None
+        largest = float(np.abs(diagnosis.recording.torque_nm).max())
+        assert len(plan.loads_nm) >= 3
+        assert 0.29 * largest < max(plan.loads_nm) < 1.45 * largest
+        assert plan.rig_programme == "weights-and-protractor"
+
+
+def test_every_programme_of_the_menu_goes_as_far_as_its_loads_say() -> None:
+    for plan in MENU:
+        torque = plan.make(10.0)[0]
+        assert max(plan.shares) * 10.0 == pytest.approx(float(torque.max()), rel=0.05)
+        assert min(plan.shares) * 10.0 == pytest.approx(float(torque.min()), rel=0.05)
+
+
+def test_the_programme_to_start_from_is_that_of_the_rig() -> None:
+    torque, angle = np.arange(9.0), np.arange(9.0)
+    output = cs.Recording.from_arrays(torque, angle, side="output")
+    motor = cs.Recording.from_arrays(torque, angle, torque_from="motor-current")
+    by_hand = cs.Recording.from_arrays(torque, angle)
+    assert rig_programme(output) == "torque-sensor-and-encoder"
+    assert rig_programme(motor) == "motor-current"
+    assert rig_programme(by_hand) == "weights-and-protractor"
+
+
+def test_what_is_named_is_not_to_be_shown_again() -> None:
+    unknown = found("unknown").answer
+    assert unknown.next_experiment is not None
+    named = {effect.name for effect in unknown.effects}
+    assert not named & set(unknown.next_experiment.separates)
