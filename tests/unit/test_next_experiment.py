@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.verify.experiment import MENU, rig_programme
+from cyclosweep.diagnosis.verify.experiment import MENU, USUAL, rig_programme
+from cyclosweep.simulation.effects import VOCABULARY
 from tests.unit.test_diagnosis_answer import found
 
 
@@ -41,3 +42,9 @@ def test_what_is_named_is_not_to_be_shown_again() -> None:
     assert unknown.next_experiment is not None
     named = {effect.name for effect in unknown.effects}
     assert not named & set(unknown.next_experiment.separates)
+
+
+def test_the_usual_programmes_are_those_of_the_menu() -> None:
+    made = [plan.make for plan in MENU]
+    assert all(programme in made for programme in USUAL.values())
+    assert set(USUAL) <= {effect.name for effect in VOCABULARY}

@@ -102,8 +102,10 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     maxima = _largest_by_chance(gram, size, draws, np.random.default_rng([search.seed, 2]))
     raw = (problem.angle_deg - fitted.mean_deg)[use]
     residual = fitted.residual
-    beyond_noise = max(fitted.chi2, float(residual @ residual)) - search.noise.freedom
-    excess, shared = max(beyond_noise, 1e-9), 0.0
+    # Where the residual is error of the model, none of it is noise to be taken off.
+    of_noise = 0.0 if search.noise.structured else search.noise.freedom
+    excess = max(max(fitted.chi2, float(residual @ residual)) - of_noise, 1e-9)
+    shared = 0.0
     found: list[Region] = []
     for _ in range(MOST_REGIONS):
         z = np.abs(white.T @ residual) / size

@@ -57,6 +57,7 @@ def play_and_stiffness(
     -------
     PlayAndStiffness
     """
+    reason: str | None = None
     lines = straight_lines(recording)
     friction = _reading([line.friction_nm for line in lines])
     if hidden is not None:
@@ -70,7 +71,6 @@ def play_and_stiffness(
     else:
         play = _fitted(calibrated.get("free_play_deg"), 2.0)
         compliance = _fitted(calibrated.get("compliance_deg_per_nm"), 1.0)
-    reason = None
     if play is None:
         reason = "only one flank was loaded, so that no play can be read"
     if unsteady:

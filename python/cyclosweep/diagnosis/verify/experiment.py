@@ -169,6 +169,18 @@ MENU: tuple[Plan, ...] = (
     ),
 )
 
+USUAL: dict[str, Callable[[float], Load]] = {
+    "creep": _holds,
+    "viscous_drag": _rates,
+    "transmission_error": _places,
+    "phase_dependent_compliance": _places,
+    "thermal_drift": _soak,
+    "overload_softening": _wide,
+}
+"""Programme by which an effect is usually told, by name of the effect."""
+PREFERENCE = 3.0
+"""Factor of detectability by which another programme has to be better than the usual one."""
+
 
 def next_experiment(
     search: Search, rivals: list[Candidate], weakest: str | None, tolerance_deg: float
@@ -200,14 +212,19 @@ def next_experiment(
     else:
         return NextExperiment(program=NONE_NEEDED, minutes=0)
     best: tuple[float, Plan, int] | None = None
+    most = 0.0
     for plan in MENU:
         history = _history(search, plan)
         try:
             value = _detectability(search, history, terms, weakest, tolerance_deg)
         except (ValueError, AssertionError, KeyError):
             continue
-        if np.isfinite(value) and (best is None or value > 1.05 * best[0]):
-            best = (value, plan, len(history))
+        if not np.isfinite(value):
+            continue
+        usual = not terms and weakest is not None and USUAL.get(weakest) is plan.make
+        weight = value * (PREFERENCE if usual else 1.0)
+        if weight > 1.05 * most:
+            best, most = (value, plan, len(history)), weight
     if best is None:
         value, plan, rows = 0.0, MENU[0], 900
     else:
