@@ -22,7 +22,8 @@ import polars as pl
 
 import cyclosweep as cs
 from component_model import measure_components
-from cyclosweep.sweep.dataset import COMPRESSION, ROWS_PER_PART
+from cyclosweep.sweep.dataset import ROWS_PER_PART
+from cyclosweep.sweep.part_file import COMPRESSION
 from diagnosis import measure_diagnoses
 from measure import Timing, alternate
 from opponents import numba_closed, numpy_closed, theta

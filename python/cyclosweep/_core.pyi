@@ -35,6 +35,7 @@ __all__ = [
     "solve_slip",
     "status_labels",
     "torque_twist",
+    "write_parquet",
 ]
 
 DEBUG_BUILD: Final[bool]
@@ -264,3 +265,12 @@ def dragged(
     lag: float,
 ) -> _Reals: ...
 def remembered_datum(push: _Reals, memory: float) -> _Reals: ...
+def write_parquet(
+    path: str,
+    template: bytes,
+    others: bytes,
+    metadata: Sequence[tuple[str, str]],
+    columns: Sequence[tuple[_Reals, npt.NDArray[np.bool_] | None] | None],
+    rows: int,
+    rows_per_group: int,
+) -> None: ...

@@ -8,16 +8,16 @@ import time
 import cyclosweep as cs
 from cyclosweep.sweep.dataset import Dataset
 
-_put = Dataset.put
+_write = Dataset.write
 
 
 def _slow(self: Dataset, *rest: object) -> object:
     time.sleep(0.05)
-    return _put(self, *rest)  # type: ignore[arg-type]
+    return _write(self, *rest)  # type: ignore[arg-type]
 
 
 # Spawned workers import this file, too.
-Dataset.put = _slow  # type: ignore[method-assign,assignment]
+Dataset.write = _slow  # type: ignore[method-assign,assignment]
 
 
 def main() -> None:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import polars as pl
 from filelock import FileLock, Timeout
@@ -17,12 +17,13 @@ import cyclosweep._core as _core
 from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError, path_of
+from cyclosweep.sweep.kernel_columns import stretch_arrays
+from cyclosweep.sweep.part_file import write_arrays, write_rows
 from cyclosweep.sweep.rows import frame
 from cyclosweep.sweep.study import Study
 from cyclosweep.sweep.summary import PartSummary, leaders_of_part, summary_of_part
 
 __all__ = [
-    "COMPRESSION",
     "ROWS_PER_PART",
     "SOLVED_ROWS_PER_PART",
     "Dataset",
@@ -35,7 +36,6 @@ __all__ = [
 ROWS_PER_PART = 2**18
 SOLVED_ROWS_PER_PART = 2**14
 """Variants a part whose equilibria are solved: some seconds' work."""
-COMPRESSION: Literal["lz4"] = "lz4"
 _FOOTER = "cyclosweep"
 _FORMAT = "cyclosweep.dataset/1"
 _MANIFEST = "_manifest.json"
@@ -232,39 +232,27 @@ class Dataset:
         OSError
             When it cannot be written; nothing is left behind.
         """
-        rows = frame(self.study, part.start, part.stop, self.study.computed())
-        summary = summary_of_part(rows, part.start, part.stop, self.study)
-        return self.put(part, self.study.select(rows), summary)
-
-    def put(self, part: Part, rows: pl.DataFrame, summary: PartSummary) -> PartSummary:
-        """Write computed rows as a part, whole or not at all.
-
-        Parameters
-        ----------
-        part : Part
-            Which one.
-        rows : polars.DataFrame
-            Its rows.
-        summary : PartSummary
-            Their summary.
-
-        Returns
-        -------
-        PartSummary
-        """
-        footer = {
-            **self._identity(),
-            "objectives": self._objectives(),
-            "record": summary.to_json(),
-        }
+        study, names = self.study, self.study.computed()
+        arrays, results = None, None
+        if study.is_extended or study.only_ok:
+            rows = frame(study, part.start, part.stop, names)
+        else:
+            arrays = stretch_arrays(study, names, part.start, part.stop)
+            rows, results = pl.DataFrame(arrays.series(names)), arrays.reals()
+        summary = summary_of_part(rows, part.start, part.stop, study, results)
+        footer = self._footer(summary)
         with unfinished(self.folder / part.name) as file:
-            rows.write_parquet(
-                file,
-                compression=COMPRESSION,
-                row_group_size=ROWS_PER_PART,
-                metadata={_FOOTER: json.dumps(footer)},
-            )
+            if arrays is None:
+                write_rows(study.select(rows), file, footer, ROWS_PER_PART)
+            else:
+                write_arrays(arrays, study.select(rows), file, footer, ROWS_PER_PART)
         return summary
+
+    def _footer(self, summary: PartSummary) -> dict[str, str]:
+        """What stands in a part's footer, as text under the package's key."""
+        objectives, record = self._objectives(), summary.to_json()
+        footer = {**self._identity(), "objectives": objectives, "record": record}
+        return {_FOOTER: json.dumps(footer)}
 
     def _identity(self) -> dict[str, Any]:
         return {

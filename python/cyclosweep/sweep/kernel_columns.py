@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,13 +24,95 @@ if TYPE_CHECKING:
 
     from cyclosweep.sweep.study import Study
 
-    _Column = npt.NDArray[np.float64] | npt.NDArray[np.uint32]
+    _Column = npt.NDArray[np.float64] | npt.NDArray[np.uint32] | npt.NDArray[np.uint64]
     _Columns = Mapping[str, _Column]
 
-__all__ = ["result_columns", "stretch_columns"]
+__all__ = ["KernelArrays", "result_columns", "stretch_arrays", "stretch_columns"]
 
 
-def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
+@dataclass(frozen=True)
+class KernelArrays:
+    """Columns of variants as the compiled models write them.
+
+    Attributes
+    ----------
+    dtypes : dict of str to polars.DataType
+        Type that each column has in a table.
+    inputs : dict of str to ndarray
+        Numbers of the variants and values of axes.
+    status : ndarray of uint8, or None
+        Codes of the statuses; without results none.
+    any_refused : bool
+        Whether a variant cannot be built, so that its results mean nothing.
+    results : dict of str to ndarray
+        Results of the models.
+    may_not_apply : frozenset of str
+        Results that can be NaN for a variant that can be built: there is none.
+    of_refused : frozenset of str
+        Results that can be numbers for a variant that is refused, and then mean nothing.
+    """
+
+    dtypes: Mapping[str, pl.DataType]
+    inputs: _Columns
+    status: npt.NDArray[np.uint8] | None
+    any_refused: bool
+    results: _Columns
+    may_not_apply: frozenset[str]
+    of_refused: frozenset[str]
+
+    def reals(self) -> _Columns:
+        """Results that are real numbers, and NaN in every row without a result."""
+        return {
+            name: values
+            for name, values in self.results.items()
+            if name not in self.of_refused and values.dtype == np.float64
+        }
+
+    def series(self, names: list[str]) -> list[pl.Series]:
+        """Columns of a table; null where a variant has no result.
+
+        Parameters
+        ----------
+        names : list of str
+            Which, in order.
+
+        Returns
+        -------
+        list of polars.Series
+        """
+        found = {name: self._input(name) for name in names if name in self.inputs}
+        found.update(self._results([name for name in names if name not in found]))
+        return [found[name] for name in names]
+
+    def _input(self, name: str) -> pl.Series:
+        """Numbers of variants, or an axis with the type that it has in a table."""
+        values, dtype = self.inputs[name], self.dtypes[name]
+        if isinstance(dtype, pl.Enum):
+            return pl.Series(name, values.astype(np.uint8)).cat.to(dtype)
+        return pl.Series(name, values).cast(dtype)
+
+    def _results(self, names: list[str]) -> dict[str, pl.Series]:
+        if not names:
+            return {}
+        results = [name for name in names if name != "status"]
+        series = {"status": pl.Series("status", self.status)}
+        for name in results:
+            may_not_apply = name in self.may_not_apply
+            series[name] = pl.Series(name, self.results[name], nan_to_null=may_not_apply)
+        table = pl.DataFrame(series)
+        if self.any_refused and results:
+            # Nothing is copied: polars joins the validity to the columns.
+            built = pl.col("status") == 0
+            table = table.with_columns(pl.when(built).then(pl.col(*results)))
+        changed = [name for name in results if self.dtypes[name] != table.schema[name]]
+        table = table.with_columns(
+            *(_cast(name, self.dtypes[name]) for name in changed),
+            pl.col("status").cat.to(self.dtypes["status"]),
+        )
+        return {name: table[name] for name in names}
+
+
+def stretch_arrays(study: Study, names: list[str], start: int, stop: int) -> KernelArrays:
     """Values of axes, numbers and results of all variants of a stretch, in one pass.
 
     Parameters
@@ -44,43 +127,38 @@ def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl
 
     Returns
     -------
+    KernelArrays
+    """
+    varying = {"variant", *(axis.name for axis in study.space.axes)}
+    axes = [name for name in names if name in varying and name != "variant"]
+    results = [name for name in names if name not in varying]
+    if results:
+        found = _arrays(study, results, start, stop, None, axes)
+    else:
+        memory = take(len(axes) * (stop - start))
+        study.core.fill_axes(axes, start, stop, memory)
+        values = dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
+        found = KernelArrays(study.schema(), values, None, False, {}, frozenset(), frozenset())
+    if "variant" in names:
+        numbers = np.arange(start, stop, dtype=np.uint64)
+        found = replace(found, inputs={**found.inputs, "variant": numbers})
+    return found
+
+
+def stretch_columns(study: Study, names: list[str], start: int, stop: int) -> pl.DataFrame:
+    """Values of axes, numbers and results of all variants of a stretch, as a table.
+
+    Parameters
+    ----------
+    study, names, start, stop
+        As for :func:`stretch_arrays`.
+
+    Returns
+    -------
     polars.DataFrame
         Columns in the order of ``names``.
     """
-    varying = {"variant", *(axis.name for axis in study.space.axes)}
-    inputs = [name for name in names if name in varying]
-    axes = [name for name in inputs if name != "variant"]
-    results = [name for name in names if name not in varying]
-    if results:
-        series, values = _results(study, results, start, stop, None, axes)
-    else:
-        series, values = [], _axis_values(study, axes, start, stop)
-    found = _axis_series(study, inputs, values, start, stop) + series
-    return pl.DataFrame(found).select(names)
-
-
-def _axis_values(study: Study, axes: list[str], start: int, stop: int) -> _Columns:
-    """Values of axes alone."""
-    memory = take(len(axes) * (stop - start))
-    study.core.fill_axes(axes, start, stop, memory)
-    return dict(zip(axes, memory.reshape(len(axes), stop - start), strict=True))
-
-
-def _axis_series(
-    study: Study, names: list[str], values: _Columns, start: int, stop: int
-) -> list[pl.Series]:
-    """Numbers of variants, and axes with the type that they have in a table."""
-    dtypes = study.schema()
-    columns = []
-    for name in names:
-        if name == "variant":
-            columns.append(pl.int_range(start, stop, dtype=pl.UInt64, eager=True).alias(name))
-        elif name == "criterion":
-            codes = pl.Series(name, values[name].astype(np.uint8))
-            columns.append(codes.cat.to(dtypes[name]))
-        else:
-            columns.append(pl.Series(name, values[name]).cast(dtypes[name]))
-    return columns
+    return pl.DataFrame(stretch_arrays(study, names, start, stop).series(names))
 
 
 def result_columns(
@@ -107,18 +185,18 @@ def result_columns(
     -------
     list of polars.Series
     """
-    return _results(study, names, start, stop, picked, [])[0]
+    return _arrays(study, names, start, stop, picked, []).series(names)
 
 
-def _results(
+def _arrays(
     study: Study,
     names: list[str],
     start: int,
     stop: int,
     picked: npt.NDArray[np.uint64] | None,
     axes: list[str],
-) -> tuple[list[pl.Series], _Columns]:
-    """Statuses and results as columns; values of axes beside them, where all variants are meant."""
+) -> KernelArrays:
+    """Statuses and results, and values of axes where all variants are meant."""
     wanted = [name for name in names if name != "status"]
     of_train = [name for name in wanted if name in TRAIN_COLUMNS]
     with_parts = study.model == "components"
@@ -139,21 +217,10 @@ def _results(
         train.update((name, np.asarray(values[name], float)) for name in needed_results(with_parts))
         values.update(train_columns(of_train, train, with_parts))
         may_not_apply.update(dict.fromkeys(of_train, True))
-    outputs = wanted
-    dtypes = study.schema()
-    series = {"status": pl.Series("status", status)}
-    for name in outputs:
-        series[name] = pl.Series(name, values[name], nan_to_null=may_not_apply[name])
-    table = pl.DataFrame(series)
-    if any_refused and outputs:
-        # Nothing is copied: polars joins the validity to the columns.
-        built = pl.col("status") == 0
-        table = table.with_columns(pl.when(built).then(pl.col(*outputs)))
-    table = table.with_columns(
-        *(_cast(name, dtypes[name]) for name in outputs if dtypes[name] != table.schema[name]),
-        pl.col("status").cat.to(dtypes["status"]),
-    )
-    return [table[name] for name in names], inputs
+    absent = frozenset(name for name, may in may_not_apply.items() if may)
+    # The published model knows nothing of what the component model refuses.
+    unsure = frozenset(values if with_parts else of_train)
+    return KernelArrays(study.schema(), inputs, status, any_refused, values, absent, unsure)
 
 
 def _train_inputs(

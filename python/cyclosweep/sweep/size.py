@@ -11,7 +11,8 @@ from pathlib import Path
 
 import polars as pl
 
-from cyclosweep.sweep.dataset import COMPRESSION, dataset_of
+from cyclosweep.sweep.dataset import dataset_of
+from cyclosweep.sweep.part_file import COMPRESSION
 from cyclosweep.sweep.rows import frame
 from cyclosweep.sweep.study import Study
 

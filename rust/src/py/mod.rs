@@ -5,6 +5,7 @@ mod curve;
 mod dynamics;
 mod formulas;
 mod hysteresis;
+mod parquet;
 mod study;
 
 use pyo3::create_exception;
@@ -74,6 +75,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<study::PyStudy>()?;
     module.add_function(wrap_pyfunction!(study::kernel_evaluations, module)?)?;
     module.add_function(wrap_pyfunction!(study::sample, module)?)?;
+    module.add_function(wrap_pyfunction!(parquet::write_parquet, module)?)?;
     module.add_function(wrap_pyfunction!(input_table, module)?)?;
     module.add_function(wrap_pyfunction!(output_table, module)?)?;
     module.add_function(wrap_pyfunction!(status_labels, module)?)?;
