@@ -66,13 +66,25 @@ def inspect(
     header_row: Annotated[
         int | None, typer.Option("--header-row", metavar="N", min=1, help="Row of the names.")
     ] = None,
+    missing: Annotated[
+        list[str] | None,
+        typer.Option("--missing", metavar="TEXT", help="Cell of a row to pass over; repeatable."),
+    ] = None,
+    settings: Annotated[
+        Path | None,
+        typer.Option("--meta", metavar="META.toml", help="Settings in force; else those beside."),
+    ] = None,
+    ignore_settings: Annotated[
+        bool, typer.Option("--ignore-settings", help="Go by the recording alone.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace META.toml.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Show what is understood of a recording, and write the metadata file to diagnose it with.
 
     With the metadata file of the same stem beside the recording, `cyclosweep diagnose RECORDING
-    --out DIR` follows. What could be two things is asked, not guessed.
+    --out DIR` follows. What could be two things is asked, not guessed. Where that file exists
+    already, the recording is shown as diagnose reads it, and what it suggests otherwise is listed.
     """
     from cyclosweep.recording.inspection import inspect as look
     from cyclosweep.recording.metadata import TableOptions
@@ -86,8 +98,9 @@ def inspect(
     for name, value in (("lever-arm", lever_arm), ("counts-per-turn", counts)):
         if value is not None and not value > 0:
             raise InputError(f"--{name}: found {value:g}, expected a number above zero")
-    options = TableOptions(sheet=sheet, header_row=header_row)
-    known = _known(recording, out, drive, side, options)
+    options = TableOptions(sheet=sheet, header_row=header_row, missing=missing or [])
+    in_force = _settings(recording, settings, ignore_settings)
+    known = _known(recording, in_force, out, drive, side, options)
     known = dataclasses.replace(
         known,
         torque_unit=torque_unit,
@@ -96,7 +109,7 @@ def inspect(
         nm_per_a=nm_per_a,
         counts_per_turn=counts,
     )
-    found = look(recording, known, {"torque_nm": torque, "angle_deg": angle}, out)
+    found = look(recording, known, {"torque_nm": torque, "angle_deg": angle}, out, in_force)
     if as_json:
         print_json(found.as_dict())
     else:
@@ -107,7 +120,9 @@ def inspect(
         write_text(out, found.toml)
     if as_json:
         return
-    if out is None:
+    if out is None and found.settings and not found.suggested and not found.stops:
+        print(f"\nNext: {_next(recording, found.settings, found)}")
+    elif out is None:
         state = "incomplete" if found.proposal.open else "--out writes it"
         print(f"\nProposed metadata file ({state}):\n")
         print(found.toml, end="")
@@ -117,14 +132,24 @@ def inspect(
             print(f"Next: {_next(recording, out, found)}")
 
 
+def _settings(recording: Path, given: Path | None, ignored: bool) -> Path | None:
+    """Metadata file in force: the one given, or the one of the recording's name beside it."""
+    from cyclosweep.recording.columns import metadata_path
+
+    if ignored and given is not None:
+        raise InputError("--ignore-settings: found --meta, too, expected one of them")
+    return None if ignored else metadata_path(recording, given)
+
+
 def _known(
     recording: Path,
+    settings: Path | None,
     out: Path | None,
     drive: str | None,
     side: Literal["input", "output"] | None,
     options: TableOptions,
 ) -> Known:
-    """Load the drive; drive and side of a metadata file beside the recording count, too."""
+    """Load the drive; drive and side of the settings in force count, too."""
     from cyclosweep.design.drive import Drive
     from cyclosweep.recording.metadata import Metadata
     from cyclosweep.recording.proposed import Known
@@ -132,13 +157,13 @@ def _known(
 
     beside = recording.with_name(f"{stem(recording)}.toml")
     file: Path | None = None
-    if beside.is_file() and beside != recording:
-        meta = Metadata.read(beside)
+    if settings is not None:
+        meta = Metadata.read(settings)
         side = side or meta.side
         if drive is None and meta.drive is not None:
             drive = meta.drive
-            if (beside.parent / drive).is_file():
-                drive = str(beside.parent / drive)
+            if (settings.parent / drive).is_file():
+                drive = str(settings.parent / drive)
     if drive is not None and drive.endswith(".toml"):
         file = Path(drive)
     chosen = None if drive is None else Drive.load(drive)
@@ -165,7 +190,12 @@ def _next(recording: Path, out: Path, found: Inspection) -> str:
 def _print(found: Inspection) -> None:
     """Print what was understood, as narrow as the terminal is."""
     width = max(shutil.get_terminal_size((100, 24)).columns, _NARROWEST)
-    print(f"{found.path}\n\nColumns")
+    print(found.path)
+    if found.settings is not None:
+        _paragraph("settings in force", str(found.settings), width)
+    if found.stops is not None:
+        _paragraph("with them alone diagnose stops", found.stops, width)
+    print("\nColumns")
     for column in found.columns:
         for line in textwrap.wrap(
             _column_line(column), width, initial_indent="  ", subsequent_indent="      "
@@ -182,6 +212,8 @@ def _print(found: Inspection) -> None:
     _list("Recognised", found.notes, width)
     faults = found.recording.faults if found.recording else ()
     _list("Remarks", [f"{f.verdict}: {f.reason}" if f.verdict else f.reason for f in faults], width)
+    _list("Check first", found.proposal.checks, width)
+    _list("The file suggests otherwise", found.suggested, width)
     _list("Assumed", found.proposal.assumed, width)
     _list("To be said first", found.proposal.open, width)
 

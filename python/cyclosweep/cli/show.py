@@ -27,7 +27,7 @@ def show(
     """Show a drive's numbers, its compliance by parts, and what to be careful about.
 
     Several drives stand side by side. A drive that gives the numbers of the component model is
-    computed by both models.
+    computed by both models. Exit status 2 where one of them cannot be built.
     """
     from cyclosweep.choose.comparison import compare
     from cyclosweep.choose.comparison_text import renderables
@@ -40,7 +40,9 @@ def show(
         write_table(found.table, out)
     if as_json:
         print_json(json.loads(found.to_json()))
-        return
-    print_tables(renderables(found, everything=everything))
-    if out is not None:
-        print(f"Written: {out}")
+    else:
+        print_tables(renderables(found, everything=everything))
+        if out is not None:
+            print(f"Written: {out}")
+    if any(remark.level == "error" for each in found.figures for remark in each.remarks):
+        raise typer.Exit(2)

@@ -33,6 +33,9 @@ RARER = log(1.1)
 RIVAL = log(1.12)
 """How much worse than the best a mistake may fit and still be named beside it."""
 
+AGAINST_NAMES = ("columns_swapped", "unit_contradicted")
+"""Remarks of reading that the names of the file speak against its settings."""
+
 
 @dataclass(frozen=True)
 class Mistake:
@@ -225,6 +228,11 @@ def doubts(
     modulo = recording.modulo_fault(2.0 * nominal_play)
     if modulo is not None:
         found.append(Doubt(quantity="angle_modulo", text=modulo.reason))
+    found += [
+        Doubt(quantity="columns", text=fault.reason[0].lower() + fault.reason[1:].rstrip("."))
+        for fault in recording.faults
+        if fault.kind in AGAINST_NAMES
+    ]
     return tuple(found)
 
 

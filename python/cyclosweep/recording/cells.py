@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Collection
 from datetime import date, datetime, time, timedelta
 from typing import Any
 
@@ -11,10 +12,25 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.messages import shown
 from cyclosweep.recording.samples import Floats
 
-__all__ = ["MISSING", "clock_seconds", "is_clock", "is_number", "number_in", "spelt_number"]
+__all__ = [
+    "MISSING",
+    "BadCellError",
+    "clock_seconds",
+    "is_clock",
+    "is_number",
+    "number_in",
+    "spelt_number",
+]
 
-MISSING = ["", "NA", "N/A", "na", "n/a", "null", "None", "-", "--", "#N/A"]
-"""Cell contents that stand for a value that is not there."""
+MISSING = [
+    *("", "NA", "N/A", "na", "n/a", "n.a.", "null", "NULL", "None", "-", "--", "---", "----"),
+    *("#N/A", "#NV", "#NUM!", "#VALUE!", "#DIV/0!", "k.A."),
+]
+"""Cell contents that stand for a value that is not there.
+
+The texts of an amplifier beyond its range, such as OVERLOAD, are none of them: the drive saw that
+load, so whoever reads the file has to say that its rows are to be passed over.
+"""
 
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:(?P<sign>[.,'’  ])\d{3})(?:(?P=sign)\d{3})*(?:[.,]\d*)?")
 _PLAIN = re.compile(
@@ -25,6 +41,34 @@ _CLOCK = re.compile(
     r"(?:(?<=\d)[T ]\s*)?(?:(?P<h>\d{1,3}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,]\d+)?))?"
     r"\s*(?P<half>[AaPp][Mm])?)?\s*(?P<zone>Z|[+-]\d{2}:?\d{2})?"
 )
+
+
+class BadCellError(InputError):
+    """A cell with text where a number belongs.
+
+    Attributes
+    ----------
+    cell : str
+        Its text.
+    where : str
+        File, line or row, column, what was found and what was expected.
+    """
+
+    def __init__(self, place: str, cell: str) -> None:
+        """Say where the cell stands and how to pass over its row.
+
+        Parameters
+        ----------
+        place : str
+            File, line or row, and column.
+        cell : str
+            Its text.
+        """
+        self.cell = cell.strip()
+        self.where = f"{place}: found {shown(cell)}, expected a number"
+        super().__init__(
+            f"{self.where}; [table] missing = [{shown(cell)}] in the settings passes over such rows"
+        )
 
 
 def number_in(cell: str) -> float | None:
@@ -85,7 +129,9 @@ def is_clock(cell: object) -> bool:
     return bool(match and (match["date"] or match["h"]))
 
 
-def clock_seconds(cells: list[Any], rows: str, first: int, column: str) -> Floats:
+def clock_seconds(
+    cells: list[Any], rows: str, first: int, column: str, missing: Collection[str] = ()
+) -> Floats:
     """Turn times into seconds since the first.
 
     Parameters
@@ -98,6 +144,8 @@ def clock_seconds(cells: list[Any], rows: str, first: int, column: str) -> Float
         Number of the first row.
     column : str
         Name of the column.
+    missing : collection of str
+        Texts besides `MISSING` that stand for a value that is not there.
 
     Returns
     -------
@@ -112,7 +160,7 @@ def clock_seconds(cells: list[Any], rows: str, first: int, column: str) -> Float
     instants: list[float] = []
     dated = True
     for place, cell in enumerate(cells):
-        if cell is None or (isinstance(cell, str) and cell.strip() in MISSING):
+        if cell is None or (isinstance(cell, str) and _stands_for_none(cell, missing)):
             instants.append(math.nan)
             continue
         instant = _instant(cell)
@@ -129,6 +177,23 @@ def clock_seconds(cells: list[Any], rows: str, first: int, column: str) -> Float
         days = np.cumsum(np.diff(seconds[known], prepend=seconds[known[0]]) < -43200.0)
         seconds[known] += 86400.0 * days
     return seconds - seconds[known[0]] if len(known) else seconds
+
+
+def _stands_for_none(cell: str, missing: Collection[str]) -> bool:
+    """Whether a text stands for a value that is not there.
+
+    Parameters
+    ----------
+    cell : str
+        The text.
+    missing : collection of str
+        Texts besides `MISSING` that do.
+
+    Returns
+    -------
+    bool
+    """
+    return cell.strip() in MISSING or cell.strip() in missing
 
 
 def _instant(cell: object) -> tuple[float, bool] | None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.cells import BadCellError
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.metadata import CANONICAL_COLUMNS
 from cyclosweep.recording.roles import Named, describe
@@ -14,6 +15,9 @@ __all__ = ["Choice", "choose", "numbers_of"]
 
 SAME_SIGNAL = 0.999999
 """Correlation beyond which two columns are one signal in two units."""
+
+MOST_TEXTS = 5
+"""Different texts in a column that still is one of numbers: an overload, a word for no reading."""
 
 FOLLOWS = 0.995
 """Correlation beyond which a torque is computed from a current, not measured by itself."""
@@ -47,26 +51,72 @@ class Choice:
     current: str | None = None
 
 
-def numbers_of(table: FileTable) -> dict[str, Floats]:
-    """Read every column that holds numbers or times, each of shape (rows,)."""
+def numbers_of(table: FileTable) -> tuple[dict[str, Floats], dict[str, BadCellError]]:
+    """Read every column that holds numbers or times.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+
+    Returns
+    -------
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Values by column; NaN where there is none, or text.
+    bad : dict of str to BadCellError
+        First cell with text of each column that otherwise holds numbers.
+    """
     names = [name for name in dict.fromkeys(table.header) if table.header.count(name) == 1 and name]
     count = len(table.notes)
     try:
         frame = table.read(names, [])
-        return {name: frame[name].to_numpy().astype(np.float64) for name in names}
+        return {name: frame[name].to_numpy().astype(np.float64) for name in names}, {}
     except InputError:
         del table.notes[count:]
     # One of them is text. Reading all of them with it as text keeps the rows in step.
-    numeric = []
+    numeric, bad = [], {}
+    texts: set[str] = set()
     for name in names:
-        try:
-            table.read([name], [])
+        found = _texts_among_numbers(table, name)
+        if found is not None:
             numeric.append(name)
-        except InputError:
-            continue
+            if found:
+                bad[name] = found[0]
+                texts |= {each.cell for each in found}
     del table.notes[count:]
+    table = table.passing_over(texts)
     frame = table.read(numeric, [name for name in names if name not in numeric])
-    return {name: frame[name].to_numpy().astype(np.float64) for name in numeric}
+    return {name: frame[name].to_numpy().astype(np.float64) for name in numeric}, bad
+
+
+def _texts_among_numbers(table: FileTable, name: str) -> list[BadCellError] | None:
+    """Find the texts in a column of numbers.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    name : str
+        The column.
+
+    Returns
+    -------
+    list of BadCellError or None
+        One for each text; None where the column holds text, or more than `MOST_TEXTS` of them.
+    """
+    found: list[BadCellError] = []
+    while len(found) <= MOST_TEXTS:
+        try:
+            values = table.passing_over([each.cell for each in found]).read([name], [])[name]
+        except BadCellError as error:
+            if found and error.cell == found[-1].cell:
+                return None
+            found.append(error)
+            continue
+        except InputError:
+            return None
+        return found if not found or 2 * int(values.is_finite().sum()) > len(values) else None
+    return None
 
 
 def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | None]) -> Choice:
@@ -138,7 +188,10 @@ def _choose_one(
     if not best:
         if role == "torque_nm":
             extra = f"; {', '.join(choice.commands)} is a command" if choice.commands else ""
-            choice.open.append(f"No column is recognised as the torque{extra}. Say --torque NAME.")
+            choice.open.append(
+                f"No column is recognised as the torque{extra}. Say --torque NAME; "
+                "--header-row N if these are not the names of the columns."
+            )
         elif role == "angle_deg":
             choice.assumed.append(
                 "No column is recognised as the angle: a load programme (--angle NAME)."

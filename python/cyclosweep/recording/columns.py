@@ -1,6 +1,6 @@
 """From the columns of a file to canonical columns: found by name, scaled, unwrapped."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -8,15 +8,15 @@ import polars as pl
 
 from cyclosweep.errors import InputError
 from cyclosweep.recording.endings import ENDINGS
-from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata, conversion
 from cyclosweep.recording.opening import open_table
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
-from cyclosweep.recording.units import find_unit, split_name
+from cyclosweep.recording.stated_units import take_stated_units
 from cyclosweep.recording.wrapping import unwrap_with_torque
 
-__all__ = ["Columns", "canonical_columns", "file_columns", "load", "stem"]
+__all__ = ["Columns", "canonical_columns", "file_columns", "load", "refuse_missing_columns", "stem"]
 
 Columns = dict[str, Floats | None]
 """Canonical columns by name, each of shape (rows,); None where the file has none."""
@@ -68,7 +68,7 @@ def file_columns(meta: Metadata) -> dict[str, Column]:
 
 def load(
     path: Path, meta_path: Path | None, meta: Metadata, sources: dict[str, Column]
-) -> tuple[pl.DataFrame, list[str]]:
+) -> tuple[pl.DataFrame, list[str], list[Fault]]:
     """Read the file columns that are needed, all of them numbers but those selected by text.
 
     Parameters
@@ -88,72 +88,34 @@ def load(
         The file columns, in the file's units.
     notes : list of str
         What was recognised.
+    remarks : list of Fault
+        Names that speak against the settings.
 
     Raises
     ------
     InputError
-        For a column that is missing, or a cell that is not of its kind.
+        For a column that is missing, a unit that the file contradicts, or a cell that is not of
+        its kind.
     """
     wanted = {source.column for source in sources.values()}
     table = open_table(path, meta.table, wanted)
-    _refuse_missing_columns(path, meta_path, meta, sources, table.header)
+    refuse_missing_columns(path, meta_path, meta, sources, table.header)
+    _refuse_without_torque(path, meta_path, sources["torque_nm"], table.header)
     numbers, words = _needed(path, meta_path, meta, sources, table.header)
     frame = table.read(sorted(numbers), sorted(words))
     notes = list(table.notes)
-    _take_stated_units(path, table, sources, notes)
-    return frame, notes
+    remarks = take_stated_units((path, meta_path), meta, table, sources, notes)
+    return frame, notes, remarks
 
 
-def _take_stated_units(
-    path: Path, table: FileTable, sources: dict[str, Column], notes: list[str]
-) -> None:
-    """Convert from the unit that the file states, where the metadata give neither unit nor scale.
-
-    Only a unit in brackets behind a name, or in a row or property of its own, counts as stated.
-
-    Parameters
-    ----------
-    path : Path
-        The recording's file, for messages.
-    table : FileTable
-        With the stated units.
-    sources : dict of str to Column
-        Changed in place.
-    notes : list of str
-        Each unit that is converted is added to it.
-
-    Raises
-    ------
-    InputError
-        For a unit of something else, or one that needs another number.
-    """
-    for name, source in sources.items():
-        if source.unit is not None or source.scale != 1.0 or source.column not in table.header:
-            continue
-        stated = table.units.get(source.column)
-        if stated is None:
-            _, written, in_brackets = split_name(source.column)
-            stated = written if in_brackets else None
-        if stated is None or name == "run" or find_unit(stated) is None:
-            continue
-        converted = source.model_copy(update={"unit": stated})
-        try:
-            factor, offset = conversion(name, converted)
-        except ValueError as error:
-            raise InputError(f"{path}, column {source.column}: {error}") from None
-        sources[name] = converted
-        if (factor, offset) != (1.0, source.offset):
-            notes.append(f"{source.column} is in {stated}: times {factor:.6g} to {name}.")
-
-
-def _refuse_missing_columns(
+def refuse_missing_columns(
     path: Path,
     meta_path: Path | None,
     meta: Metadata,
-    sources: dict[str, Column],
+    sources: Mapping[str, Column],
     header: list[str],
 ) -> None:
-    """Refuse a file without the torque or without a column that the metadata name.
+    """Refuse a file without a column that the metadata name.
 
     Parameters
     ----------
@@ -174,7 +136,29 @@ def _refuse_missing_columns(
                 f"{meta_path}, key columns.{name}: column {source.column!r} is not in {path}, "
                 f"found {found}"
             )
-    if sources["torque_nm"].column not in header:
+
+
+def _refuse_without_torque(
+    path: Path, meta_path: Path | None, source: Column, header: list[str]
+) -> None:
+    """Refuse a file without the torque.
+
+    Parameters
+    ----------
+    path, meta_path
+        As for `load`.
+    source : Column
+        File column of the torque.
+    header : list of str
+        Columns of the file.
+
+    Raises
+    ------
+    InputError
+        With the columns that were found.
+    """
+    found = _listed(header)
+    if source.column not in header:
         raise InputError(
             f"{path}: no column torque_nm, found {found}; name it under [columns] in "
             f"{meta_path or stem(path) + '.toml'}, or let `cyclosweep inspect` propose that file"

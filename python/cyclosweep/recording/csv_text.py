@@ -56,6 +56,8 @@ class CsvText:
         Units in a row of their own, by column.
     notes : list of str
         What was recognised.
+    missing : tuple of str
+        Texts besides the usual ones that stand for a value that is not there.
     """
 
     content: bytes
@@ -68,6 +70,7 @@ class CsvText:
     header: list[str]
     units: dict[str, str]
     notes: list[str]
+    missing: tuple[str, ...] = ()
 
 
 def read_bytes(path: Path) -> bytes:
@@ -266,7 +269,9 @@ def _spelt(text: CsvText, options: TableOptions) -> CsvText:
     notes = list(text.notes)
     if decimal == "," and not any("decimal commas" in note for note in notes):
         notes.append(f"Cells divided by '{text.separator}', decimal commas.")
-    return replace(text, decimal=decimal, thousands=thousands, notes=notes)
+    return replace(
+        text, decimal=decimal, thousands=thousands, notes=notes, missing=tuple(options.missing)
+    )
 
 
 def _header_line(content: bytes, path: Path) -> tuple[int, int, int]:

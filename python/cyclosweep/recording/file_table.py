@@ -1,16 +1,21 @@
 """A file as a table of named columns, whatever its format."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 import polars as pl
 
-from cyclosweep.errors import InputError
-from cyclosweep.recording.cells import MISSING, clock_seconds, is_clock, is_number, spelt_number
-from cyclosweep.recording.messages import shown
+from cyclosweep.recording.cells import (
+    MISSING,
+    BadCellError,
+    clock_seconds,
+    is_clock,
+    is_number,
+    spelt_number,
+)
 from cyclosweep.recording.samples import Floats
 
 __all__ = ["FileTable", "GridTable", "spelling"]
@@ -45,6 +50,10 @@ class FileTable(Protocol):
         """Return the named columns as Float64 and String."""
         ...
 
+    def passing_over(self, texts: Iterable[str]) -> "FileTable":
+        """Return the same table, in which these texts stand for missing values."""
+        ...
+
 
 @dataclass(slots=True)
 class GridTable:
@@ -64,6 +73,8 @@ class GridTable:
         Row of the file in which the first value stands, for messages.
     decimal, thousands : str
         Spelling of numbers that are text.
+    missing : tuple of str
+        Texts besides the usual ones that stand for a value that is not there.
     """
 
     path: Path
@@ -73,6 +84,7 @@ class GridTable:
     first_row: int = 1
     decimal: str = "."
     thousands: str = ""
+    missing: tuple[str, ...] = ()
 
     @property
     def header(self) -> list[str]:
@@ -107,6 +119,10 @@ class GridTable:
             empty = pl.all_horizontal(floats)
         return frame.filter(~empty)
 
+    def passing_over(self, texts: Iterable[str]) -> "GridTable":
+        """Return the same table, in which these texts stand for missing values."""
+        return replace(self, missing=(*self.missing, *texts))
+
     def _numbers(self, name: str) -> Floats:
         """Values of a column as numbers; times become seconds since the first."""
         values = self.columns[name]
@@ -117,30 +133,34 @@ class GridTable:
             self.notes.append(f"{name} holds dates: seconds since the first are taken.")
             return np.asarray(since, dtype=np.float64)
         cells = list(values)
-        first = next((cell for cell in cells if not _is_missing(cell)), None)
+        first = next((cell for cell in cells if not self._is_missing(cell)), None)
         if is_clock(first):
             return self._seconds(name, cells)
         out = np.full(len(cells), np.nan)
         for place, cell in enumerate(cells):
-            if _is_missing(cell):
+            if self._is_missing(cell):
                 continue
             if isinstance(cell, bool | int | float | np.number | np.bool_):
                 out[place] = float(cell)
                 continue
             number = spelt_number(str(cell), self.decimal, self.thousands)
             if number is None:
-                raise InputError(
-                    f"{self.path}, row {self.first_row + place}, column {name}: found "
-                    f"{shown(str(cell))}, expected a number"
-                )
+                where = f"{self.path}, row {self.first_row + place}, column {name}"
+                raise BadCellError(where, str(cell))
             out[place] = number
         return out
 
     def _seconds(self, name: str, cells: list[Any]) -> Floats:
         """Times of a column as seconds since the first, with a note."""
-        seconds = clock_seconds(cells, f"{self.path}, row", self.first_row, name)
+        seconds = clock_seconds(cells, f"{self.path}, row", self.first_row, name, self.missing)
         self.notes.append(f"{name} holds times of day or dates: seconds since the first are taken.")
         return seconds
+
+    def _is_missing(self, cell: object) -> bool:
+        """Whether a cell stands for a value that is not there."""
+        if not isinstance(cell, str):
+            return cell is None
+        return cell.strip() in MISSING or cell.strip() in self.missing
 
 
 def spelling(cells: Iterable[str]) -> tuple[str, str]:
@@ -174,8 +194,3 @@ def spelling(cells: Iterable[str]) -> tuple[str, str]:
             if sign in text:
                 thousands = sign
     return decimal, thousands
-
-
-def _is_missing(cell: object) -> bool:
-    """Whether a cell stands for a value that is not there."""
-    return cell is None or (isinstance(cell, str) and cell.strip() in MISSING)

@@ -2,16 +2,17 @@
 
 import tomllib
 from dataclasses import asdict, dataclass, field
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cyclosweep.errors import InputError
-from cyclosweep.recording.checks import GAP_FACTOR
-from cyclosweep.recording.choosing import choose, numbers_of
-from cyclosweep.recording.columns import stem
+from cyclosweep.errors import DesignError, InputError
+from cyclosweep.recording.choosing import Choice, choose, numbers_of
+from cyclosweep.recording.columns import file_columns, stem
+from cyclosweep.recording.facts import facts_of
+from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.in_force import InForce
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.metadata_text import to_toml
 from cyclosweep.recording.opening import open_table
@@ -19,15 +20,10 @@ from cyclosweep.recording.proposal import propose
 from cyclosweep.recording.proposed import Known, Proposal
 from cyclosweep.recording.recording import Recording
 from cyclosweep.recording.samples import Floats
-from cyclosweep.recording.structure import HOLD_SAMPLES
+from cyclosweep.recording.stated_units import stated_unit
+from cyclosweep.recording.units import CANONICAL_UNITS
 
 __all__ = ["ColumnFacts", "Inspection", "inspect"]
-
-DWELL_BAND = 0.02
-"""Band of the torque, of its range, in which a dwell stays: noise of a sensor is less."""
-
-DWELL_FACTOR = 5.0
-"""A dwell stays in the band for so many times the samples that a ramp usually does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +80,12 @@ class Inspection:
         What was recognised.
     facts : dict of str to str
         Runs, torque, angle, clock and so on, one line each.
+    settings : Path or None
+        Metadata file in force; `recording` and `facts` are as that reads the file.
+    suggested : list of str
+        What the file suggests otherwise.
+    stops : str or None
+        Why the settings alone do not read the file; the proposal does.
     """
 
     path: Path
@@ -94,6 +96,9 @@ class Inspection:
     recording: Recording | None = None
     notes: list[str] = field(default_factory=list)
     facts: dict[str, str] = field(default_factory=dict)
+    settings: Path | None = None
+    suggested: list[str] = field(default_factory=list)
+    stops: str | None = None
 
     @property
     def unread_columns(self) -> list[str]:
@@ -116,15 +121,23 @@ class Inspection:
                 {"kind": f.kind, "verdict": f.verdict, "reason": f.reason}
                 for f in (recording.faults if recording else ())
             ],
+            "checks": self.proposal.checks,
             "assumed": self.proposal.assumed,
             "open": self.proposal.open,
+            "settings": None if self.settings is None else str(self.settings),
+            "suggested": self.suggested,
+            "stops": self.stops,
             "metadata": self.proposal.meta,
             "toml": self.toml,
         }
 
 
 def inspect(
-    path: Path, known: Known, given: dict[str, str | None], meta_path: Path | None = None
+    path: Path,
+    known: Known,
+    given: dict[str, str | None],
+    meta_path: Path | None = None,
+    settings: Path | None = None,
 ) -> Inspection:
     """Look at a recording and propose the metadata file with which it is read.
 
@@ -138,6 +151,9 @@ def inspect(
         Columns that the user names, by canonical column.
     meta_path : Path, optional
         Where the metadata file is to stand; a drive file is named relative to it.
+    settings : Path, optional
+        Metadata file in force: the recording is shown as that reads it, and what the file suggests
+        otherwise is listed.
 
     Returns
     -------
@@ -146,35 +162,111 @@ def inspect(
     Raises
     ------
     InputError
-        The file cannot be read as a table.
+        The file cannot be read as a table, the settings do not fit it, or the drive cannot be
+        built.
     """
     if not path.is_file():
         raise InputError(f"{path}: no such file")
-    table = open_table(path, known.table, [name for name in given.values() if name])
-    numbers = numbers_of(table)
-    choice = choose(table, numbers, given)
-    made = propose(table, numbers, choice, known)
+    _refuse_drive(known)
+    in_force = None if settings is None else InForce.read(settings, known, given)
+    if in_force is not None:
+        known = in_force.known
+    asked = given if in_force is None else in_force.names(given)
+    table = open_table(path, known.table, [name for name in asked.values() if name])
+    if in_force is not None:
+        in_force.refuse_missing_columns(path, table)
+    numbers, bad = numbers_of(table)
+    choice = choose(table, numbers, asked)
+    made = propose(
+        table, numbers, choice, known, bad, {} if in_force is None else in_force.columns(table)
+    )
+    suggested: list[str] = []
+    if in_force is not None:
+        by_file = choose(table, numbers, given).roles
+        suggested = in_force.suggestions(by_file, made)
+        in_force.put_into(made)
     text = to_toml(made, path.name)
+    found = Inspection(
+        path, [], [name for name in table.header if name and name not in numbers], made, text,
+        notes=list(table.notes), settings=settings, suggested=suggested,
+    )  # fmt: skip
+    meta = None
+    if not made.open:
+        meta = Metadata.model_validate(tomllib.loads(text))
+        beside = meta_path or path.with_name(f"{stem(path)}.toml")
+        if in_force is not None and not in_force.is_overridden:
+            found.recording, found.stops = in_force.recording(path)
+            meta = meta if found.recording is None else in_force.meta
+        if found.recording is None:
+            found.recording = Recording.read_as(path, meta, beside)
+        found.notes = list(found.recording.notes)
+        found.facts = facts_of(found.recording)
+    roles = _roles(choice, made) if meta is None else _roles_read(table, meta)
+    found.columns = [
+        _column_facts(name, values, *roles.get(name, (None, table.units.get(name))))
+        for name, values in numbers.items()
+    ]
+    return found
+
+
+def _refuse_drive(known: Known) -> None:
+    """Refuse a drive that has no line to compare the recording with.
+
+    Raises
+    ------
+    InputError
+        With the reason.
+    """
+    if known.drive is None:
+        return
+    try:
+        known.drive.nominal_line("output")
+    except DesignError as error:
+        raise InputError(f"drive {known.drive_name or known.drive.name}: {error}") from None
+
+
+def _roles(choice: Choice, made: Proposal) -> dict[str, tuple[str, str | None]]:
+    """Role and unit of each column that was chosen.
+
+    Parameters
+    ----------
+    choice : Choice
+        The columns.
+    made : Proposal
+        With the units that were found.
+
+    Returns
+    -------
+    dict of str to tuple
+    """
     roles = {named.column: (role, named.unit) for role, named in choice.roles.items()}
     for role, column in made.meta.get("columns", {}).items():
         if isinstance(column, dict) and "unit" in column:
             roles[column["column"]] = (role, column["unit"])
-    found = Inspection(
-        path,
-        [_column_facts(name, values, *roles.get(name, (None, table.units.get(name))))
-         for name, values in numbers.items()],
-        [name for name in table.header if name and name not in numbers],
-        made,
-        text,
-        notes=list(table.notes),
-    )  # fmt: skip
-    if not made.open:
-        beside = meta_path or path.with_name(f"{stem(path)}.toml")
-        meta = Metadata.model_validate(tomllib.loads(text))
-        found.recording = Recording.read_as(path, meta, beside)
-        found.notes = list(found.recording.notes)
-        found.facts = _facts(found.recording)
-    return found
+    return roles
+
+
+def _roles_read(table: FileTable, meta: Metadata) -> dict[str, tuple[str, str | None]]:
+    """Role and unit of each column as metadata read it.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    meta : Metadata
+        What is read, and how.
+
+    Returns
+    -------
+    dict of str to tuple
+    """
+    roles: dict[str, tuple[str, str | None]] = {}
+    for role, source in file_columns(meta).items():
+        if source.column in table.header:
+            stated = stated_unit(table, source.column)
+            unit = source.unit or (stated[0] if stated else None) or CANONICAL_UNITS.get(role)
+            roles[source.column] = (role, unit)
+    return roles
 
 
 def _column_facts(name: str, values: Floats, role: str | None, unit: str | None) -> ColumnFacts:
@@ -208,118 +300,3 @@ def _column_facts(name: str, values: Floats, role: str | None, unit: str | None)
         len(values) - len(known),
         len(values),
     )
-
-
-def _facts(recording: Recording) -> dict[str, str]:
-    """Describe a recording that was read, one line for each thing."""
-    torque = recording.torque_nm
-    if not len(torque):
-        return {"samples": "none"}
-    facts = {"samples": f"{len(recording)} of {recording.path.name if recording.path else ''}"}
-    both = torque.min() < 0 < torque.max()
-    facts["torque"] = (
-        f"{torque.min():.4g} to {torque.max():.4g} N m at the {recording.side} shaft, "
-        f"{'both directions' if both else 'one direction'}, "
-        f"{len(recording.structure.reversals)} reversals"
-    )
-    if recording.angle_deg is not None:
-        angle = recording.angle_deg
-        step = recording.angle_resolution_deg
-        facts["angle"] = f"{angle.min():.4g} to {angle.max():.4g} deg, " + (
-            f"steps of {step:g} deg" if step else "continuous"
-        )
-    facts["runs"] = _run_facts(recording)
-    facts["dwells"] = _dwell_facts(recording)
-    facts["clock"] = _clock_facts(recording)
-    if recording.temperature_c is not None:
-        warm = recording.temperature_c
-        facts["temperature"] = f"{warm.min():.3g} to {warm.max():.3g} deg C"
-    if recording.crank_deg is not None:
-        facts["mesh positions"] = f"{len(np.unique(recording.crank_deg))}"
-    return facts
-
-
-def _dwell_facts(recording: Recording) -> str:
-    """Number of dwells and how long they last, equal torques or torques equal but for noise."""
-    spans = [(hold.start, hold.stop) for hold in recording.structure.holds]
-    spans = spans or _noisy_dwells(recording.torque_nm)
-    if not spans:
-        return "none"
-    time = recording.time_s
-    if time is None:
-        return f"{len(spans)} at constant torque"
-    known = [float(time[stop - 1] - time[start]) for start, stop in spans]
-    return f"{len(spans)} at constant torque, {min(known):.3g} to {max(known):.3g} s"
-
-
-def _noisy_dwells(torque: Floats) -> list[tuple[int, int]]:
-    """Find stretches in which the torque stays in one band for far longer than elsewhere.
-
-    Parameters
-    ----------
-    torque : ndarray of float, shape (n,)
-        Torque [N m].
-
-    Returns
-    -------
-    list of tuple of int
-        First sample, and the one after the last.
-    """
-    band = DWELL_BAND * float(np.ptp(torque))
-    bounds, low, high = [0], float(torque[0]), float(torque[0])
-    for place, value in enumerate(torque.tolist()):
-        low, high = min(low, value), max(high, value)
-        if high - low > band:
-            bounds.append(place)
-            low = high = value
-    spans = list(pairwise([*bounds, len(torque)]))
-    usual = float(np.median([stop - start for start, stop in spans]))
-    least = max(HOLD_SAMPLES, DWELL_FACTOR * usual)
-    return [
-        (start, stop)
-        for start, stop in spans
-        if stop - start >= least and _is_level(torque[start:stop], band)
-    ]
-
-
-def _is_level(torque: Floats, band: float) -> bool:
-    """Whether a stretch is level; at the crest of a wave the middle lies above the ends.
-
-    Parameters
-    ----------
-    torque : ndarray of float, shape (n,)
-        Torque of the stretch [N m].
-    band : float
-        Band in which it stays [N m].
-
-    Returns
-    -------
-    bool
-    """
-    first, middle, last = (float(part.mean()) for part in np.array_split(torque, 3))
-    return max(abs(middle - first), abs(middle - last)) < 0.2 * band
-
-
-def _run_facts(recording: Recording) -> str:
-    """Number of runs, their samples and torques."""
-    shown = []
-    for run in recording.runs[:8]:
-        part = recording.torque_nm[recording.run == run]
-        shown.append(f"{run} ({len(part)} samples, {part.min():.3g} to {part.max():.3g} N m)")
-    more = len(recording.runs) - len(shown)
-    return f"{len(recording.runs)}: " + ", ".join(shown) + (f" and {more} more" if more else "")
-
-
-def _clock_facts(recording: Recording) -> str:
-    """Rate, length and gaps of the clock."""
-    time = recording.time_s
-    if time is None or len(time) < 2:
-        return "none: only the order of rows is known, effects of rate cannot be tested"
-    step = np.diff(time)
-    within = (np.diff(recording.run) == 0) & (step > 0)
-    if not within.any():
-        return "stands still"
-    median = float(np.median(step[within]))
-    gaps = np.count_nonzero(within & (step > GAP_FACTOR * median))
-    text = f"{1 / median:.4g} Hz (a sample every {median:.4g} s), {np.ptp(time):.4g} s long"
-    return f"{text}, {gaps or 'no'} gaps"

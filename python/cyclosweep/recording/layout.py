@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from cyclosweep.recording.cells import MISSING, is_clock, is_number
-from cyclosweep.recording.roles import is_known_name
+from cyclosweep.recording.roles import name_weight
 from cyclosweep.recording.units import find_unit
 
 __all__ = ["SAMPLE_ROWS", "Layout", "find_layout"]
@@ -79,8 +79,9 @@ def find_layout(rows: Sequence[Sequence[str]], wanted: Collection[str] = ()) -> 
 def _header(rows: Sequence[Sequence[str]], first: int, wanted: Collection[str]) -> int | None:
     """Find the row of names above the numbers.
 
-    The one with most names that are asked for or known; of equal ones the first row of all, if it
-    is as wide as the table, else the nearest.
+    The one with most names that are asked for or known, torque and angle before all others and a
+    unit beside them as much as a name; of equal ones one without numbers and dates in it, as a
+    title has them; of equal ones the first of all, if it is as wide as the table, else the nearest.
 
     Parameters
     ----------
@@ -97,14 +98,18 @@ def _header(rows: Sequence[Sequence[str]], first: int, wanted: Collection[str]) 
     """
     width = sum(bool(cell.strip()) for cell in rows[first])
     above = [k for k in range(first) if any(cell.strip() for cell in rows[k])]
-    best, best_score = None, (-1, False)
+    best, best_score = None, (-1, False, False)
     for k in above:
         filled = [cell.strip() for cell in rows[k] if cell.strip()]
         if 2 * len(filled) < width or _numbers(rows[k]):
             continue
-        known = 10 * sum(cell in wanted for cell in filled) + sum(map(is_known_name, filled))
-        score = (0 if _is_units(rows[k]) else known, len(filled) >= width and k == above[0])
-        if score >= best_score or score[0] > best_score[0]:
+        known = 10 * sum(cell in wanted for cell in filled) + sum(map(name_weight, filled))
+        score = (
+            0 if _is_units(rows[k]) else known,
+            not any(is_number(cell) or is_clock(cell) for cell in filled),
+            len(filled) >= width and k == above[0],
+        )
+        if score >= best_score:
             best, best_score = k, score
     return best
 

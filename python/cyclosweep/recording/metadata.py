@@ -54,6 +54,8 @@ class Column(_Strict):
         Lever arm at which a force was measured [m].
     nm_per_a : float or None
         Torque that one ampere makes at the shaft at which it is wanted [N m/A].
+    instead_of : str or None
+        Unit that the file states for this column and that is wrong there; `unit` replaces it.
     """
 
     column: str
@@ -64,6 +66,7 @@ class Column(_Strict):
     counts_per_turn: float | None = Field(default=None, gt=0)
     lever_arm_m: float | None = Field(default=None, gt=0)
     nm_per_a: float | None = Field(default=None, gt=0)
+    instead_of: str | None = None
 
     @model_validator(mode="after")
     def _scale_is_not_zero(self) -> Self:
@@ -83,12 +86,16 @@ class TableOptions(_Strict):
         Line or row of the names, from 1.
     decimal, thousands : str or None
         Decimal sign, and sign between groups of three digits.
+    missing : list of str
+        Texts in cells that stand for a value that is not there, besides the usual ones; rows
+        without a torque, angle or time are passed over.
     """
 
     sheet: str | None = None
     header_row: int | None = Field(default=None, ge=1)
     decimal: Literal[".", ","] | None = None
     thousands: Literal[".", ",", "'", " "] | None = None
+    missing: list[str] = Field(default_factory=list)
 
 
 class Merge(_Strict):

@@ -5,7 +5,7 @@ from typing import Any
 
 from cyclosweep.recording.proposed import Proposal
 
-__all__ = ["to_toml"]
+__all__ = ["to_toml", "toml_value"]
 
 
 def to_toml(made: Proposal, name: str) -> str:
@@ -23,19 +23,23 @@ def to_toml(made: Proposal, name: str) -> str:
     str
     """
     lines = [f"# How {name} is read; proposed by cyclosweep inspect."]
+    lines += [f"# Check: {text}" for text in made.checks]
     lines += [f"# Assumed: {text}" for text in made.assumed]
     plain = {k: v for k, v in made.meta.items() if not isinstance(v, dict)}
     for key, value in plain.items():
-        lines.append(f"{key} = {_toml(value)}{_comment(made, key)}")
+        lines.append(f"{key} = {toml_value(value)}{_comment(made, key)}")
     for key, value in made.meta.items():
         if isinstance(value, dict):
             lines += ["", f"[{key}]{_comment(made, key)}"]
-            lines += [f"{_key(k)} = {_toml(v)}" for k, v in value.items()]
+            lines += [
+                f"{_key(k)} = {toml_value(v)}{_comment(made, f'{key}.{k}')}"
+                for k, v in value.items()
+            ]
     return "\n".join(lines) + "\n"
 
 
 def _comment(made: Proposal, key: str) -> str:
-    """Reason of a key as a comment.
+    """Mark a key that the file does not state, with the reason where it does not stand above.
 
     Parameters
     ----------
@@ -49,7 +53,9 @@ def _comment(made: Proposal, key: str) -> str:
     str
         Empty where there is none.
     """
-    return f"  # {made.remarks[key]}" if key in made.remarks else ""
+    if key not in made.remarks:
+        return ""
+    return f"  # Assumed: {made.remarks[key]}" if made.remarks[key] else "  # Assumed, see above"
 
 
 def _key(key: str) -> str:
@@ -58,10 +64,10 @@ def _key(key: str) -> str:
     return key if plain.isascii() and plain.isalnum() else json.dumps(key, ensure_ascii=False)
 
 
-def _toml(value: Any) -> str:
+def toml_value(value: Any) -> str:
     """Value in the form of TOML, tables on one line."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(k)} = {_toml(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(k)} = {toml_value(v)}" for k, v in value.items()) + " }"
     if isinstance(value, list):
-        return "[" + ", ".join(map(_toml, value)) + "]"
+        return "[" + ", ".join(map(toml_value, value)) + "]"
     return json.dumps(value, ensure_ascii=False)

@@ -2,7 +2,7 @@
 
 import zipfile
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import polars as pl
@@ -11,7 +11,7 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording import table
 from cyclosweep.recording.csv_text import CsvText, open_csv, read_bytes, to_utf8
 from cyclosweep.recording.endings import WORKBOOKS
-from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.file_table import FileTable, GridTable
 from cyclosweep.recording.formats.excel import read_excel
 from cyclosweep.recording.formats.json_text import read_json
 from cyclosweep.recording.formats.labview import read_lvm
@@ -48,6 +48,10 @@ class _CsvTable:
         """Return the named columns as Float64 and String."""
         return table.read_csv(self.path, self.text, numbers, words)
 
+    def passing_over(self, texts: Iterable[str]) -> FileTable:
+        """Return the same table, in which these texts stand for missing values."""
+        return _CsvTable(self.path, replace(self.text, missing=(*self.text.missing, *texts)))
+
 
 @dataclass(slots=True)
 class _ParquetTable:
@@ -61,6 +65,10 @@ class _ParquetTable:
     def read(self, numbers: Iterable[str], words: Iterable[str]) -> pl.DataFrame:
         """Return the named columns as Float64 and String."""
         return table.read_parquet(self.path, list(numbers), list(words))
+
+    def passing_over(self, texts: Iterable[str]) -> FileTable:
+        """Return the same table: its columns of numbers hold no text."""
+        return self
 
 
 def open_table(path: Path, options: TableOptions, wanted: Collection[str]) -> FileTable:
@@ -83,6 +91,23 @@ def open_table(path: Path, options: TableOptions, wanted: Collection[str]) -> Fi
     ------
     InputError
         The file cannot be read, or has no table.
+    """
+    found = _open(path, options, wanted)
+    # Of a text it is known from the options; a table in memory is told here.
+    return found.passing_over(options.missing) if isinstance(found, GridTable) else found
+
+
+def _open(path: Path, options: TableOptions, wanted: Collection[str]) -> FileTable:
+    """Open a file by its format.
+
+    Parameters
+    ----------
+    path, options, wanted
+        As for `open_table`.
+
+    Returns
+    -------
+    FileTable
     """
     ending = path.suffix.lower().removeprefix(".")
     try:
@@ -127,7 +152,7 @@ def _text_table(
     content = to_utf8(read_bytes(path), path)
     start = content[:64].lstrip()
     if start.startswith(b"LabVIEW Measurement"):
-        return read_lvm(path, content)
+        return read_lvm(path, content, options.missing)
     if ending in {"json", "jsonl"} or (start[:1] in b"{[" and start[1:].lstrip()[:1] in b'"{['):
         return read_json(path, content, options)
     return _CsvTable(path, open_csv(content, path, options, wanted))

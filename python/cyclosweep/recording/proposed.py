@@ -51,7 +51,10 @@ class Proposal:
     meta : dict
         Tables of the file.
     remarks : dict of str to str
-        Why, by key; written as comments.
+        Why, by key that the file does not state, ``"columns.angle_deg"`` for one in a table; empty
+        where the reason is one of `assumed`.
+    checks : list of str
+        What looks wrong and should be looked at first.
     assumed : list of str
         What the recording does not say.
     open : list of str
@@ -60,6 +63,7 @@ class Proposal:
 
     meta: dict[str, Any] = field(default_factory=dict)
     remarks: dict[str, str] = field(default_factory=dict)
+    checks: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
     open: list[str] = field(default_factory=list)
 

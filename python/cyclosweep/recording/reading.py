@@ -115,7 +115,7 @@ def _clean_columns(
     columns : dict of str to ndarray of float, shape (n,), or None
         With ``unscored``, 1 where a sample is not scored.
     faults : tuple of Fault
-        Of samples that are missing.
+        Of samples that are missing, and of names that speak against the metadata.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def _clean_columns(
         The file cannot be read as a recording.
     """
     sources = file_columns(meta)
-    frame, recognised = load(path, meta_path, meta, sources)
+    frame, recognised, remarks = load(path, meta_path, meta, sources)
     notes += recognised
     columns = canonical_columns(path, frame, sources, notes)
     columns["unscored"] = beyond_limits(meta.score.abs_max, columns, frame)
@@ -136,7 +136,7 @@ def _clean_columns(
     columns["angle_deg"] = put_angle_right(columns, meta, notes)
     if meta.merge.neighbours > 1:
         columns = merge_neighbours(columns, meta.merge.neighbours, notes)
-    return columns, faults
+    return columns, (*faults, *remarks)
 
 
 def _resolution(meta: Metadata, columns: Columns, notes: list[str]) -> float:

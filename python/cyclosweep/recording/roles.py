@@ -4,9 +4,15 @@ import re
 from dataclasses import dataclass, replace
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording.units import QUANTITIES, UNIT_EXAMPLES, find_unit, split_name
+from cyclosweep.recording.units import (
+    CANONICAL_UNITS,
+    QUANTITIES,
+    UNIT_EXAMPLES,
+    find_unit,
+    split_name,
+)
 
-__all__ = ["COMMAND", "Named", "describe", "is_known_name", "with_unit"]
+__all__ = ["COMMAND", "Named", "describe", "name_weight", "with_unit"]
 
 _WORDS: dict[str, tuple[str, ...]] = {
     "torque_nm": ("torque", "moment", "drehmoment", "tq", "trq", "md", "mt", "couple", "torsion"),
@@ -84,8 +90,7 @@ def describe(column: str, unit: str | None = None) -> Named:
     True
     """
     if column in QUANTITIES:
-        own = {"torque_nm": "N m", "angle_deg": "deg", "time_s": "s", "crank_deg": "deg"}
-        return Named(column, column, unit or own.get(column), None, False, True)
+        return Named(column, column, unit or CANONICAL_UNITS.get(column), None, False, True)
     bare, written, _ = split_name(column)
     unit = unit if unit is not None and find_unit(unit) else written
     words = _words_of(bare)
@@ -136,9 +141,19 @@ def with_unit(named: Named, role: str, unit: str) -> Named:
     return replace(named, unit=unit, kind=known.kind, is_canonical=False)
 
 
-def is_known_name(cell: str) -> bool:
-    """Whether a cell reads like the name of a column of a torsion test."""
-    return describe(cell.strip()).role is not None
+def name_weight(cell: str) -> int:
+    """How much a cell reads like the name of a column of a torsion test; 0: not at all.
+
+    Examples
+    --------
+    >>> name_weight("Torque [lb in]"), name_weight("Winkel"), name_weight("Test"), name_weight("x")
+    (3, 2, 1, 0)
+    """
+    named = describe(cell.strip())
+    if named.role is None:
+        return 0
+    weight = 2 if named.role in ("torque_nm", "angle_deg") else 1
+    return weight + (named.unit is not None and not named.is_canonical)
 
 
 def _words_of(name: str) -> list[str]:

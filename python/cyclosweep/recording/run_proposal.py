@@ -22,6 +22,9 @@ EQUAL = 0.1
 TICKS = 0.3
 """Share of rows on the tick of the row before from which they are averaged."""
 
+LOGGED = 2000
+"""Rows beyond which nobody has read them by hand."""
+
 LONG = 1_000_000
 """Rows from which neighbours are averaged while reading."""
 
@@ -69,7 +72,15 @@ def propose_runs(
             f"{largest:.3g} N m"
         )
     clock = choice.roles.get("time_s")
-    if clock is None or len(order) < 2:
+    if len(order) < 2:
+        return
+    if clock is None:
+        made.assumed.append(
+            "No clock: whether the drive was unloaded between the runs is not known, history = "
+            '"per-run" is taken, and no run is proposed for conditioning or to be held out. If the '
+            'runs follow each other, write history = "continuous", and of three or more equal runs '
+            "conditioning_runs and holdout_runs."
+        )
         return
     time = values_of("time_s", columns, numbers)[known]
     step = np.diff(time)
@@ -105,6 +116,11 @@ def propose_ticks(numbers: dict[str, Floats], choice: Choice, made: Proposal) ->
     """
     clock = choice.roles.get("time_s")
     if clock is None:
+        if len(numbers[choice.roles["torque_nm"].column]) > LOGGED:
+            made.assumed.append(
+                "No clock: rows of one reading, if a logger wrote several, cannot be told and are "
+                "not averaged; each counts as a reading of its own. Export the clock, too."
+            )
         return
     step = np.diff(numbers[clock.column])
     share = float(np.mean(step == 0)) if len(step) else 0.0

@@ -9,9 +9,16 @@ from pathlib import Path
 import polars as pl
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording.cells import MISSING, clock_seconds, is_clock, is_number, spelt_number
+from cyclosweep.recording.cells import (
+    MISSING,
+    BadCellError,
+    clock_seconds,
+    is_clock,
+    is_number,
+    spelt_number,
+)
 from cyclosweep.recording.csv_text import CsvText, thousands_in, without_thousands
-from cyclosweep.recording.messages import one_line, shown
+from cyclosweep.recording.messages import one_line
 
 
 def is_parquet(path: Path) -> bool:
@@ -107,7 +114,7 @@ def _clocks(path: Path, text: CsvText, names: Iterable[str]) -> list[str]:
     for count, (_, cells) in enumerate(_rows(path, text)):
         for name, place in list(left.items()):
             cell = cells[place].strip() if place < len(cells) else ""
-            if cell not in MISSING:
+            if cell not in MISSING and cell not in text.missing:
                 del left[name]
                 if is_clock(cell) and not is_number(cell):
                     clocks.append(name)
@@ -142,7 +149,7 @@ def _clocks_read(
         For a cell that is no time.
     """
     for name in clocks:
-        seconds = clock_seconds(frame[name].to_list(), f"{path}, data row", 1, name)
+        seconds = clock_seconds(frame[name].to_list(), f"{path}, data row", 1, name, text.missing)
         text.notes.append(f"{name} holds dates or times of day: seconds since the first are taken.")
         frame = frame.with_columns(pl.Series(name, seconds))
     return frame
@@ -172,7 +179,7 @@ def _parse(text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.DataFrame:
         columns=list(places.values()),
         schema_overrides={place: kinds[name] for name, place in places.items()},
         infer_schema=False,
-        null_values=MISSING,
+        null_values=[*MISSING, *text.missing],
         encoding="utf8-lossy",
         truncate_ragged_lines=True,  # only empty cells are left beyond the header's
     )
@@ -204,20 +211,18 @@ def _parse_slowly(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -
     """
     columns: dict[str, list[float | str | None]] = {name: [] for name in kinds}
     places = {name: text.header.index(name) for name in kinds}
+    missing = {*MISSING, *text.missing}
     for line, cells in _rows(path, text):
         for name, place in places.items():
             cell = cells[place].strip() if place < len(cells) else ""
-            if cell in MISSING:
+            if cell in missing:
                 columns[name].append(None)
             elif kinds[name] == pl.String:
                 columns[name].append(cell)
             else:
                 number = _number(cell, text)
                 if number is None:
-                    raise InputError(
-                        f"{path}, line {line}, column {name}: found {shown(cell)}, "
-                        "expected a number"
-                    )
+                    raise BadCellError(f"{path}, line {line}, column {name}", cell)
                 columns[name].append(number)
     frame = pl.DataFrame(columns, schema=dict(kinds))
     return frame.filter(~pl.all_horizontal(pl.all().is_null()))

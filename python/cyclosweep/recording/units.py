@@ -5,7 +5,17 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["QUANTITIES", "UNIT_EXAMPLES", "Kind", "Unit", "factor_of", "find_unit", "split_name"]
+__all__ = [
+    "CANONICAL_UNITS",
+    "MEANINGS",
+    "QUANTITIES",
+    "UNIT_EXAMPLES",
+    "Kind",
+    "Unit",
+    "factor_of",
+    "find_unit",
+    "split_name",
+]
 
 Kind = Literal["torque", "force", "current", "angle", "counts", "time", "temperature"]
 
@@ -25,6 +35,25 @@ QUANTITIES: dict[str, tuple[Kind, ...]] = {
     "temperature_c": ("temperature",),
 }
 """What each canonical column may be computed from, first what it is itself."""
+
+CANONICAL_UNITS = {
+    "torque_nm": "N m",
+    "angle_deg": "deg",
+    "time_s": "s",
+    "crank_deg": "deg",
+    "temperature_c": "degC",
+}
+"""Unit of each canonical column that has one."""
+
+MEANINGS = {
+    "torque_nm": "the torque",
+    "angle_deg": "the angle",
+    "time_s": "the clock",
+    "run": "the run",
+    "crank_deg": "the position of the mesh",
+    "temperature_c": "the temperature",
+}
+"""Canonical columns in words, for messages."""
 
 UNIT_EXAMPLES = {
     "torque_nm": "'N m', 'lbf in', 'kN', 'kg' or 'g' with lever_arm_m, 'A' with nm_per_a",

@@ -1,11 +1,11 @@
-"""Remarks on calibrated values that lie far from what the drive file says."""
+"""Remarks on calibrated values far from the drive file, and on columns read against their names."""
 
 from dataclasses import dataclass
 from typing import Literal
 
 from cyclosweep.result.part import Part
 
-Quantity = Literal["compliance", "free_play", "datum", "angle_modulo"]
+Quantity = Literal["compliance", "free_play", "datum", "angle_modulo", "columns"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -13,7 +13,7 @@ class Doubt(Part):
     """One calibrated value far from nominal, and the mistakes that would explain it."""
 
     quantity: Quantity
-    """Which value."""
+    """Which value; columns: names or units of the file speak against its settings."""
     found: float | None = None
     """What was found [deg/(N m) or deg]."""
     nominal: float | None = None

@@ -3,22 +3,22 @@
 The layout is NI's "Specification for the LabVIEW Measurement File (.lvm)".
 """
 
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording.cells import MISSING, spelt_number
+from cyclosweep.recording.cells import MISSING, BadCellError, spelt_number
 from cyclosweep.recording.file_table import GridTable
-from cyclosweep.recording.messages import shown
 
 __all__ = ["read_lvm"]
 
 _END = "***End_of_Header***"
 
 
-def read_lvm(path: Path, content: bytes) -> GridTable:
+def read_lvm(path: Path, content: bytes, missing: Sequence[str] = ()) -> GridTable:
     """Read all segments, one below the other.
 
     Parameters
@@ -27,6 +27,8 @@ def read_lvm(path: Path, content: bytes) -> GridTable:
         The file, for messages.
     content : bytes
         Its text in UTF-8.
+    missing : sequence of str
+        Texts besides the usual ones that stand for a value that is not there.
 
     Returns
     -------
@@ -57,7 +59,9 @@ def read_lvm(path: Path, content: bytes) -> GridTable:
             units.setdefault(name, unit.strip())
         units.setdefault("X_Value", (own.get("X_Dimension", ["Time"])[0] == "Time" and "s") or "")
         first = at + 3 if not segments else first
-        block = _block(path, lines, range(at + 2, stop), names, separator, decimal)
+        block = _block(
+            path, lines, range(at + 2, stop), names, separator, decimal, {*MISSING, *missing}
+        )
         count = len(block[data[0]]) if data else 0
         if not np.isfinite(block.get("X_Value", [])).any():
             zero = spelt_number(own.get("X0", ["0"])[0], decimal, "") or 0.0
@@ -124,7 +128,13 @@ def _segment_start(lines: list[str], end: int) -> int:
 
 
 def _block(
-    path: Path, lines: list[str], rows: range, names: list[str], separator: str, decimal: str
+    path: Path,
+    lines: list[str],
+    rows: range,
+    names: list[str],
+    separator: str,
+    decimal: str,
+    missing: Collection[str],
 ) -> dict[str, list[float]]:
     """Read the samples of one segment, up to the header of the next.
 
@@ -140,6 +150,8 @@ def _block(
         Columns.
     separator, decimal : str
         Character between cells, and decimal sign.
+    missing : collection of str
+        Texts that stand for a value that is not there.
 
     Returns
     -------
@@ -159,11 +171,9 @@ def _block(
         for name, cell in zip(names, lines[row].split(separator), strict=False):
             if name not in block:
                 continue
-            value = np.nan if cell.strip() in MISSING else spelt_number(cell, decimal, "")
+            value = np.nan if cell.strip() in missing else spelt_number(cell, decimal, "")
             if value is None:
-                raise InputError(
-                    f"{path}, line {row + 1}, column {name}: found {shown(cell)}, expected a number"
-                )
+                raise BadCellError(f"{path}, line {row + 1}, column {name}", cell)
             block[name].append(value)
     longest = max(map(len, block.values()), default=0)
     return {name: values + [np.nan] * (longest - len(values)) for name, values in block.items()}
