@@ -16,9 +16,18 @@ from cyclosweep.report.charts import Line, nice_ticks
 from cyclosweep.report.figures import main_figure
 from cyclosweep.report.html import page
 from cyclosweep.report.look_at import LOOK_AT
+from cyclosweep.report.regions import located
 from cyclosweep.report.sentences import headline
 from cyclosweep.report.wording import number
-from cyclosweep.result import Answer, Bound, Mismatch, Region, Remainder
+from cyclosweep.result import (
+    Answer,
+    Bound,
+    Mismatch,
+    PlayAndStiffness,
+    Reading,
+    Region,
+    Remainder,
+)
 from cyclosweep.simulation.effects import VOCABULARY
 from tests.unit.made_up_report import make
 
@@ -189,6 +198,93 @@ def test_a_fault_shows_no_tables_of_nothing(whole: ReportData) -> None:
     assert "<table" not in text
     assert "– deg" not in text
     assert "Energy lost" not in text
+
+
+READ = PlayAndStiffness(
+    definition="straight lines",
+    runs=5,
+    free_play_deg=Reading(estimate=56.1, ci95=(55.0, 57.2)),
+    free_play_at_output_deg=Reading(estimate=0.645, ci95=(0.632, 0.657)),
+    stiffness_at_output_nm_per_arcmin=Reading(estimate=46.2, ci95=(45.0, 47.0)),
+)
+
+
+def test_one_free_play_and_one_stiffness_come_before_all_others(whole: ReportData) -> None:
+    text = page(replace(whole, result=replace(whole.result, play_and_stiffness=READ)))
+    first = text.index("<h2>Free play and stiffness</h2>")
+    assert first < text.index("<h2>What was left out of the model</h2>")
+    assert text.index("<td>46.2 N m/arcmin") < text.index("slope of the loading branches")
+    assert "45 … 47" in text
+    assert "Intervals by Student&#x27;s t over 5 runs" in text
+    # What else could be taken for it says how it differs.
+    assert "differs from the stiffness at the top of the page" in text
+    assert "<td>stiffness at the" not in text[text.index("<h2>Loop</h2>") :]
+
+
+def test_the_slope_says_between_which_torques_it_was_taken(whole: ReportData) -> None:
+    far = replace(whole, rated_torque_nm=1000.0)  # the rated torque was never reached
+    reached = float(np.abs(whole.recording.torque_nm).max())
+    assert f"{number(0.5 * reached)} to {number(reached)} N m" in page(far)
+    assert "of rated torque." not in page(far)
+
+
+def test_the_verdict_box_holds_two_sentences_and_what_to_do(whole: ReportData) -> None:
+    found = re.search(r'<section class="verdict".*?</section>', page(whole), re.DOTALL)
+    assert found is not None
+    box = found[0]
+    assert len(re.sub("<.*?>", "", box)) < 700
+    assert "are missing from the model (97 %): with it the error on data not used falls" in box
+    assert "<b>Look at</b> what gives way above the load" in box
+    assert whole.result.statement not in box
+    assert whole.result.statement in page(whole)
+
+
+def test_a_possible_cause_is_not_among_what_was_not_found(whole: ReportData) -> None:
+    result = replace(whole.result, undecided=(Bound(name="clearance_takeup", upper95_deg=0.9),))
+    text = page(replace(whole, result=result))
+    start, stop = (text.index(f"<h2>{h}") for h in ("Possible, with", "Not found, with"))
+    assert "Clearance takeup: at most 0.9 deg" in text[start:stop]
+    assert "Clearance takeup" not in text[stop : text.index("<h2>What this recording cannot")]
+
+
+def test_plus_minus_is_the_interval_of_95_percent_everywhere(whole: ReportData) -> None:
+    text = page(whole)
+    assert "Friction torque 0.2 ± 0.0078 N m (± 95 %)" in text  # standard error 0.004
+    assert "28.05 ± 0.059" in text  # standard error 0.03
+    assert "behind ± stands the half width of the 95 % interval" in text
+
+
+def test_a_place_without_a_clock_is_said_in_readings(whole: ReportData) -> None:
+    region = Region(run=(1, 1), readings=(7, 10), mean_residual_deg=1.1, share_of_excess=0.004)
+    result = replace(whole.result, mismatch=Mismatch(p_value=0.001, regions=(region,)))
+    data = replace(whole, result=result)
+    text = page(data)
+    assert "Run 1, readings 7 to 10: mean residual 1.1 deg" in text
+    assert "less than 1 % of the misfit" in text
+    assert located(data).sum() == 4
+
+
+def test_wide_tables_stack_on_a_phone(whole: ReportData) -> None:
+    text = page(whole)
+    assert '<table class="stacked"' in text
+    assert 'data-name="95 % interval (deg)"' in text
+    assert ".stacked td[data-name]::before" in text
+
+
+def test_the_names_of_the_rows_of_the_map_have_room(whole: ReportData) -> None:
+    rows = [e for svg in svgs(page(whole)) for e in svg.iter()
+            if (e.text or "").endswith("unloading") and e.get("text-anchor") == "end"]  # fmt: skip
+    assert rows
+    for element in rows:  # letters of 14.5 px on a narrow screen
+        assert float(element.get("x") or 0) >= 7.9 * len(element.text or "")
+
+
+def test_the_name_of_a_shaded_stretch_lies_above_its_panel(whole: ReportData) -> None:
+    for svg in svgs(page(whole)):
+        tops = [float(e.get("y") or 0) for e in svg.iter() if e.get("class") == "plot"]
+        for element in svg.iter():
+            if element.get("class") == "spanlabel":
+                assert float(element.get("y") or 0) < min(tops)
 
 
 def test_a_programme_alone_has_a_page() -> None:

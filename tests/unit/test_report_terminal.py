@@ -33,6 +33,14 @@ def test_summary_fits_and_is_complete(width: int) -> None:
     assert "…" not in text.replace(" … ", "")
 
 
+def test_the_first_lines_are_short() -> None:
+    lines = printed(make(), 80).splitlines()
+    end = next(k for k, line in enumerate(lines) if line.startswith("╰"))
+    assert end < 9
+    assert "Look at" in " ".join(lines[:end])
+    assert "The answer in full" in lines
+
+
 def test_brackets_in_remarks_are_not_markup() -> None:
     data = make()
     fault = Fault("clock_ticks", None, "use [merge] same_time = true")

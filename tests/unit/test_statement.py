@@ -12,6 +12,8 @@ from cyclosweep.result import (
     FoundEffect,
     HeldOutBlock,
     NoiseEstimate,
+    PlayAndStiffness,
+    Reading,
     Remainder,
     Repair,
     RunToRunDrift,
@@ -71,6 +73,16 @@ def test_calibration_stands_beside_every_verdict_that_has_one() -> None:
     one_sided = CALIBRATED | {"free_play_deg": replace(CALIBRATED["free_play_deg"], std_error=None)}
     unknown = replace(IDENTIFIED, repaired=replace(IDENTIFIED.repaired, parameters=one_sided))
     assert "free play" not in statement_of(unknown)
+
+
+def test_play_and_stiffness_are_those_of_the_loop() -> None:
+    read = PlayAndStiffness(
+        free_play_deg=Reading(estimate=3.07, ci95=(2.78, 3.35)),
+        stiffness_at_output_nm_per_arcmin=Reading(estimate=0.2),
+    )
+    text = statement_of(replace(IDENTIFIED, play_and_stiffness=read))
+    assert "free play from flank to flank 3.07 deg (95 %: 2.78 to 3.35)" in text
+    assert "stiffness at the output 0.2 N m/arcmin. Calibration:" in text
 
 
 def test_the_tolerance_decides_what_is_open() -> None:

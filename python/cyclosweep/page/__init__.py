@@ -45,6 +45,10 @@ class Table:
     lead: frozenset[int] = frozenset()
 
 
+WIDEST = 3
+"""Most columns of a table that a phone shows side by side; the cells of others stack there."""
+
+
 def document(title: str, body: str, *, style: str = "", script: str = "") -> str:
     """Whole page with the common look.
 
@@ -104,8 +108,12 @@ def table_html(table: Table | None) -> str:
     if table is None:
         return ""
 
+    stacked = ' class="stacked"' if len(table.columns) > WIDEST else ""
+
     def cell(tag: str, place: int, text: str) -> str:
         kind = ' class="words"' if place in table.words else ""
+        if tag == "td" and stacked and place:
+            kind += f' data-name="{escape(table.columns[place])}"'
         return f"<{tag}{kind}>{broken(text)}</{tag}>"
 
     head = "".join(cell("th", k, text) for k, text in enumerate(table.columns))
@@ -117,6 +125,6 @@ def table_html(table: Table | None) -> str:
     )
     note = f'<p class="soft">{escape(table.note)}</p>' if table.note else ""
     return (
-        f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
-        f"</div>{note}"
+        f'<div class="scroll"><table{stacked}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody>'
+        f"</table></div>{note}"
     )

@@ -10,9 +10,13 @@ from cyclosweep.page import bullets, definitions, document, paragraph, section, 
 from cyclosweep.report import sentences, tables
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
+from cyclosweep.report.summary import do_now, summary_of
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.wording import number, probability, verdict_words
 from cyclosweep.result import Thinning
+
+LEADS = ("Check first:", "Look at", "Record next:", "Nothing:")
+"""Words with which what is to be done now begins, set in bold."""
 
 
 def write_html(data: ReportData, path: str | Path) -> Path:
@@ -51,21 +55,30 @@ def page(data: ReportData) -> str:
             _top(data),
             _verdict(data),
             picture("loop"),
-            bullets("What the loop shows", sentences.findings(data)),
-            bullets("Where simulation and recording differ", sentences.regions(data)),
+            _play(data),
             _effects(data),
-            paragraph("What remains without a name", sentences.unknown(data)),
-            paragraph("Next experiment", sentences.next_experiment(data)),
+            _beside(
+                paragraph("What remains without a name", sentences.unknown(data)),
+                paragraph("Next experiment", sentences.next_experiment(data)),
+            ),
+            _beside(
+                bullets("What the loop shows", sentences.findings(data)),
+                bullets("Where simulation and recording differ", sentences.regions(data)),
+            ),
             _loop(data, picture("zoom")),
             section("Residuals", picture("profiles")),
             section("Residual map", picture("map")),
             section("Parameters", table_html(tables.parameter_table(data))),
             section("Every effect that was tried", table_html(tables.hypothesis_table(data))),
-            bullets("Explanations that fit", sentences.explanations(data)),
-            bullets("Not found, with 95 % upper bounds", sentences.bounds(data)),
-            bullets("What this recording cannot show", sentences.untestable(data)),
+            _beside(
+                bullets("Explanations that fit", sentences.explanations(data)),
+                bullets("Possible, with 95 % upper bounds", sentences.possible(data)),
+                bullets("Not found, with 95 % upper bounds", sentences.bounds(data)),
+                bullets("What this recording cannot show", sentences.untestable(data)),
+            ),
             section("Errors on data not used", table_html(tables.held_out_table(data))),
             section("Self-check", table_html(tables.self_check_table(data))),
+            paragraph("The answer in full", data.result.statement),
             _recording(data),
             _provenance(data),
         ]
@@ -108,13 +121,28 @@ def _verdict(data: ReportData) -> str:
         evidence.append(f"mismatch left after the repair: p {p}")
     if data.result.tolerance_deg is not None:
         evidence.append(f"tolerance {number(data.result.tolerance_deg)} deg")
+    said = do_now(data.result)
+    lead = next((lead for lead in LEADS if said.startswith(lead)), "To do:" if said else "")
+    text = said.removeprefix(lead).strip()
+    now = f'<p class="now"><b>{escape(lead)}</b> {escape(text)}</p>' if said else ""
     return (
         f'<section class="verdict" style="--tone:{tone}"><div><div><span class="name">'
         f'{escape(words)}</span><span class="code">{escape(code)}</span></div>'
-        f"<p>{escape(data.result.statement)}</p>"
+        f"<p>{escape(summary_of(data.result))}</p>{now}"
         f'<p class="soft">{escape("; ".join(evidence))}</p></div>'
         f'<div class="figures">{figures}</div></section>'
     )
+
+
+def _play(data: ReportData) -> str:
+    """The free play, the stiffness and the friction of the drive."""
+    return section("Free play and stiffness", table_html(tables.play_table(data)))
+
+
+def _beside(*sections: str) -> str:
+    """Sections side by side where the page is wide, one below the other where it is not."""
+    shown = [each for each in sections if each]
+    return f'<div class="beside">{"".join(shown)}</div>' if shown else ""
 
 
 def _effects(data: ReportData) -> str:

@@ -42,6 +42,8 @@ class LoopFigures:
     extrapolated : bool
         The smallest torque lies above 3 % of the rated one, so that lost motion and hysteresis
         loss are straight-line extensions.
+    stiffness_range_nm : (float, float)
+        Torques between which the slope was taken [N m].
     """
 
     lost_motion_deg: float | None
@@ -49,6 +51,7 @@ class LoopFigures:
     stiffness_nm_per_deg: float | None
     energy_j: dict[int, float]
     extrapolated: bool
+    stiffness_range_nm: tuple[float, float]
 
 
 def loop_figures(
@@ -85,6 +88,7 @@ def loop_figures(
         stiffness_nm_per_deg=_slope(torque, angle_deg, loading),
         energy_j=_energy(recording, angle_deg),
         extrapolated=float(np.abs(torque).min(initial=np.inf)) > level,
+        stiffness_range_nm=(0.5 * top, top),
     )
 
 

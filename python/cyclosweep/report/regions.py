@@ -34,14 +34,18 @@ def residual_axis(data: ReportData) -> str:
         low, high = first.time_s
         share_time = (high - low) / max(float(np.ptp(recording.time_s)), 1e-12)
     elif first.run:
-        share_time = float(np.mean(_in_run_range(recording, first.run)))
+        share_time = float(np.mean(_in_run_range(recording, first)))
     return "time" if share_time < 0.75 * share_torque else "torque"
 
 
-def _in_run_range(recording: Recording, ends: tuple[int, int]) -> Mask:
-    """Mark the samples of the runs from the first to the last named."""
-    first, last = min(ends), max(ends)
-    return (recording.run >= first) & (recording.run <= last)
+def _in_run_range(recording: Recording, region: Region) -> Mask:
+    """Mark the samples of the runs and readings from the first to the last named."""
+    ends = region.run or (int(recording.run.min()), int(recording.run.max()))
+    rows = (recording.run >= min(ends)) & (recording.run <= max(ends))
+    if region.readings:
+        place = np.arange(1, len(recording) + 1)
+        rows &= (place >= region.readings[0]) & (place <= region.readings[1])
+    return np.asarray(rows)
 
 
 def axis_values(recording: Recording, axis: str) -> tuple[Floats, str]:
@@ -97,7 +101,7 @@ def spans_of(data: ReportData, axis: str, *, labelled: bool) -> Iterator[Span]:
         elif region.time_s and recording.time_s is not None and _is_monotone(recording):
             ends = region.time_s
         elif region.run:
-            rows = _in_run_range(recording, region.run)
+            rows = _in_run_range(recording, region)
             ends = (float(x[rows].min()), float(x[rows].max())) if rows.any() else None
         if ends:
             yield Span(*ends, _region_label(region) if labelled else "")
@@ -119,7 +123,7 @@ def located(data: ReportData) -> Mask:
             if ends is not None and values is not None:
                 rows &= (values >= ends[0]) & (values <= ends[1])
         if region.run:
-            rows &= _in_run_range(recording, region.run)
+            rows &= _in_run_range(recording, region)
         if region.direction in ("loading", "unloading"):
             rows &= recording.structure.loading == (region.direction == "loading")
         marked |= rows
@@ -132,4 +136,6 @@ def _region_label(region: Region) -> str:
     if region.run:
         first, last = region.run
         words.append(f"run {first}" if first == last else f"runs {first}–{last}")
+    if region.readings:
+        words.append(f"readings {region.readings[0]}–{region.readings[1]}")
     return ", ".join(words)

@@ -51,11 +51,13 @@ def _size(effect: FoundEffect, data: ReportData) -> str:
 def _evidence(effect: FoundEffect) -> str:
     """Evidence for an effect, and its parameters."""
     text = (
-        f"p {probability(effect.p_value)}, e-value {number(effect.e_value, 2)}, "
-        f"detectability {number(effect.detectability, 3)}"
+        f"p {probability(effect.p_value)}, detectability {number(effect.detectability, 3)}; "
+        f"e-value of all effects together {number(effect.e_value, 2)}"
     )
+    if effect.size_deg.ci95[0] <= 0.0:
+        text += ". By itself it may be nothing: the other effects can take its place"
     parameters = _parameters(effect.parameters)
-    return text + (f". {parameters[:1].upper()}{parameters[1:]}" if parameters else "")
+    return text + (f". {parameters[:1].upper()}{parameters[1:]} (± 95 %)" if parameters else "")
 
 
 def _parameters(parameters: Mapping[str, EffectParameter]) -> str:
@@ -88,11 +90,28 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
     return rows
 
 
+def possible(data: ReportData) -> list[str]:
+    """Upper bounds of the effects that may be the cause."""
+    named = _possible(data)
+    return [
+        f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}"
+        for bound in data.result.undecided
+        if bound.name in named
+    ]
+
+
+def _possible(data: ReportData) -> set[str]:
+    """Effects that some explanation holds."""
+    return {name for each in data.result.explanation_set for name in each.effects}
+
+
 def bounds(data: ReportData) -> list[str]:
     """Upper bounds of what was not found, those above the tolerance first."""
+    causes = _possible(data)
     undecided = [
         f"{plain(bound.name)}: could be as large as {angle(bound.upper95_deg)}, above the tolerance"
         for bound in data.result.undecided
+        if bound.name not in causes
     ]
     ruled_out = [
         f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}"
@@ -144,11 +163,18 @@ def next_experiment(data: ReportData) -> str:
         return ""
     text = plan.program.rstrip(".") + "."
     text = text[:1].upper() + text[1:]
+    if plan.loads_nm:
+        text += f" Loads in order: {', '.join(number(load) for load in plan.loads_nm)} N m."
+    if plan.rig_programme:
+        text += (
+            f" Programme to start from: examples/rigs/{plan.rig_programme}.csv (docs/rigs.md)"
+            + (", with these loads." if plan.loads_nm else ".")
+        )
     if plan.separates:
         text += f" It would {'show or rule out' if len(plan.separates) == 1 else 'separate'} "
         text += " from ".join(map(plain, plan.separates)) + "."
     if plan.detectability:
-        text += f" Expected detectability {number(plan.detectability, 2)} noise units."
+        text += f" What it is about would then be {number(plan.detectability, 2)} times the noise."
     if plan.minutes:
         text += f" Takes about {number(plan.minutes, 2)} minutes."
     return text
@@ -160,7 +186,7 @@ def regions(data: ReportData) -> list[str]:
     for region in data.result.mismatch.regions:
         size = angle(region.mean_residual_deg)
         share = region.share_of_excess
-        part = "" if share is None else f", {100 * share:.0f} % of the excess"
+        part = "" if share is None else f", {_percent(share)} of the misfit"
         texts.append(
             f"{_place(region)}: mean residual {size}{part}, p {probability(region.p_value)}"
         )
@@ -177,6 +203,8 @@ def _place(region: Region) -> str:
     if region.run:
         first, last = region.run
         where.append(f"run {first}" if first == last else f"runs {first} to {last}")
+    if region.readings:
+        where.append(f"readings {region.readings[0]} to {region.readings[1]}")
     for ends, unit in (
         (region.time_s, "s"),
         (region.crank_deg, "deg of crank"),
@@ -185,6 +213,11 @@ def _place(region: Region) -> str:
         if ends:
             where.append(f"{_range(ends)} {unit}")
     return ", ".join(where) or "everywhere"
+
+
+def _percent(share: float) -> str:
+    """Write a share in percent."""
+    return "less than 1 %" if share < 0.01 else f"{100 * share:.0f} %"
 
 
 def _range(ends: tuple[float, float]) -> str:

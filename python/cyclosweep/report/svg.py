@@ -27,8 +27,12 @@ Floats = NDArray[np.float64]
 WIDTH = 1120.0
 """Width of a figure [px]."""
 
-LEFT, RIGHT, RIGHT_SCALE, TOP, BOTTOM = 66.0, 20.0, 62.0, 30.0, 48.0
-NAMED_LEFT = 104.0
+LEFT, RIGHT, RIGHT_SCALE, TOP, BOTTOM = 76.0, 20.0, 74.0, 30.0, 48.0
+"""Margins of a panel [px]; wide enough for the larger letters of a narrow screen."""
+LABEL_ROOM = 18.0
+"""Room above a panel for the name of a shaded stretch [px]."""
+LETTER = 8.3
+"""Width of a letter of a named row on a narrow screen [px]."""
 
 
 def figure_svg(figure: Figure) -> str:
@@ -77,16 +81,17 @@ class _Scale:
 
 def _panel(panel: Panel, width: float, height: float, key: str) -> str:
     """Draw one pair of axes."""
-    left = NAMED_LEFT if panel.y_names else LEFT
+    left = max(LEFT, 16.0 + LETTER * max((len(name) for _, name in panel.y_names), default=0))
+    room = LABEL_ROOM if any(span.label for span in panel.spans) else 0.0
     right = RIGHT_SCALE if panel.right_factor else RIGHT
-    x0, x1, y0, y1 = left, width - right, TOP, height - BOTTOM
+    x0, x1, y0, y1 = left, width - right, TOP + room, height - BOTTOM
     x = _Scale(*extent(panel, "x"), x0, x1)
     y = _Scale(*extent(panel, "y"), y1, y0)
     clip = f"clip-{key}"
     out = [
         f'<clipPath id="{clip}"><rect x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" '
         f'height="{y1 - y0:.1f}"/></clipPath>',
-        f'<text class="pt" x="{x0:.1f}" y="{y0 - 10:.1f}">{escape(panel.title)}</text>',
+        f'<text class="pt" x="{x0:.1f}" y="{y0 - room - 10:.1f}">{escape(panel.title)}</text>',
         f'<rect class="plot" x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" '
         f'height="{y1 - y0:.1f}"/>',
     ]
@@ -104,7 +109,7 @@ def _panel(panel: Panel, width: float, height: float, key: str) -> str:
         f'<rect class="hit" x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" '
         f'height="{y1 - y0:.1f}" data-x="{x.low:.6g} {x.high:.6g}" '
         f'data-y="{y.low:.6g} {y.high:.6g}"/>'
-        f'<text class="at" x="{x1 - 4:.1f}" y="{y0 - 10:.1f}"></text>'
+        f'<text class="at" x="{x1 - 4:.1f}" y="{y0 - room - 10:.1f}"></text>'
     )
     return "".join(out)
 
@@ -138,15 +143,14 @@ def _axes(panel: Panel, x: _Scale, y: _Scale) -> str:
                 f'<text class="tick" x="{x.stop + 8:.1f}" y="{right(value) + 4:.1f}">'
                 f"{escape(text)}</text>"
             )
-        out.append(_upright(panel.right_label, x.stop + 50, (top + bottom) / 2))
+        out.append(_upright(panel.right_label, x.stop + 62, (top + bottom) / 2))
     middle = (x.start + x.stop) / 2
     out.append(
         f'<text class="label" text-anchor="middle" x="{middle:.1f}" y="{bottom + 37:.1f}">'
         f"{escape(panel.x_label)}</text>"
     )
-    offset = NAMED_LEFT - 14 if panel.y_names else 50.0
     if panel.y_label:
-        out.append(_upright(panel.y_label, x.start - offset, (top + bottom) / 2))
+        out.append(_upright(panel.y_label, x.start - (LEFT - 14.0), (top + bottom) / 2))
     return "".join(out)
 
 
@@ -177,11 +181,11 @@ def _span(low: float, high: float, x: _Scale, top: float, bottom: float) -> str:
 
 
 def _span_label(text: str, low: float, high: float, x: _Scale, top: float) -> str:
-    """Name a shaded stretch inside it, kept within the panel."""
+    """Name a shaded stretch above the panel, where it covers nothing."""
     half = 3.3 * len(text)
     at = min(max((x(low) + x(high)) / 2, x.start + half + 4), x.stop - half - 4)
     return (
-        f'<text class="spanlabel" text-anchor="middle" x="{at:.1f}" y="{top + 16:.1f}">'
+        f'<text class="spanlabel" text-anchor="middle" x="{at:.1f}" y="{top - 6:.1f}">'
         f"{escape(text)}</text>"
     )
 

@@ -1,5 +1,7 @@
 """The tables of a report as plain rows, shared by the page and the terminal."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cyclosweep.page import Table
@@ -16,7 +18,7 @@ from cyclosweep.report.wording import (
     with_error,
     without_unit,
 )
-from cyclosweep.result import CalibratedParameter
+from cyclosweep.result import CalibratedParameter, Reading
 
 
 def loop_table(data: ReportData) -> Table | None:
@@ -30,6 +32,8 @@ def loop_table(data: ReportData) -> Table | None:
     figures = [f for _, f in columns]
     side, rated = data.recording.side, data.rated_torque_nm
     of = "rated" if rated else "the largest"
+    low, high = figures[0].stiffness_range_nm
+    reach = f"{number(low)} to {number(high)} N m"
     extended = " (extended)" if figures[0].extrapolated else ""
     rows = [
         (
@@ -37,12 +41,15 @@ def loop_table(data: ReportData) -> Table | None:
             *(angle(f.lost_motion_deg) for f in figures),
         ),
         (f"hysteresis loss{extended}", *(angle(f.hysteresis_loss_deg) for f in figures)),
-        (f"stiffness at the {side}", *(_stiffness(f.stiffness_nm_per_deg) for f in figures)),
+        (
+            f"slope of the loading branches at the {side}, {reach}",
+            *(_stiffness(f.stiffness_nm_per_deg) for f in figures),
+        ),
     ]
     if side == "input" and data.ratio:
         ratio = data.ratio
         rows += [
-            ("stiffness at the output", *(_at_output(f, ratio) for f in figures)),
+            ("the same slope at the output", *(_at_output(f, ratio) for f in figures)),
             ("lost motion at the output", *(_divided(f.lost_motion_deg, ratio) for f in figures)),
             (
                 "hysteresis loss at the output",
@@ -53,7 +60,12 @@ def loop_table(data: ReportData) -> Table | None:
     rows = [row for row in rows if any(cell != NOTHING for cell in row[1:])]
     if not rows:
         return None
-    note = f"Stiffness is the slope of the loading branches between 50 % and 100 % of {of} torque."
+    note = (
+        f"The slope of the loading branches is taken from {reach}. It contains what friction takes "
+        "of the torque on the way up, so that it differs from the stiffness at the top of the "
+        "page. Lost motion is the middle of the loop at small torque alone, where free play at the "
+        "top of the page is met by lines through the loaded flanks."
+    )
     lost, gap = figures[0].lost_motion_deg, figures[0].hysteresis_loss_deg
     if lost is not None and gap is not None and gap > lost:
         note += (
@@ -95,7 +107,9 @@ def parameter_table(data: ReportData) -> Table | None:
         tuple(rows),
         "A stiffness, free play or datum that differs from nominal is calibration, not missing "
         "physics. The shift is how far the repair moved a parameter, in standard errors of the "
-        "fit before.",
+        "fit before; behind ± stands the half width of the 95 % interval. With effects in the "
+        "model, its compliance and play are what these leave: the drive's own stand at the top of "
+        "the page.",
         frozenset({1}),
     )
 
@@ -129,9 +143,9 @@ def hypothesis_table(data: ReportData) -> Table | None:
         ),
         tuple(rows),
         "Hidden by calibration: share of the effect that a refit of stiffness, free play and datum "
-        "absorbs. p: chance of so large a signal with nothing missing, each effect by itself, all "
-        "of them searched; what an accepted effect explains as well is ruled out all the same. "
-        "e: evidence from data not used for the choice; 100 is strong.",
+        "absorbs. p: chance of so large a signal where the accepted effects are all there is, all "
+        "others searched; a dash where what is left is error of the model rather than noise. "
+        "e: evidence for the accepted effects together from data not used; 100 is strong.",
         frozenset({1}),
         frozenset(lead),
     )  # fmt: skip
@@ -261,3 +275,51 @@ def _count(samples: int | None) -> str:
 def _estimate(value: CalibratedParameter | None) -> str:
     """Estimate of a parameter with its standard error."""
     return NOTHING if value is None else with_error(value.estimate, value.std_error)
+
+
+def play_table(data: ReportData) -> Table | None:
+    """The free play, the stiffness and the friction of the drive, by one definition each."""
+    read = data.result.play_and_stiffness
+    if read is None:
+        return None
+    side = data.recording.side
+    rows = [
+        (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, _angles)),
+        ("stiffness at the output", *_read(read.stiffness_at_output_nm_per_arcmin, _stiffnesses)),
+        (f"friction at the {side}, half the loop's width", *_read(read.friction_nm, _torques)),
+    ]
+    if side == "input":
+        rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, _angles)))
+    shown = tuple(row for row in rows if row[1] != NOTHING)
+    note = f"Read by {read.definition}."
+    if read.runs == 1:
+        note += " No intervals: there is a single run to read from."
+    elif read.runs:
+        note += f" Intervals by Student's t over {read.runs} runs."
+    if read.reason:
+        note += f" A value is missing because {read.reason}."
+    return Table("Free play and stiffness", ("", "value", "95 % interval"), shown, note)
+
+
+def _read(reading: Reading | None, write: Callable[[float], str]) -> tuple[str, str]:
+    """Value and interval of a reading."""
+    if reading is None:
+        return NOTHING, NOTHING
+    ends = reading.ci95
+    return write(reading.estimate), NOTHING if ends is None else interval(ends)
+
+
+def _angles(value_deg: float) -> str:
+    """Angle in both units."""
+    return angle(value_deg)
+
+
+def _stiffnesses(nm_per_arcmin: float) -> str:
+    """Stiffness in N m/arcmin and as compliance."""
+    compliance = 1.0 / (ARCMIN * nm_per_arcmin)
+    return f"{number(nm_per_arcmin)} N m/arcmin ({number(compliance)} deg/(N m))"
+
+
+def _torques(value_nm: float) -> str:
+    """Torque."""
+    return f"{number(value_nm)} N m"

@@ -9,6 +9,8 @@ from rich.text import Text
 
 from cyclosweep.report import sentences
 from cyclosweep.report.data import ReportData
+from cyclosweep.report.summary import do_now, summary_of
+from cyclosweep.report.tables import play_table
 from cyclosweep.report.wording import (
     angle,
     interval,
@@ -53,7 +55,9 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     result = data.result
     code, words, _ = verdict_words(result)
     style = _STYLES[code]
-    statement = Text(result.statement)
+    statement = Text(summary_of(result))
+    if now := do_now(result):
+        statement.append(f"\n\n{now}")
     title = Text(f"{words} ({code})", style=f"bold {style}")
     yield Panel(
         statement, title=title, title_align="left", border_style=style,
@@ -71,6 +75,7 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         ("What remains without a name", [rest] if rest else []),
         ("Where simulation and recording differ", sentences.regions(data)[:3]),
         ("Explanations that fit", sentences.explanations(data)[:4]),
+        ("Possible (95 % upper bound)", sentences.possible(data)[:6]),
         ("Not found (95 % upper bound)", sentences.bounds(data)[:6]),
         ("What this recording cannot show", sentences.untestable(data)[:4]),
         ("Remarks on the recording", [fault.reason for fault in data.recording.faults][:4]),
@@ -79,6 +84,8 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
             yield _bullets(heading, lines)
     if plan := sentences.next_experiment(data):
         yield Text.assemble(("\nNext experiment\n", "bold"), plan)
+    if result.statement != summary_of(result):
+        yield Text.assemble(("\nThe answer in full\n", "bold"), result.statement)
 
 
 def _facts(data: ReportData) -> Iterator[RenderableType]:
@@ -91,6 +98,8 @@ def _facts(data: ReportData) -> Iterator[RenderableType]:
         rows.append(("mismatch before, p", probability(data.result.mismatch.p_value)))
     if data.result.sufficiency.p_value is not None:
         rows.append(("mismatch after, p", probability(data.result.sufficiency.p_value)))
+    if (play := play_table(data)) is not None:
+        rows += [(label, f"{value}  {ends}") for label, value, ends in play.rows]
     for label, value in rows:
         grid.add_row(label, value)
     if rows:

@@ -8,6 +8,9 @@ from cyclosweep.result import Answer, Verdict
 NOTHING = "–"
 """What is printed where there is no number."""
 
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval in standard errors."""
+
 ARCMIN = 60.0
 """Minutes of arc in a degree."""
 
@@ -152,7 +155,7 @@ def without_unit(name: str) -> str:
 
 
 def with_error(estimate: float, std_error: float | None) -> str:
-    """Write an estimate and its standard error.
+    """Write an estimate and the half width of its 95 % interval, as everywhere in a report.
 
     Parameters
     ----------
@@ -164,11 +167,11 @@ def with_error(estimate: float, std_error: float | None) -> str:
     Examples
     --------
     >>> with_error(1.04, 0.001), with_error(0.1, 3.0), with_error(2.0, None)
-    ('1.04 ± 0.001', '0.1 (poorly determined)', '2')
+    ('1.04 ± 0.002', '0.1 (poorly determined)', '2')
     """
-    text = number(estimate, 4)
     if not std_error:
-        return text
+        return number(estimate, 4)
+    text = number(estimate, 3 if NORMAL_95 * std_error > 0.01 * abs(estimate) else 4)
     if std_error > 10 * abs(estimate) > 0:
         return f"{text} (poorly determined)"
-    return f"{text} ± {number(std_error, 2)}"
+    return f"{text} ± {number(NORMAL_95 * std_error, 2)}"

@@ -7,6 +7,7 @@ from cyclosweep.result.calibration import CalibratedParameter, Thinning
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import Explanation
 from cyclosweep.result.mismatch import Region
+from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.proof import HeldOutBlock
 
 SPREAD = 3
@@ -273,7 +274,8 @@ def _others(explanations: Sequence[Explanation]) -> str:
 def _calibration(answer: Answer) -> str:
     """What the calibration found; the compliance as a range where the drive changed."""
     if answer.change is None:
-        return calibration_words(answer.repaired.parameters)
+        read = play_words(answer.play_and_stiffness)
+        return f"{read}{calibration_words(answer.repaired.parameters)}"
     return change_words(answer.change, answer.repaired.parameters)
 
 
@@ -304,6 +306,38 @@ def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParamet
         ends = sorted((early / nominal, late / nominal))
         words += f", {ends[0]:.2g} to {ends[1]:.2g} times nominal"
     return f"{words}. No stiffness of it holds to three digits."
+
+
+def play_words(read: PlayAndStiffness | None) -> str:
+    """Say the free play and the stiffness of the drive; nothing where they were not read.
+
+    Parameters
+    ----------
+    read : PlayAndStiffness or None
+        What was read from the loop.
+
+    Returns
+    -------
+    str
+    """
+    if read is None:
+        return ""
+    said = [
+        f"{name} {reading.estimate:.3g} {unit}{_ends(reading)}"
+        for name, reading, unit in (
+            ("free play from flank to flank", read.free_play_deg, "deg"),
+            ("stiffness at the output", read.stiffness_at_output_nm_per_arcmin, "N m/arcmin"),
+        )
+        if reading is not None
+    ]
+    return f"Read from the loop: {', '.join(said)}. " if said else ""
+
+
+def _ends(reading: Reading) -> str:
+    """Interval of a reading; nothing where there is none."""
+    if reading.ci95 is None:
+        return ""
+    return f" (95 %: {reading.ci95[0]:.3g} to {reading.ci95[1]:.3g})"
 
 
 def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
@@ -346,6 +380,8 @@ def place_of(regions: Sequence[Region]) -> str:
     if region.run is not None:
         first, last = region.run
         parts.append(f"run {first}" if first == last else f"runs {first} to {last}")
+    if region.readings is not None:
+        parts.append(f"readings {region.readings[0]} to {region.readings[1]}")
     if region.time_s is not None:
         parts.append(f"t = {region.time_s[0]:.5g} to {region.time_s[1]:.5g} s")
     if region.crank_deg is not None:

@@ -1,0 +1,82 @@
+"""Free play and stiffness by straight lines: what was put into a loop comes out of it."""
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.report.play_and_stiffness import play_and_stiffness
+from cyclosweep.result import CalibratedParameter
+
+FITTED = {
+    "free_play_deg": CalibratedParameter(nominal=1.0, estimate=1.4, std_error=0.05, unit="deg"),
+    "compliance_deg_per_nm": CalibratedParameter(estimate=0.1, std_error=0.002),
+}
+
+
+def loop(side: str = "output", runs: int = 3, friction_nm: float = 2.0) -> cs.Recording:
+    """Loops with a play of 3 deg in all, 0.1 deg/(N m), and friction; each run a little softer."""
+    branch = np.r_[0:24:300j, 24:-24:600j, -24:0:300j]
+    elastic = branch - friction_nm * np.sign(np.gradient(branch))
+    torque, angle, run = [], [], []
+    for k in range(runs):
+        torque.append(branch)
+        angle.append(1.5 * np.sign(elastic) + (0.1 + 0.001 * (k - 1)) * elastic)
+        run.append(np.full(len(branch), k))
+    return cs.Recording.from_arrays(
+        np.concatenate(torque), np.concatenate(angle), run=np.concatenate(run), side=side
+    )
+
+
+def test_what_was_put_in_comes_out_with_an_interval() -> None:
+    read = play_and_stiffness(loop(), FITTED, 13.0)
+    assert read.runs == 3
+    assert read.free_play_deg is not None
+    assert read.free_play_deg.estimate == pytest.approx(3.0, abs=0.05)
+    stiffness = read.stiffness_at_output_nm_per_arcmin
+    assert stiffness is not None
+    assert stiffness.estimate == pytest.approx(1 / (60 * 0.1), rel=0.01)
+    assert stiffness.ci95 is not None
+    assert stiffness.ci95[0] < stiffness.estimate < stiffness.ci95[1]
+    assert read.friction_nm is not None
+    assert read.friction_nm.estimate == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_loop_at_the_input_is_given_at_the_output_too() -> None:
+    read = play_and_stiffness(loop("input"), FITTED, 13.0)
+    at_output = play_and_stiffness(loop(), FITTED, 13.0)
+    assert read.free_play_deg == at_output.free_play_deg
+    assert read.free_play_at_output_deg is not None
+    assert read.free_play_at_output_deg.estimate == pytest.approx(3.0 / 13.0, rel=0.02)
+    stiff, other = (each.stiffness_at_output_nm_per_arcmin for each in (read, at_output))
+    assert stiff is not None
+    assert other is not None
+    assert stiff.estimate == pytest.approx(169 * other.estimate)
+
+
+def test_readings_by_hand_take_the_fitted_lines() -> None:
+    torque = np.r_[1:5:5j, -1:-5:5j]
+    read = play_and_stiffness(cs.Recording.from_arrays(torque, torque), FITTED, 13.0)
+    assert read.runs == 0
+    assert "published model" in read.definition
+    assert read.free_play_deg is not None
+    assert read.free_play_deg.estimate == pytest.approx(2.8)
+    assert read.free_play_deg.ci95 == pytest.approx((2.604, 2.996))
+
+
+def test_one_run_has_no_interval_and_a_missing_value_has_a_reason() -> None:
+    one = play_and_stiffness(loop(runs=1), FITTED, 13.0)
+    assert one.free_play_deg is not None
+    assert one.free_play_deg.ci95 is None
+    hidden = play_and_stiffness(loop(), FITTED, 13.0, hidden="too small a load")
+    assert hidden.free_play_deg is None
+    assert hidden.stiffness_at_output_nm_per_arcmin is None
+    assert hidden.reason == "friction hides play and stiffness: too small a load"
+    unsteady = play_and_stiffness(loop(), FITTED, 13.0, unsteady=True)
+    assert unsteady.free_play_deg is not None
+    assert unsteady.compliance_deg_per_nm is None
+    assert "drift" in (unsteady.reason or "")
+    one_flank = {"free_play_deg": CalibratedParameter(estimate=1.0)}
+    torque = np.arange(1.0, 9.0)
+    alone = play_and_stiffness(cs.Recording.from_arrays(torque, torque), one_flank, 13.0)
+    assert alone.free_play_deg is None
+    assert "only one flank" in (alone.reason or "")
