@@ -4,7 +4,7 @@ from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
-from cyclosweep.result.statement import degrees, listed, readable, with_article
+from cyclosweep.result.words import degrees, listed, readable, with_article
 
 
 def summary_of(answer: Answer) -> str:

@@ -1,14 +1,13 @@
 """The answer in sentences that a test engineer can act on."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from cyclosweep.result.answer import Answer
-from cyclosweep.result.calibration import CalibratedParameter, Thinning
-from cyclosweep.result.change import DriveChange
+from cyclosweep.result.calibration import Thinning
+from cyclosweep.result.calibration_words import calibration_words, change_words, play_words
 from cyclosweep.result.effects import Explanation
-from cyclosweep.result.mismatch import Region
-from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.proof import HeldOutBlock
+from cyclosweep.result.words import degrees, listed, place_of, readable, with_article
 
 SPREAD = 3
 """Classes of behaviour from which something belongs to none of them."""
@@ -279,80 +278,6 @@ def _calibration(answer: Answer) -> str:
     return change_words(answer.change, answer.repaired.parameters)
 
 
-def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParameter]) -> str:
-    """Say that the drive changed, and between which ends its compliance lies.
-
-    Parameters
-    ----------
-    change : DriveChange
-        Compliance early and late.
-    parameters : mapping of str to CalibratedParameter
-        Calibrated parameters by name.
-
-    Returns
-    -------
-    str
-    """
-    early, late = change.compliance_early_deg_per_nm, change.compliance_late_deg_per_nm
-    low, high = (100 * bound for bound in sorted(map(abs, change.ci95)))
-    nominal = parameters["compliance_deg_per_nm"].nominal
-    went = "rose" if change.share > 0 else "fell"
-    words = (
-        f"The drive changed while it was tested: compliance {went}"
-        f" by {100 * abs(change.share):.2g} % (95 %: {low:.2g} to {high:.2g}) from {early:.2g} to "
-        f"{late:.2g} deg/(N m) at equal torque, earlier against later"
-    )
-    if nominal:
-        ends = sorted((early / nominal, late / nominal))
-        words += f", {ends[0]:.2g} to {ends[1]:.2g} times nominal"
-    return f"{words}. No stiffness of it holds to three digits."
-
-
-def play_words(read: PlayAndStiffness | None) -> str:
-    """Say the free play and the stiffness of the drive; nothing where they were not read.
-
-    Parameters
-    ----------
-    read : PlayAndStiffness or None
-        What was read from the loop.
-
-    Returns
-    -------
-    str
-    """
-    if read is None:
-        return ""
-    said = [
-        f"{name} {reading.estimate:.3g} {unit}{_ends(reading)}"
-        for name, reading, unit in (
-            ("free play from flank to flank", read.free_play_deg, "deg"),
-            ("stiffness at the output", read.stiffness_at_output_nm_per_arcmin, "N m/arcmin"),
-        )
-        if reading is not None
-    ]
-    return f"Read from the loop: {', '.join(said)}. " if said else ""
-
-
-def _ends(reading: Reading) -> str:
-    """Interval of a reading; nothing where there is none."""
-    if reading.ci95 is None:
-        return ""
-    return f" (95 %: {reading.ci95[0]:.3g} to {reading.ci95[1]:.3g})"
-
-
-def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
-    """What the calibration found, against nominal."""
-    scale = parameters["compliance_scale"].estimate
-    play = parameters["free_play_deg"]
-    datum = parameters["datum_deg"].estimate
-    # Adding zero turns a negative zero into zero.
-    change = round(100 * (scale - 1), 1) + 0.0
-    words = f"Calibration: compliance {change:+.1f} % against nominal"
-    if play.std_error is not None:
-        words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
-    return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
-
-
 def thinning_words(thinning: Thinning) -> str:
     """Say how a long recording was thinned."""
     done = []
@@ -365,54 +290,3 @@ def thinning_words(thinning: Thinning) -> str:
         f"For the diagnosis the {thinning.samples:,} samples were thinned to "
         f"{thinning.rows:,} rows{words}; reversals, dwells and runs were kept apart."
     )
-
-
-def place_of(regions: Sequence[Region]) -> str:
-    """Where the strongest region lies, in words."""
-    if not regions:
-        return "no single place"
-    region = regions[0]
-    parts = []
-    if region.torque_nm is not None:
-        parts.append(f"{region.torque_nm[0]:.3g} to {region.torque_nm[1]:.3g} N m")
-    if region.direction is not None:
-        parts.append(region.direction)
-    if region.run is not None:
-        first, last = region.run
-        parts.append(f"run {first}" if first == last else f"runs {first} to {last}")
-    if region.readings is not None:
-        parts.append(f"readings {region.readings[0]} to {region.readings[1]}")
-    if region.time_s is not None:
-        parts.append(f"t = {region.time_s[0]:.5g} to {region.time_s[1]:.5g} s")
-    if region.crank_deg is not None:
-        parts.append(f"mesh position {region.crank_deg[0]:.4g} deg")
-    return ", ".join(parts) or "everywhere"
-
-
-def degrees(value: float | None) -> str:
-    """Write an angle in deg and, where small, in arcmin.
-
-    Parameters
-    ----------
-    value : float or None
-        The angle [deg]; None where it is not known.
-    """
-    if value is None:
-        return "an unknown angle"
-    return f"{value:.3g} deg" + (f" ({60 * value:.2g} arcmin)" if abs(value) < 1.0 else "")
-
-
-def readable(name: str) -> str:
-    """Name of an effect in plain words."""
-    return name.replace("_", " ")
-
-
-def with_article(words: str) -> str:
-    """Put "a" or "an" before some words."""
-    return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names in a row."""
-    words = [readable(n) for n in names]
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]

@@ -1,0 +1,82 @@
+"""What was read from the loop and what the calibration found, in sentences."""
+
+from collections.abc import Mapping
+
+from cyclosweep.result.calibration import CalibratedParameter
+from cyclosweep.result.change import DriveChange
+from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
+from cyclosweep.result.words import degrees
+
+
+def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParameter]) -> str:
+    """Say that the drive changed, and between which ends its compliance lies.
+
+    Parameters
+    ----------
+    change : DriveChange
+        Compliance early and late.
+    parameters : mapping of str to CalibratedParameter
+        Calibrated parameters by name.
+
+    Returns
+    -------
+    str
+    """
+    early, late = change.compliance_early_deg_per_nm, change.compliance_late_deg_per_nm
+    low, high = (100 * bound for bound in sorted(map(abs, change.ci95)))
+    nominal = parameters["compliance_deg_per_nm"].nominal
+    went = "rose" if change.share > 0 else "fell"
+    words = (
+        f"The drive changed while it was tested: compliance {went}"
+        f" by {100 * abs(change.share):.2g} % (95 %: {low:.2g} to {high:.2g}) from {early:.2g} to "
+        f"{late:.2g} deg/(N m) at equal torque, earlier against later"
+    )
+    if nominal:
+        ends = sorted((early / nominal, late / nominal))
+        words += f", {ends[0]:.2g} to {ends[1]:.2g} times nominal"
+    return f"{words}. No stiffness of it holds to three digits."
+
+
+def play_words(read: PlayAndStiffness | None) -> str:
+    """Say the free play and the stiffness of the drive; nothing where they were not read.
+
+    Parameters
+    ----------
+    read : PlayAndStiffness or None
+        What was read from the loop.
+
+    Returns
+    -------
+    str
+    """
+    if read is None:
+        return ""
+    said = [
+        f"{name} {reading.estimate:.3g} {unit}{_ends(reading)}"
+        for name, reading, unit in (
+            ("free play from flank to flank", read.free_play_deg, "deg"),
+            ("stiffness at the output", read.stiffness_at_output_nm_per_arcmin, "N m/arcmin"),
+        )
+        if reading is not None
+    ]
+    return f"Read from the loop: {', '.join(said)}. " if said else ""
+
+
+def _ends(reading: Reading) -> str:
+    """Interval of a reading; nothing where there is none."""
+    if reading.ci95 is None:
+        return ""
+    return f" (95 %: {reading.ci95[0]:.3g} to {reading.ci95[1]:.3g})"
+
+
+def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
+    """What the calibration found, against nominal."""
+    scale = parameters["compliance_scale"].estimate
+    play = parameters["free_play_deg"]
+    datum = parameters["datum_deg"].estimate
+    # Adding zero turns a negative zero into zero.
+    change = round(100 * (scale - 1), 1) + 0.0
+    words = f"Calibration: compliance {change:+.1f} % against nominal"
+    if play.std_error is not None:
+        words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
+    return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
