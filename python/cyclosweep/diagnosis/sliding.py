@@ -22,7 +22,7 @@ from cyclosweep.result import (
     Size,
     Untestable,
 )
-from cyclosweep.result.statement import degrees
+from cyclosweep.result.words import degrees
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects.history import Flags, Floats
 
