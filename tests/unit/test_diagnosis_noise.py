@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.prepare.noise import interval_score, orthonormal
+from cyclosweep.diagnosis.prepare.noise import Noise, interval_score, orthonormal
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from tests.support.arrays import Floats
 
@@ -103,6 +103,79 @@ def test_fine_dial_counts_as_noise() -> None:
     noise = estimate_noise(angle, basis, gap, 0.5, np.ones(len(x)))
     assert noise.step_deg == 0
     assert noise.sigma_deg == pytest.approx(np.hypot(0.2, 0.5 / np.sqrt(12)), rel=0.08)
+
+
+def test_rounding_does_not_hide_how_slow_the_noise_is() -> None:
+    # A dial of 2.3 times the noise, passed by some steps from reading to reading: one reading
+    # correlates with the next by 0.7 only.
+    rng, x, _, gap = material(3000)
+    clean = 300 * rng.permutation(x)
+    basis = orthonormal(np.column_stack([np.ones_like(x), clean, clean**2, clean**3]))
+    step, rho = 0.46, 0.97
+    best, upper, beside = [], [], []
+    for _ in range(4):
+        angle = np.round((clean + 0.2 * coloured(rng, len(x), rho)) / step) * step
+        noise = estimate_noise(angle, basis, gap, step, np.ones(len(x)))
+        assert noise.step_deg == 0
+        white, _ = noise.residual(angle, clean)
+        later = [np.corrcoef(white[k:], white[:-k])[0, 1] for k in range(1, 12)]
+        beside.append(np.sum(later))
+        best.append(noise.best_correlation)
+        upper.append(noise.correlation)
+    assert np.mean(best) == pytest.approx(rho, abs=0.02)
+    assert np.mean(np.array(upper) >= rho) >= 0.75
+    # The slow part is gone: its correlations would add up to several.
+    assert np.mean(beside) == pytest.approx(0.0, abs=0.15)
+
+
+def test_quiet_readings_of_a_held_torque_on_a_dial_are_no_error_of_a_model() -> None:
+    # While the torque is held, a dial of 2.5 times slow noise mostly stands still.
+    rng, x, _, gap = material(3000)
+    clean = 300 * rng.permutation(x)
+    clean[1200:1350] = 100.0
+    clean[2200:2350] = -100.0
+    basis = orthonormal(np.column_stack([np.ones_like(x), clean, clean**2, clean**3]))
+    for _ in range(3):
+        angle = np.round((clean + 0.2 * coloured(rng, len(x), 0.97)) / 0.5) * 0.5
+        noise = estimate_noise(angle, basis, gap, 0.5, np.ones(len(x)))
+        assert not noise.structured
+        assert noise.correlation >= 0.95
+
+
+def test_loud_stretches_are_an_error_of_the_model_on_a_dial_too() -> None:
+    rng, x, _, gap = material(3000)
+    clean = 300 * rng.permutation(x)
+    basis = orthonormal(np.column_stack([np.ones_like(x), clean, clean**2, clean**3]))
+    size = np.where(np.abs(x) % 0.5 < 0.1, 6.0, 1.0)
+    angle = np.round((clean + 0.4 * size * coloured(rng, len(x), 0.97)) / 0.5) * 0.5
+    assert estimate_noise(angle, basis, gap, 0.5, np.ones(len(x))).structured
+
+
+def test_rounding_of_white_noise_makes_none_of_it_slow() -> None:
+    rng, x, basis, gap = material(3000)
+    for _ in range(4):
+        angle = np.round((30 * x + 0.2 * rng.normal(size=len(x))) / 0.4) * 0.4
+        noise = estimate_noise(angle, basis, gap, 0.4, np.ones(len(x)))
+        assert noise.white_share == 0.0
+        assert noise.correlation < 0.1
+
+
+def test_whitening_of_correlated_and_white_noise_is_that_of_its_covariance() -> None:
+    rng = np.random.default_rng(5)
+    gap = rng.choice([0.0, 0.5, 1.0, 3.0], 60)
+    gap[0] = 0.0
+    noise = Noise(1.0, 0.9, 0.9, np.inf, 0.0, 59.0, gap, white_share=0.3)
+    pair = np.where(gap > 0, 0.9**gap, 0.0)
+    covariance = np.eye(60)
+    for row in range(60):
+        for before in range(row):
+            covariance[row, before] = 0.7 * np.prod(pair[before + 1 : row + 1])
+            covariance[before, row] = covariance[row, before]
+    filtered = noise.whiten(np.eye(60))
+    np.testing.assert_allclose(filtered @ covariance @ filtered.T, np.eye(60), atol=1e-12)
+    assert noise.log_determinant == pytest.approx(np.linalg.slogdet(covariance)[1], abs=1e-10)
+    one = rng.normal(size=60)
+    np.testing.assert_allclose(noise.whiten(one), filtered @ one, atol=1e-12)
 
 
 def test_interval_score_is_unbiased_with_its_information() -> None:

@@ -10,6 +10,12 @@ from cyclosweep.simulation.effects.history import Flags, Floats
 LOADED = 0.25
 """Share of the largest torque beyond which a flank is taken to be in contact."""
 
+FAST = 2.0
+"""Steps from reading to reading above this many times the largest of a hundred under load are no
+noise: of normal ones, one in four million is as large."""
+FEW_STEPS = 20
+"""Steps under load below which the largest of a hundred is not known."""
+
 
 class NominalLine(Protocol):
     """Free play [deg] each side of zero and slope [deg/(N m)] of the published model."""
@@ -61,6 +67,8 @@ class Flanks:
         side : ndarray, shape (n,)
             +1 or -1.
         contact : ndarray of bool, shape (n,)
+            Readings in the order in which they were taken: between one within the play and one in
+            contact, others may be on their way.
         """
         sign = np.where(torque >= 0, 1.0, -1.0)
         play = self.free_play_deg
@@ -76,7 +84,41 @@ class Flanks:
             far = np.abs(torque) > self.loaded_scored_nm
             side[far] = sign[far]
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
-        return side, loaded | (inside * side > play - margin)
+        depth = play - inside * side
+        contact = loaded | (depth < margin)
+        return side, contact & ~_on_the_way(depth, contact, loaded)
+
+
+def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
+    """Readings at which the play was still being crossed, next to readings within it.
+
+    Friction and curved laws leave readings in contact a little within the play, so that a margin
+    counts as contact. Where the play is crossed in a few readings, one of them may lie in that
+    margin by chance; its error is many times the noise. From it to both neighbours the angle moves
+    faster than it ever does under load.
+
+    Parameters
+    ----------
+    depth : ndarray, shape (n,)
+        How far within the play each reading lies; negative beyond the flank [deg].
+    contact : ndarray of bool, shape (n,)
+        Readings in contact, the margin included.
+    loaded : ndarray of bool, shape (n,)
+        Readings that are in contact whatever the angle says.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    step = np.abs(np.diff(depth))
+    usual = step[loaded[1:] & loaded[:-1]]
+    if np.all(contact) or len(usual) < FEW_STEPS:
+        return np.zeros(len(depth), dtype=bool)
+    fast = step > FAST * float(np.quantile(usual, 0.99))
+    moving = np.r_[False, fast] & np.r_[fast, False] & ~loaded & (depth > 0.0)
+    maybe = ~contact | moving
+    stretch = np.cumsum(np.r_[True, np.diff(maybe.astype(np.int8)) != 0])
+    return np.asarray(contact & maybe & np.isin(stretch, stretch[~contact]))
 
 
 def find_flanks(

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import cholesky_banded
+from scipy.linalg.lapack import dtbtrs
 from scipy.special import ndtr
 
 from cyclosweep.simulation.effects.history import Floats
@@ -48,6 +50,9 @@ class Noise:
         Size of noise and model error together over that of the noise; one without model error.
     by_rows : bool
         Whether ``gap`` counts rows although there is a clock.
+    white_share : float
+        Share of a row's variance that is new in every row, as rounding is, beside the part that
+        correlates from row to row.
     """
 
     sigma_deg: float
@@ -62,6 +67,7 @@ class Noise:
     score_moments: tuple[float, float] = (1.0, 1.0)
     model_error_factor: float = 1.0
     by_rows: bool = False
+    white_share: float = 0.0
 
     @property
     def spread_deg(self) -> float:
@@ -78,6 +84,27 @@ class Noise:
         """Share of each row after the first, as a standard deviation, that is not in the others."""
         return np.asarray(np.sqrt(1.0 - self._pair**2))
 
+    @cached_property
+    def _lower(self) -> Floats:
+        """Diagonal and subdiagonal of the Cholesky factor of the rows' steps, shape (2, n).
+
+        Less its correlated part of the row before, a row of correlated and white noise correlates
+        with its two neighbours only (Box and Jenkins, Time Series Analysis, A4.3: the sum of a
+        first-order autoregression and white noise is ARMA(1, 1)).
+        """
+        share, pair = self.white_share, self._pair
+        band = np.zeros((2, len(self.gap)))
+        band[0] = np.r_[1.0, (1.0 - share) * (1.0 - pair**2) + share * (1.0 + pair**2)]
+        band[1, :-1] = -share * pair
+        return np.asarray(cholesky_banded(band, lower=True))
+
+    @property
+    def log_determinant(self) -> float:
+        """Logarithm of the determinant of the rows' correlation matrix."""
+        if self.white_share > 0.0:
+            return 2.0 * float(np.log(self._lower[0]).sum())
+        return float(np.log1p(-(self._pair**2)).sum())
+
     def whiten(self, rows: Floats) -> Floats:
         """Decorrelate rows (n,) or (n, k) whose neighbours correlate; variance is kept."""
         if self.correlation == 0.0:
@@ -90,13 +117,15 @@ class Noise:
             return rows
         shape = (-1,) + (1,) * (rows.ndim - 1)
         rows[1:] -= self._pair.reshape(shape) * rows[:-1]
+        if self.white_share > 0.0:
+            return np.asarray(dtbtrs(self._lower, rows, uplo="L")[0]).reshape(rows.shape)
         rows[1:] /= self._new.reshape(shape)
         return rows
 
     def log_likelihood(self, rows: Floats) -> float:
         """Log likelihood [nat] of rows (n,) of this correlation and of whatever size suits best."""
         size = max(float(np.mean(self.whiten(rows) ** 2)), 1e-300)
-        return -0.5 * float(len(rows) * np.log(size) + np.log1p(-(self._pair**2)).sum())
+        return -0.5 * (len(rows) * float(np.log(size)) + self.log_determinant)
 
     def residual(self, angle: Floats, mean: Floats) -> tuple[Floats, Floats]:
         """Unit-variance white residual, and the weight by which rows of a design enter.

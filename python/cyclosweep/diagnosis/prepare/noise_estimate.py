@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.prepare.noise import (
     orthonormal,
     student_score,
 )
+from cyclosweep.diagnosis.prepare.rounding import MUCH_LIKELIER, noise_with_rounding
 from cyclosweep.simulation.effects.history import Floats
 
 MODEL_ERROR = 0.9
@@ -23,8 +24,6 @@ error of the model. Steady noise stays below 1.8 up to an autocorrelation of 0.9
 gather at reversals and at certain loads, and begin at 3."""
 UNEVEN = 0.1
 """Difference of steps by the clock from steps by rows from which it matters which of them count."""
-MUCH_LIKELIER = 3.0
-"""Log likelihood by which correlation from row to row must be ahead of one by the clock [nat]."""
 STRETCHES = 40
 """Stretches whose sizes are compared."""
 CORRELATIONS = np.r_[0.0:0.975:0.01, 0.98:0.9981:0.003]
@@ -75,31 +74,53 @@ def estimate_noise(
         if likelier > replace(rough, correlation=best).log_likelihood(clean) + MUCH_LIKELIER:
             rough = Noise(1.0, its_upper, other, np.inf, 0.0, freedom, row_gap, by_rows=True)
             best = other
+    averaged = float(np.median(weight)) > 1.5
+    if resolution > 0 and not averaged:
+        rough = noise_with_rounding(clean, basis, rough, resolution) or rough
+        best = rough.best_correlation
     sigma, tail, moments = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
-    averaged = float(np.median(weight)) > 1.5
     if resolution > 0 and not averaged:
         if sigma**2 < 0.165 * resolution**2 and count >= 60:
             coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
             if coarse is not None:
                 return coarse
         sigma = max(sigma, resolution / np.sqrt(12.0))
-    if best > MODEL_ERROR and unsteadiness(rough.whiten(left)) > UNSTEADY:
+    rounded = rough.white_share > 0.0
+    if best > MODEL_ERROR and unsteadiness(rough.whiten(left), loud_only=rounded) > UNSTEADY:
         # What is left is not noise but error of the model; filtered, it would be fitted by its
         # kinks. Rows count equally then, and noise is what differs from row to row.
         floor = max(_floor(left), resolution / np.sqrt(12.0), 1e-6 * float(np.ptp(angle)), 1e-12)
-        return replace(rough, sigma_deg=floor, correlation=0.0, structured=True)
+        return replace(rough, sigma_deg=floor, correlation=0.0, white_share=0.0, structured=True)
     return replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments)
 
 
-def unsteadiness(white: Floats) -> float:
-    """Scatter of the size of stretches over what it is in steady noise; zero for few rows."""
+def unsteadiness(white: Floats, *, loud_only: bool = False) -> float:
+    """Scatter of the size of stretches over what it is in steady noise; zero for few rows.
+
+    Parameters
+    ----------
+    white : ndarray, shape (n,)
+        Whitened residual.
+    loud_only : bool
+        Only stretches louder than the median count, as where a dial hides the noise of readings
+        at a held torque.
+
+    Returns
+    -------
+    float
+    """
     length = len(white) // STRETCHES
     if length < 5:
         return 0.0
     size = np.abs(white[: STRETCHES * length].reshape(STRETCHES, length)).mean(axis=1)
     expected = np.sqrt((np.pi / 2.0 - 1.0) / length)
-    return float(np.std(np.log(np.maximum(size, 1e-300)))) / float(expected)
+    log_size = np.log(np.maximum(size, 1e-300))
+    scatter = np.std(log_size)
+    if loud_only:
+        louder = np.maximum(log_size - np.median(log_size), 0.0)
+        scatter = np.sqrt(2.0 * np.mean(louder**2))
+    return float(scatter / expected)
 
 
 def _floor(left: Floats) -> float:

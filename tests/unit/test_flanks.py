@@ -1,0 +1,69 @@
+"""The flank in contact: readings taken while the play is crossed are in contact with none."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.diagnosis.prepare.flanks import find_flanks
+from cyclosweep.simulation.effects.history import Flags
+from tests.support.arrays import Floats
+
+PLAY = 28.0
+COMPLIANCE = 2.7
+
+
+@dataclass
+class Line:
+    free_play_deg: float = PLAY
+    compliance_deg_per_nm: float = COMPLIANCE
+
+
+def crossings(size: int = 41, loops: int = 4) -> Floats:
+    """Torque up and down between -20 and 20 N m."""
+    up = np.linspace(-20.0, 20.0, size)
+    return np.tile(np.r_[up, up[-2:0:-1]], loops)
+
+
+def twist(torque: Floats, noise: Floats) -> Floats:
+    return np.asarray(PLAY * np.sign(torque) + COMPLIANCE * torque + noise)
+
+
+def contact(torque: Floats, angle: Floats) -> Flags:
+    return find_flanks(torque, angle, Line()).at(torque, angle)[1]
+
+
+def test_a_reading_on_its_way_to_the_flank_is_not_in_contact() -> None:
+    torque = crossings()
+    angle = twist(torque, 0.05 * np.random.default_rng(1).normal(size=len(torque)))
+    # Readings at zero torque are within the play; beside some of them the flank is nearly reached.
+    lightest = np.flatnonzero(torque == 1.0)[[1, 4]]
+    angle[lightest] -= (1.2, 2.5)
+    found = contact(torque, angle)
+    assert not found[lightest].any()
+    expected = torque != 0.0
+    expected[lightest] = False
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_readings_within_the_width_of_a_loop_are_in_contact() -> None:
+    # Friction: unloading readings lie further within the play than the noise is large.
+    torque = crossings()
+    sense = np.sign(np.diff(torque, prepend=torque[0] - 1.0))
+    angle = twist(torque, 0.6 * sense + 0.02 * np.random.default_rng(2).normal(size=len(torque)))
+    angle[torque == 0.0] = 0.0
+    np.testing.assert_array_equal(contact(torque, angle), torque != 0.0)
+
+
+def test_without_readings_within_the_play_none_is_on_its_way() -> None:
+    torque = crossings(40)
+    angle = twist(torque, 0.05 * np.random.default_rng(3).normal(size=len(torque)))
+    angle[np.flatnonzero(np.abs(torque) < 1.0)[2]] *= 0.95
+    assert contact(torque, angle).all()
+
+
+def test_a_steep_curve_at_small_torque_sampled_closely_is_in_contact() -> None:
+    torque = crossings(801)
+    curve = -2.0 * np.sign(torque) * np.exp(-np.abs(torque) / 0.8)
+    angle = twist(torque, curve + 0.05 * np.random.default_rng(4).normal(size=len(torque)))
+    angle[torque == 0.0] = 0.0
+    np.testing.assert_array_equal(contact(torque, angle), torque != 0.0)
