@@ -186,3 +186,35 @@ def test_interval_score_is_unbiased_with_its_information() -> None:
     assert abs(np.mean(score)) < 4 * np.std(score) / np.sqrt(len(score))
     assert np.mean(score**2) == pytest.approx(np.mean(information), rel=0.05)
     assert np.all(information <= 1 / 0.1**2 + 1e-9)
+
+
+def _steps_and_noise(rho: float, jumps: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Angle over 3,000 rows with white noise on a zero that jumps, or with noise that is slow."""
+    rng = np.random.default_rng(seed)
+    count = 3000
+    if jumps:
+        level = np.repeat(rng.normal(0.0, jumps, count // 100), 100)
+        return level + rng.normal(0.0, 0.05, count), np.r_[0.0, np.ones(count - 1)]
+    slow = np.empty(count)
+    slow[0] = rng.normal(0.0, 0.05)
+    for k in range(1, count):
+        slow[k] = rho * slow[k - 1] + np.sqrt(1 - rho**2) * rng.normal(0.0, 0.05)
+    return slow, np.r_[0.0, np.ones(count - 1)]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_zero_that_jumps_is_no_noise(seed: int) -> None:
+    angle, gap = _steps_and_noise(0.0, 0.3, seed)
+    basis = orthonormal(np.vander(np.linspace(-1, 1, len(angle)), 6))
+    noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(angle)))
+    assert noise.structured
+    assert noise.sigma_deg == pytest.approx(0.05, rel=0.1)
+
+
+@pytest.mark.parametrize("rho", [0.9, 0.97, 0.99])
+def test_slow_noise_is_noise(rho: float) -> None:
+    angle, gap = _steps_and_noise(rho, 0.0, 7)
+    basis = orthonormal(np.vander(np.linspace(-1, 1, len(angle)), 6))
+    noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(angle)))
+    assert not noise.structured
+    assert noise.correlation >= rho - 0.02
