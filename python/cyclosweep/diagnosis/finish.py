@@ -6,8 +6,6 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
-from cyclosweep.diagnosis.whole_loop.findings import hidden_by_friction
-from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
 from cyclosweep.report.summary import do_now, summary_of
 from cyclosweep.result import Answer, NextExperiment, PlayAndStiffness
@@ -85,14 +83,10 @@ def _play_and_stiffness(
     -------
     PlayAndStiffness
     """
-    fitted, problem = concluded.accepted.fit, concluded.search.problem
-    hidden = None
-    if isinstance(fitted, WholeLoopFit):
-        hidden = hidden_by_friction(fitted.problem, fitted.forecast)
     return play_and_stiffness(
-        problem.recording,
+        concluded.search.problem.recording,
         repaired.before.parameters,
         float(drive.ratio),
-        hidden=hidden,
+        hidden=concluded.accepted.fit.hidden_play,
         unsteady=verified.drift is not None,
     )

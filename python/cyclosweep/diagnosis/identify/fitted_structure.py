@@ -227,6 +227,11 @@ class FittedStructure(ABC):
     def run_to_run_errors(self) -> list[tuple[float, float]]:
         """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
 
+    @property
+    def hidden_play(self) -> str | None:
+        """Why play and stiffness cannot be read from the loop; None where they can be."""
+        return None
+
     @abstractmethod
     def findings(self, repeats: Repetition | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Return topics and sentences on the measured loop, where the structure predicts it.

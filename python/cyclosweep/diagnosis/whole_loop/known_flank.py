@@ -22,7 +22,7 @@ from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
-from cyclosweep.diagnosis.whole_loop.findings import findings
+from cyclosweep.diagnosis.whole_loop.findings import findings, hidden_by_friction
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, fit_forecast, refit
 from cyclosweep.diagnosis.whole_loop.run_comparison import steadiness
 from cyclosweep.result import Finding
@@ -153,6 +153,11 @@ class WholeLoopFit(FittedStructure):
     def run_to_run_errors(self) -> list[tuple[float, float]]:
         """Errors of single-run fits: on their own run, and on the worst of its replicates [deg]."""
         return [(each.own_deg, each.other_deg) for each in steadiness(self.forecast)]
+
+    @property
+    def hidden_play(self) -> str | None:
+        """Why play and stiffness cannot be read: friction hardly let the shaft go."""
+        return hidden_by_friction(self.problem, self.forecast)
 
     def findings(self, repeats: Repetition | None, *, unsteady: bool) -> tuple[Finding, ...]:
         """Return topics and sentences on the measured loop.
