@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import shutil
 import socket
 import threading
@@ -57,13 +58,25 @@ def unfinished(path: str | Path) -> Iterator[Path]:
     try:
         yield temporary
         os.replace(temporary, target)
+    except OSError as error:
+        if error.filename is not None and str(error.filename) != str(temporary):
+            raise  # of another file
+        number = error.errno or _number_in(str(error))
+        raise OSError(number, os.strerror(number), str(target)) from error
     except Exception as error:
         # A library that writes may say of a full disk that the file is broken.
-        if isinstance(error, OSError) or shutil.disk_usage(target.parent).free >= NO_SPACE_LEFT:
+        if shutil.disk_usage(target.parent).free >= NO_SPACE_LEFT:
             raise
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target)) from error
     finally:
-        temporary.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # not there, or not even its folder
+            temporary.unlink()
+
+
+def _number_in(text: str) -> int:
+    """Number of the system's error in the words of a library in Rust."""
+    found = re.search(r"\(os error (\d+)\)", text)
+    return int(found[1]) if found else errno.EIO
 
 
 def write_text(path: str | Path, text: str) -> None:

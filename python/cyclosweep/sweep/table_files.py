@@ -105,9 +105,12 @@ def write_table(frame: pl.DataFrame, path: str | Path) -> None:
     if ending != ".parquet":
         frame = frame.with_columns(pl.col(words).cast(pl.String))
     if ending == ".xlsx":
+        import xlsxwriter  # type: ignore[import-untyped]
+
         sheet = io.BytesIO()
-        # As many digits as a number has, not the three that polars would show.
-        frame.write_excel(sheet, dtype_formats={pl.Float64: "General"}, autofit=True)
+        # As many digits as a number has, not the three that polars would show; no files beside it.
+        with xlsxwriter.Workbook(sheet, {"in_memory": True}) as book:
+            frame.write_excel(book, dtype_formats={pl.Float64: "General"}, autofit=True)
         write_bytes(path, sheet.getvalue())
         return
     with unfinished(path) as temporary:
