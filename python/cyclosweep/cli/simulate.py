@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
@@ -13,6 +15,8 @@ from cyclosweep.cli.output import fail
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
+    from polars import DataFrame
+
     from cyclosweep.design.drive import Drive
     from cyclosweep.recording import Recording
     from cyclosweep.simulation.model import Model
@@ -37,18 +41,60 @@ def simulate(
         float,
         typer.Option("--crank-deg", help="Crank's angle in the middle, component model only."),
     ] = 0.0,
+    largest_load_nm: Annotated[
+        float | None,
+        typer.Option(
+            "--largest-load-nm", metavar="NM", help="Scale the programme to this largest torque."
+        ),
+    ] = None,
+    sheet: Annotated[
+        Path | None,
+        typer.Option("--sheet", metavar="SHEET.csv", help="Sheet to fill in readings by hand."),
+    ] = None,
+    lever_arm: Annotated[
+        float | None,
+        typer.Option("--lever-arm", metavar="M", help="Loads of the sheet as weights in kg."),
+    ] = None,
 ) -> None:
-    """Predict the twist of a load programme by a drive's model or by a repaired one."""
+    """Predict the twist of a load programme by a drive's model or by a repaired one.
+
+    With --sheet the programme is also written as a sheet with an empty column for the readings.
+    """
+    from cyclosweep.design.drive import Drive
+    from cyclosweep.recording.programme import beyond_rating, scaled_programme, sheet_of
     from cyclosweep.simulation.simulate import simulate as run
 
     if not program.is_file():
         raise InputError(f"{program}: no such file")
-    _refuse_output(out, (program, _metadata(program), Path(model)))
+    read = (program, _metadata(program), Path(model))
+    _refuse_output("--out", out, read)
+    if sheet is not None:
+        _refuse_output("--sheet", sheet, (*read, out))
+        if sheet.exists():
+            raise InputError(f"--sheet: {sheet} exists, it may hold readings; give another name")
+    elif lever_arm is not None:
+        raise InputError("--lever-arm: found without --sheet, whose loads it turns into weights")
     chosen = _model(model)
     programme = _programme(program, chosen)
+    if largest_load_nm is not None:
+        programme = scaled_programme(programme, largest_load_nm)
+    if isinstance(chosen, Drive) and (warning := beyond_rating(programme, chosen)):
+        print(f"Warning: {warning}", file=sys.stderr)
+    filled_in = None if sheet is None else sheet_of(programme, lever_arm)
     if law == "components":
         chosen = _of_components(chosen, model, programme.side, crank_deg)
-    table = run(chosen, programme, predict).to_frame()
+    _write(run(chosen, programme, predict).to_frame(), out)
+    if sheet is not None and filled_in is not None:
+        _write(filled_in, sheet)
+        side = "" if programme.side == "input" else " --side output"
+        arm = "" if lever_arm is None else f" --lever-arm {lever_arm:g}"
+        settings = sheet.with_suffix(".toml")
+        print(f"Fill in the angles of {sheet}. Next: cyclosweep inspect {quote(str(sheet))} "
+              f"--drive {quote(model)}{side}{arm} --out {quote(str(settings))}")  # fmt: skip
+
+
+def _write(table: DataFrame, out: Path) -> None:
+    """Write a table whole or not at all."""
     try:
         with unfinished(out) as file:
             table.write_csv(file)
@@ -56,12 +102,19 @@ def simulate(
         fail(f"{out}: {error.strerror or error}", 1)
 
 
-def _refuse_output(out: Path, inputs: tuple[Path, ...]) -> None:
+def _refuse_output(option: str, out: Path, inputs: tuple[Path, ...]) -> None:
     """Refuse to write over a file that is read, or where no file can be."""
-    if any(path.exists() and out.exists() and path.samefile(out) for path in inputs):
-        raise InputError(f"--out: found {out}, which is read, expected another file")
+    if any(_same(path, out) for path in inputs):
+        raise InputError(f"{option}: found {out}, which is read, expected another file")
     if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
+        raise InputError(f"{option}: found {out}, expected a file in a folder that exists")
+
+
+def _same(path: Path, other: Path) -> bool:
+    """Whether two paths are one file, whether it exists or not."""
+    if path.exists() and other.exists():
+        return path.samefile(other)
+    return path.resolve() == other.resolve()
 
 
 def _metadata(program: Path) -> Path:

@@ -2,6 +2,11 @@
 
 use thiserror::Error;
 
+/// A length as drive files have it (mm), without the digits that only the conversion makes.
+fn mm(metres: f64) -> f64 {
+    (metres * 1e9).round() / 1e6
+}
+
 /// A physical or formal reason to refuse a design.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum DesignError {
@@ -56,7 +61,7 @@ pub enum DesignError {
     },
     /// The disc does not fit inside the circle of the ring pins.
     #[error(
-        "disc of radius {disc_radius} m does not fit inside the ring-pin circle of radius {ring_radius} m"
+        "disc of radius {} mm (disc_outer_radius_mm) does not fit inside the ring-pin circle of radius {} mm (ring_pin_circle_radius_mm)", mm(*disc_radius), mm(*ring_radius)
     )]
     DiscExceedsRing {
         /// Disc's outer radius (m).
@@ -73,7 +78,7 @@ pub enum DesignError {
         ratio: f64,
     },
     /// The pin's bore leaves no wall.
-    #[error("output pin bore {bore} m leaves no wall in a pin of {diameter} m")]
+    #[error("output pin bore {} mm leaves no wall in a pin of {} mm", mm(*bore), mm(*diameter))]
     PinBoreTooLarge {
         /// Bore diameter (m).
         bore: f64,
@@ -81,26 +86,26 @@ pub enum DesignError {
         diameter: f64,
     },
     /// Neighbouring holes of a disc overlap.
-    #[error("neighbouring holes overlap: web {web} m")]
+    #[error("neighbouring holes overlap: web {} mm; take fewer or thinner output pins or a larger output_pin_circle_radius_mm", mm(*web))]
     HolesOverlap {
         /// Material between two holes (m), zero or negative here.
         web: f64,
     },
     /// The holes break through the disc's rim.
-    #[error("holes break through the disc's rim: web {web} m")]
+    #[error("holes break through the disc's rim: web {} mm; take thinner output pins, a smaller output_pin_circle_radius_mm or a larger disc_outer_radius_mm", mm(*web))]
     HoleBreaksRim {
         /// Material between hole and rim (m), zero or negative here.
         web: f64,
     },
     /// The holes break into the disc's bore.
-    #[error("holes break into the disc's bore: web {web} m")]
+    #[error("holes break into the disc's bore: web {} mm; take thinner output pins, a larger output_pin_circle_radius_mm or a smaller disc_bore_radius_mm", mm(*web))]
     HoleBreaksBore {
         /// Material between hole and bore (m), zero or negative here.
         web: f64,
     },
     /// The shaft's end at the flange reaches beyond the pin circle.
     #[error(
-        "flange cuts the pin circle: the shaft ends with a radius of {flange_radius} m, the output pins stand on {pin_circle_radius} m"
+        "flange cuts the pin circle: the shaft ends with a diameter of {} mm, the circle of the output pins has {} mm; make the last shaft segment's diameter smaller or output_pin_circle_radius_mm larger", mm(2.0 * flange_radius), mm(2.0 * pin_circle_radius)
     )]
     FlangeCutsPinCircle {
         /// Radius of the shaft's end at the flange (m).
@@ -115,7 +120,7 @@ pub enum DesignError {
         poisson: f64,
     },
     /// The shaft's diameter falls on the way from the free end to the flange.
-    #[error("shaft steps down from {from} m to {to} m towards the flange; Eq. (6) needs d < D")]
+    #[error("shaft steps down from {} mm to {} mm towards the flange; Eq. (6) needs d < D", mm(*from), mm(*to))]
     ShaftStepNotAscending {
         /// Diameter before the step (m).
         from: f64,
@@ -123,7 +128,7 @@ pub enum DesignError {
         to: f64,
     },
     /// The keyway reaches the shaft's axis.
-    #[error("keyway of depth {depth} m reaches the axis of a shaft of {diameter} m")]
+    #[error("keyway of depth {} mm reaches the axis of a shaft of {} mm", mm(*depth), mm(*diameter))]
     KeywayTooDeep {
         /// Depth of the keyway (m).
         depth: f64,
