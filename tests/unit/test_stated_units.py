@@ -9,6 +9,7 @@ import pytest
 
 import cyclosweep as cs
 from tests.support.arrays import present
+from tests.unit.test_inspect import run
 
 TABLE = "Drehmoment;Winkel\nlb in;arcmin\n" + "".join(f"{t};{3 * t}\n" for t in range(1, 30))
 
@@ -151,3 +152,13 @@ def test_swapped_names_are_in_the_verdict_line(tmp_path: Path) -> None:
     found = cs.diagnose(cs.Recording.read(path), cs.Drive.reference_87())
     assert [doubt.quantity for doubt in found.answer.plausibility] == ["columns"]
     assert "by their names they are swapped" in found.answer.statement
+
+
+def test_a_file_of_names_alone_is_said_once(tmp_path: Path) -> None:
+    path = tmp_path / "empty.csv"
+    path.write_text("torque_nm,angle_deg\n")
+    shown = run("diagnose", str(path), "--drive", "reference-87", "--out", str(tmp_path / "out"))
+    assert " ".join(shown.stdout.replace("│", " ").split()).count("0 samples") == 1
+    looked = run("inspect", str(path), "--drive", "reference-87")
+    assert looked.returncode == 2
+    assert "only the names of columns" in looked.stderr

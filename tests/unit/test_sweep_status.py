@@ -45,7 +45,11 @@ REFUSED: list[tuple[str, dict[str, float], str]] = [
     ("pin_count_out_of_range", {"output_pin_count": 8.5}, "whole number"),
     ("eccentricity_too_large_for_ring", {"eccentricity_mm": 0.86}, "K1"),
     ("eccentricity_too_large_for_ring", {"eccentricity_mm": 75.0 / 88.0}, "K1"),
-    ("flange_cuts_pin_circle", {"shaft_6_end_diameter_mm": 90.1}, "0.04505 m, the output pins"),
+    (
+        "flange_cuts_pin_circle",
+        {"shaft_6_end_diameter_mm": 90.1},
+        "90.1 mm, the circle of the output pins",
+    ),
     ("disc_exceeds_ring", {"disc_outer_radius_mm": 75.0}, "ring-pin circle"),
     ("hole_never_crosses_pitch_circle", {"output_pin_circle_radius_mm": 0.3}, "pitch circle"),
     ("pin_bore_too_large", {"output_pin_bore_mm": 16.0}, "no wall"),

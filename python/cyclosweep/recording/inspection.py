@@ -176,6 +176,8 @@ def inspect(
     if in_force is not None:
         in_force.refuse_missing_columns(path, table)
     numbers, bad = numbers_of(table)
+    if numbers and not any(len(values) for values in numbers.values()):
+        raise InputError(f"{path}: only the names of columns, expected readings below them")
     choice = choose(table, numbers, asked)
     made = propose(
         table, numbers, choice, known, bad, {} if in_force is None else in_force.columns(table)

@@ -78,7 +78,7 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         ("Possible (95 % upper bound)", sentences.possible(data)[:6]),
         ("Not found (95 % upper bound)", sentences.bounds(data)[:6]),
         ("What this recording cannot show", sentences.untestable(data)[:4]),
-        ("Remarks on the recording", [fault.reason for fault in data.recording.faults][:4]),
+        ("Remarks on the recording", _remarks(data)),
     ):
         if lines:
             yield _bullets(heading, lines)
@@ -86,6 +86,13 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         yield Text.assemble(("\nNext experiment\n", "bold"), plan)
     if result.statement != summary_of(result):
         yield Text.assemble(("\nThe answer in full\n", "bold"), result.statement)
+
+
+def _remarks(data: ReportData) -> list[str]:
+    """First remarks on the recording, without the one that is the verdict's own statement."""
+    said = data.result.statement
+    reasons = [fault.reason for fault in data.recording.faults]
+    return [reason for reason in reasons if reason.rstrip(".") not in said][:4]
 
 
 def _facts(data: ReportData) -> Iterator[RenderableType]:
