@@ -9,6 +9,7 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.recording.nominal import slope_of
 from cyclosweep.recording.programme import beyond_rating, scaled_programme, sheet_of
 from tests.support.arrays import present
 from tests.unit.test_inspect import run
@@ -102,3 +103,11 @@ def test_programmes_begin_unloaded_at_positions_that_show_every_low_order(rig: s
         torque = programme.torque_nm[programme.run == k]
         assert torque[0] == 0
         assert not np.any(torque[1:] * torque[:-1] < 0)  # zero stands between the signs
+
+
+def test_readings_without_load_do_not_move_the_slope() -> None:
+    torque = np.array([0.0, 2, 4, 6, 4, 2, 0, -2, -4, -6, -4, -2, 0, 2, 4, 6])
+    model = cs.Model.of_drive(cs.Drive.reference_87(), "input")
+    angle = present(cs.simulate(model, cs.Recording.from_arrays(torque)).angle_deg)
+    slope = slope_of(torque, angle)
+    assert slope == pytest.approx(model.compliance_deg_per_nm, rel=1e-9)

@@ -9,6 +9,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.design.nominal_line import Side
 from cyclosweep.errors import DesignError
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.structure import DEAD_ZONE_SHARE
 from cyclosweep.recording.units import factor_of
 
 __all__ = ["Guess", "explain", "slope_of", "unit_by_steps"]
@@ -99,6 +100,8 @@ def slope_of(torque_nm: Floats, angle: Floats) -> float | None:
     """
     known = np.isfinite(torque_nm) & np.isfinite(angle)
     torque, angle = torque_nm[known], angle[known]
+    loaded = np.abs(torque) > DEAD_ZONE_SHARE * np.abs(torque).max(initial=0.0)
+    torque, angle = torque[loaded], angle[loaded]  # without load the twist lies within the play
     if len(torque) < 3 or not np.ptp(torque) or not np.ptp(angle):
         return None
     columns = [torque, np.ones_like(torque)]
