@@ -56,7 +56,8 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     code, words, _ = verdict_words(result)
     style = _STYLES[code]
     statement = Text(summary_of(result))
-    if now := do_now(result):
+    now = do_now(result)
+    if now:
         statement.append(f"\n\n{now}")
     title = Text(f"{words} ({code})", style=f"bold {style}")
     yield Panel(
@@ -82,9 +83,10 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     ):
         if lines:
             yield _bullets(heading, lines)
-    if plan := sentences.next_experiment(data):
+    if (plan := sentences.next_experiment(data)) and plan != now:
         yield Text.assemble(("\nNext experiment\n", "bold"), plan)
-    if result.statement != summary_of(result):
+    said = result.statement.removeprefix(f"{data.recording.name}: ")
+    if said.casefold() != summary_of(result).casefold():
         yield Text.assemble(("\nThe answer in full\n", "bold"), result.statement)
 
 
