@@ -336,3 +336,19 @@ def test_loads_in_both_directions(tmp_path: Path) -> None:
     assert {"twist_1tn_deg", "twist_minus_2p5tn_deg"} < set(
         cs.scan_dataset(out).collect_schema().names()
     )
+
+
+def test_numbers_of_a_narrow_table_are_not_broken() -> None:
+    import io
+
+    import polars as pl
+    from rich.console import Console
+
+    from cyclosweep.cli.frames import titled
+
+    columns = {f"a_heading_that_is_long_{k}": [3.6245e5, -1.2345e-7] for k in range(5)}
+    text = io.StringIO()
+    Console(file=text, width=75).print(titled("numbers", pl.DataFrame(columns)))
+    assert text.getvalue().count("3.6245e+05") == 5
+    assert text.getvalue().count("-1.2345e-07") == 5
+    assert max(map(len, text.getvalue().splitlines())) <= 75

@@ -295,3 +295,19 @@ def test_bad_input_is_one_line_and_leaves_nothing(case: str, folder: Path) -> No
     [line] = found.stderr.strip().splitlines()
     assert words in line
     assert sorted(folder.parent.iterdir()) == before
+
+
+def test_an_input_that_follows_from_others_has_no_share_of_its_own(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(
+        'drive = "reference-87"\n[sample]\nmethod = "sobol"\ncount = 200\n'
+        "[axes]\neccentricity_mm = { from = 0.4, to = 0.8 }\n"
+        '[derived]\ndisc_outer_radius_mm = "60 - 2 * eccentricity_mm"\n'
+        '[objective]\nmaximise = "output_stiffness_nm_per_arcmin"\n'
+    )
+    cs.sink(cs.Study.from_toml(tmp_path / "study.toml"), tmp_path / "folder")
+    stored = cs.open_study(tmp_path / "folder")
+    assert "disc_outer_radius_mm" in stored.axes
+    found = aggregate(stored, open_table(tmp_path / "folder"), OUTCOMES[:1])
+    assert [axis.name for axis in found.axes] == ["eccentricity_mm"]
+    page = cs.report_study(tmp_path / "folder", tmp_path / "report.html").read_text("utf-8")
+    assert "disc_outer_radius_mm" in page

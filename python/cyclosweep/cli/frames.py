@@ -29,10 +29,15 @@ def titled(title: str, frame: pl.DataFrame) -> Table:
     from rich.table import Table
 
     table = Table(title=title, title_justify="left", box=box.SIMPLE)
-    for name, dtype in frame.schema.items():
-        table.add_column(name, justify="right" if dtype.is_numeric() else "left", overflow="fold")
-    for row in frame.iter_rows():
-        table.add_row(*(_text(value) for value in row))
+    rows = [[_text(value) for value in row] for row in frame.iter_rows()]
+    for k, (name, dtype) in enumerate(frame.schema.items()):
+        if dtype.is_numeric():  # headings are broken where there is no room, numbers never
+            longest = max((len(row[k]) for row in rows), default=1)
+            table.add_column(name, justify="right", overflow="fold", min_width=longest)
+        else:
+            table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
     return table
 
 

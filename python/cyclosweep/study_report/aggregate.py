@@ -175,7 +175,9 @@ def aggregate(
     variance).
     """
     values = [number(text, rows.schema, where="outcome") for text in outcomes]
-    names = [name for name in study.axes if name in rows.schema]
+    # What follows from other inputs has no share of its own.
+    drawn = {axis["name"] for axis in study.definition["axes"]}
+    names = [name for name in study.axes if name in drawn and name in rows.schema]
     numbers = [pl.col(name).to_physical().cast(pl.Float64) if isinstance(rows.schema[name], pl.Enum)
                else pl.col(name).cast(pl.Float64) for name in names]  # fmt: skip
     extents = _extents(study, rows, outcomes, values, names, numbers, progress)
