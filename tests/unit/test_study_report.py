@@ -14,6 +14,7 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.design.parts import Engine
 from cyclosweep.explore.influence import variance_share
 from cyclosweep.explore.tables import open_table
 from cyclosweep.study_report.aggregate import CELLS, Aggregate, aggregate
@@ -256,6 +257,28 @@ def test_command_with_objectives_limits_variants_and_tolerances(folder: Path) ->
     assert "least output_pin_diameter_mm" in text
     assert 'id="variant-7"' in text
     assert "±0.02" in text
+
+
+def test_an_objective_of_the_user_s_own_says_why_no_pieces_are_made(tmp_path: Path) -> None:
+    space = cs.Space.grid(cs.Drive.reference_87(), output_pin_diameter_mm=[14.0, 15.0])
+    own = {"area": "output_pin_diameter_mm * output_pin_diameter_mm"}
+    study = cs.Study.of(space, columns=own, objective=cs.Objective("area"))
+    cs.sink(study, tmp_path / "s")
+    page = cs.report_study(tmp_path / "s", tmp_path / "r.html").read_text("utf-8")
+    assert "None: an objective or limit reads a column of your own" in page
+
+
+@pytest.mark.parametrize("solver", ["quadratic", "full"])
+def test_pieces_are_solved_by_the_study_s_engine(solver: Engine, tmp_path: Path) -> None:
+    drive = cs.Drive.reference_87().replace(ring_pin_radius_mm=2.0, disc_width_mm=12.0)
+    space = cs.Space.grid(drive, output_pin_diameter_mm=[15.0, 16.0])
+    objective = cs.Objective("loaded_twist_arcmin")
+    study = cs.Study.of(space, model="components", solver=solver, objective=objective)
+    cs.sink(study, tmp_path / "s")
+    assert cs.open_study(tmp_path / "s").solver == solver
+    row = cs.open_study(tmp_path / "s").row(1)
+    robust = next(each for each in gather(tmp_path / "s").robust if each.variant == 1)
+    assert robust.nominal["loaded_twist_arcmin"] == row["loaded_twist_arcmin"]
 
 
 def test_a_study_with_nothing_feasible_has_a_report(tmp_path: Path) -> None:

@@ -171,6 +171,7 @@ def robust_variants(
             seed=1,
             loads_tn=study.loads_tn,
             model=study.model,
+            solver=study.solver,
             progress=False,
         )
         at = [name for name in part.columns if name not in inputs]

@@ -238,7 +238,7 @@ def _unit(unit: str) -> str:
 
 def _robust(facts: StudyFacts) -> str:
     if not facts.robust or facts.tolerances is None:
-        return ""
+        return f'<p class="soft">{escape(_why_not_robust(facts))}</p>'
     columns = ["variant"]
     for each in facts.objectives:
         columns += [f"{label(each.column)}, as drawn", "5 %", "50 %", "95 %"]
@@ -267,6 +267,18 @@ def _robust(facts: StudyFacts) -> str:
             words=frozenset({len(columns) + 1}),
             lead=frozenset({0}),
         )
+    )
+
+
+def _why_not_robust(facts: StudyFacts) -> str:
+    """Why no candidates were made within tolerances."""
+    if facts.tolerances is None:
+        return "None: no dimension varies that could deviate; --tolerances FILE.toml gives some."
+    if not facts.aggregate.feasible:
+        return "None: no variant can be built and keeps the limits."
+    return (
+        "None: an objective or limit reads a column of your own, which a stored study does not "
+        "tell how to compute; --pareto and --limit take the expression itself."
     )
 
 

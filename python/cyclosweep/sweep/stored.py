@@ -17,6 +17,7 @@ from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.numbers import whole_number
+from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError, path_of
 from cyclosweep.sweep.dataset import parts_of, read_footer, read_manifest
 from cyclosweep.sweep.objective import Objective
@@ -85,6 +86,12 @@ class StoredStudy:
         """Whether the component model's columns are there."""
         found = self.definition.get("model", "published")
         return "components" if found == "components" else "published"
+
+    @property
+    def solver(self) -> Engine | None:
+        """The engine that solved the component model; None without it."""
+        found = self.definition.get("solver")
+        return "full" if found == "full" else "quadratic" if found == "quadratic" else None
 
     @property
     def loads_tn(self) -> tuple[float, ...]:
