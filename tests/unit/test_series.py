@@ -12,9 +12,11 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.atomic import write_text
+from cyclosweep.cli.diagnose import shortened
 from cyclosweep.diagnosis.folder import recordings_in
 from cyclosweep.diagnosis.series import conditions_of, small_loops_of, trends
 from cyclosweep.recording.metadata import Metadata
+from cyclosweep.report.series_page import write_series_page
 from cyclosweep.report.straight_lines import straight_lines
 
 SHARED = Path(os.environ.get("CYCLOSWEEP_SHARED", Path(__file__).parents[3] / "shared"))
@@ -202,3 +204,74 @@ def test_small_loops_are_read_for_lost_motion_and_nothing_else(tmp_path: Path) -
     assert small_loops_of(path, Metadata(), None) == {}
     with pytest.raises(cs.InputError, match="no row"):
         small_loops_of(path, meta.model_copy(update={"lost_motion_runs": [7]}), None)
+
+
+def few(*values: float, width: float = 0.1) -> list[dict[str, float | str]]:
+    return [
+        {"dose": float(k), "friction_nm": v, "friction_nm_low": v - width,
+         "friction_nm_high": v + width}
+        for k, v in enumerate(values)
+    ]  # fmt: skip
+
+
+def test_three_or_four_recordings_say_their_order_and_no_trend() -> None:
+    (rising,) = trends(few(6.87, 7.20, 7.80, 8.27), ["dose"])
+    assert rising.text.startswith("Friction rises with dose from each recording to the next, 6.87 ")
+    assert "order 4 recordings so in 8.3 % of cases" in rising.text
+    assert "intervals of the first and the last lie apart" in rising.text
+    assert "4 recordings are too few to state a trend: 6 or more are needed" in rising.text
+    (wide,) = trends(few(6.87, 7.20, 7.80, width=2.0), ["dose"])
+    assert "intervals of the first and the last overlap" in wide.text
+    assert "33 % of cases" in wide.text
+    (mixed,) = trends(few(6.87, 7.80, 7.20, 6.5), ["dose"])
+    assert "Friction neither rises nor falls throughout with dose" in mixed.text
+    bare = [{"dose": row["dose"], "friction_nm": row["friction_nm"]} for row in few(3, 2, 1)]
+    (falling,) = trends(bare, ["dose"])
+    assert "falls with dose" in falling.text
+    assert "no intervals to compare" in falling.text
+    assert trends(few(1.0, 2.0), ["dose"]) == []
+
+
+def row(name: str, **values: object) -> dict[str, object]:
+    return {"recording": name, "status": "ok", "verdict": "UNKNOWN_PHYSICS", "effects": "creep",
+            "side": "output", "friction_nm": 4.5, "play_deg": 3.07} | values  # fmt: skip
+
+
+def page_of(tmp_path: Path, rows: list[dict[str, object]]) -> str:
+    write_series_page(tmp_path / "index.html", rows, [], [])
+    return (tmp_path / "index.html").read_text("utf-8")
+
+
+def test_the_page_says_verdicts_in_words_and_what_to_check(tmp_path: Path) -> None:
+    text = page_of(tmp_path, [row("a", remarks="the compliance is 2.54 times"), row("b")])
+    assert "Known effects found, and something without a name" in text
+    assert "UNKNOWN_PHYSICS" not in text
+    assert "<h2>Check first</h2><ul><li>A: the compliance is 2.54 times</li></ul>" in text
+    assert "<h2>Every recording</h2>" in text
+
+
+def test_a_measure_that_nobody_has_makes_no_column(tmp_path: Path) -> None:
+    text = page_of(tmp_path, [row("a"), row("b")])
+    assert "lost motion" not in text
+    assert "()" not in text
+    assert "lost motion (deg)" in page_of(tmp_path, [row("a", lost_motion_deg=0.5)])
+
+
+def test_recordings_at_the_input_stand_apart_with_how_they_were_read(tmp_path: Path) -> None:
+    by_hand = row("lever", side="input", read_by="published model", friction_nm=None)
+    none = row("stuck", not_read="friction hides play and stiffness", play_deg=None)
+    text = page_of(tmp_path, [row("a"), by_hand, none])
+    output, other = (text.index(f"Measured at the {side} shaft") for side in ("output", "input"))
+    assert output < text.index(">a</a>") < other < text.index(">lever</a>")
+    assert "Lever: play and compliance are those of the published model" in text
+    assert "Stuck: a value is missing because friction hides play and stiffness" in text
+
+
+def test_names_in_the_terminal_are_not_broken() -> None:
+    names = [f"2024-07-12__14-07-4{k}__torqueramp__conic_{k}pre1" for k in range(3)]
+    assert shortened(names, 60) == names
+    short = shortened(names, 36)
+    assert short == [f"…4{k}__torqueramp__conic_{k}pre1" for k in range(3)] or all(
+        len(each) <= 36 and each.endswith("pre1") for each in short
+    )
+    assert shortened(["alone_and_much_too_long"], 5) == ["alone_and_much_too_long"]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -21,6 +22,17 @@ from cyclosweep.cli.output import (
 )
 from cyclosweep.display import shown_steps
 from cyclosweep.errors import DesignError, InputError
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from cyclosweep.diagnosis.folder import Series
+
+
+ROOM_OF_VALUES = 76
+"""Columns of a terminal that verdict, conditions and values of a folder take."""
+SHORTEST_NAME = 16
+"""Columns that the name of a recording has in any case."""
 
 
 @dataclass(frozen=True)
@@ -165,10 +177,7 @@ def _diagnose_folder(
     recordings: list[Path], out: Path, job: _Job, workers: int, fresh: bool
 ) -> None:
     """Diagnose all recordings of a folder and print what the table across them shows."""
-    from rich.table import Table
-
     from cyclosweep.diagnosis.folder import diagnose_folder, recordings_in
-    from cyclosweep.report.wording import number
 
     paths = [
         path for each in recordings for path in (recordings_in(each) if each.is_dir() else [each])
@@ -192,20 +201,10 @@ def _diagnose_folder(
                   for each in series.trends]  # fmt: skip
         print_json({"table": series.table.to_dicts(), "trends": trends})
     else:
-        table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
-        shown = [name for name in ("recording", *series.conditions, "verdict", "friction_nm",
-                                   "play_deg", "loop_compliance_deg_per_nm")
-                 if name in series.table.columns]  # fmt: skip
-        for name in shown:
-            table.add_column(name.replace("_", " "), overflow="fold")
+        print_tables([_folder_table(series)])
         for row in series.table.to_dicts():
-            table.add_row(
-                *(
-                    number(row[n]) if isinstance(row[n], float) else str(row[n] or "–")
-                    for n in shown
-                )
-            )
-        print_tables([table])
+            if row.get("remarks"):
+                print(f"Check first, {row['recording']}: {row['remarks']}")
         for trend in series.trends:
             print(trend.text)
         print(f"Written: {out / 'index.html'}, table.csv, table.parquet")
@@ -215,3 +214,53 @@ def _diagnose_folder(
             f"{out / 'table.csv'}",
             2,
         )
+
+
+def _folder_table(series: Series) -> Table:
+    """Table across the recordings: conditions, verdict in words, friction, play, compliance."""
+    from rich.table import Table
+
+    from cyclosweep.report.series_page import heading, verdict_of
+    from cyclosweep.report.wording import number, plain
+    from cyclosweep.result.series import MEASURES
+
+    rows = series.table.to_dicts()
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+    names = [str(row["recording"]) for row in rows]
+    room = max(shutil.get_terminal_size().columns - ROOM_OF_VALUES, SHORTEST_NAME)
+    table.add_column("recording", no_wrap=True)
+    for condition in series.conditions:
+        table.add_column(plain(condition))
+    table.add_column("verdict")
+    measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
+    for measure in measures:
+        table.add_column(heading(measure), justify="right")
+    for name, row in zip(shortened(names, room), rows, strict=True):
+        values = [row.get(key) for key in (*series.conditions, *measures)]
+        cells = [
+            number(value) if isinstance(value, float) else str("–" if value is None else value)
+            for value in values
+        ]
+        cells.insert(len(series.conditions), verdict_of(row))
+        table.add_row(name, *cells)
+    return table
+
+
+def shortened(names: list[str], room: int) -> list[str]:
+    """Names without what all of them begin with, where they are longer than the room for them.
+
+    Examples
+    --------
+    >>> shortened(["2024-07-12_conic_1", "2024-07-12_conic_2"], 12)
+    ['…12_conic_1', '…12_conic_2']
+    """
+    if len(names) < 2 or max(map(len, names)) <= room:
+        return names
+    letters = enumerate(zip(*names, strict=False))
+    common = next((k for k, each in letters if len(set(each)) > 1), min(map(len, names)))
+    cuts = [k + 1 for k, letter in enumerate(names[0][:common]) if letter in "_- "]
+    fit = [cut for cut in cuts if max(map(len, names)) - cut < room]
+    cut = (fit or cuts[-1:] or [0])[0]
+    if cut < 2:
+        return names
+    return [f"…{name[cut:]}" for name in names]

@@ -16,13 +16,15 @@ from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.lost_motion import lost_motion_deg
 from cyclosweep.report.play_and_stiffness import mean_and_interval
 from cyclosweep.result import PlayAndStiffness
-from cyclosweep.result.series import MEASURES, Level, Trend
+from cyclosweep.result.series import FEWEST, MEASURES, Level, Trend
 
 Row = dict[str, Any]
 
 READ_BY = {True: "straight lines", False: "published model"}
 """How play and compliance were read, by whether lines through the branches could be laid."""
 
+LEAST_LEVELS = 3
+"""Fewest values of a condition that make a trend."""
 PERMUTATIONS = 9999
 """Random orders by which a trend is judged: the smallest probability is one in ten thousand."""
 
@@ -151,6 +153,7 @@ def row_of(found: Diagnosis) -> Row:
     for effect in answer.effects:
         row[f"{effect.name}_deg"] = effect.size_deg.estimate
         row[f"{effect.name}_deg_low"], row[f"{effect.name}_deg_high"] = effect.size_deg.ci95
+    row["summary"] = answer.summary
     row["remarks"] = "; ".join(doubt.text for doubt in answer.plausibility)
     return row
 
@@ -174,7 +177,8 @@ def trends(rows: Sequence[Row], conditions: Sequence[str], seed: int = 0) -> lis
     Returns
     -------
     list of Trend
-        One for each condition with three values or more and measure that six recordings have.
+        One for each condition with three values or more. Of fewer than six recordings it says the
+        order alone: its probability is not tested.
     """
     found: list[Trend] = []
     for condition in conditions:
@@ -185,7 +189,7 @@ def trends(rows: Sequence[Row], conditions: Sequence[str], seed: int = 0) -> lis
                 for row in rows
                 if _is_number(row.get(condition)) and _is_number(row.get(measure))
             ]
-            if len({row[condition] for row in known}) < 3 or len(known) < 6:
+            if len({row[condition] for row in known}) < LEAST_LEVELS:
                 continue
             groups: dict[tuple[Any, ...], list[Row]] = {}
             for row in known:
@@ -241,15 +245,42 @@ def _trend(
         rising=rising,
         p_value=float((extreme + 1) / (PERMUTATIONS + 1)),
         levels=tuple(levels),
+        recordings=len(known),
+        apart=_apart(known, condition, measure),
     )
+
+
+def _apart(known: Sequence[Row], condition: str, measure: str) -> bool | None:
+    """Whether the intervals of the recordings at both ends of a condition lie apart.
+
+    Parameters
+    ----------
+    known : sequence of dict
+        Rows that have both.
+    condition, measure : str
+        Columns.
+
+    Returns
+    -------
+    bool or None
+        None where one of them has no interval.
+    """
+    ends = (min(known, key=lambda row: row[condition]), max(known, key=lambda row: row[condition]))
+    (low, high), (other_low, other_high) = (
+        (row.get(f"{measure}_low"), row.get(f"{measure}_high")) for row in ends
+    )
+    if low is None or high is None or other_low is None or other_high is None:
+        return None
+    return bool(high < other_low or other_high < low)
 
 
 def _holm(found: Sequence[Trend]) -> list[Trend]:
     """Correct the probabilities of all trends for their number (Holm 1979)."""
-    order = sorted(range(len(found)), key=lambda k: found[k].p_value)
+    tested = [k for k, trend in enumerate(found) if trend.recordings >= FEWEST]
+    order = sorted(tested, key=lambda k: found[k].p_value)
     corrected, largest = list(found), 0.0
     for place, k in enumerate(order):
-        largest = max(largest, min(1.0, found[k].p_value * (len(found) - place)))
+        largest = max(largest, min(1.0, found[k].p_value * (len(tested) - place)))
         corrected[k] = replace(found[k], p_value=largest)
     return corrected
 
@@ -262,5 +293,5 @@ def _is_number(value: object) -> bool:
 def columns_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Columns of all rows, in the order in which they first appear; remarks and reason last."""
     names = list(dict.fromkeys(name for row in rows for name in row))
-    last = [name for name in ("remarks", "reason") if name in names]
+    last = [name for name in ("summary", "remarks", "reason") if name in names]
     return [name for name in names if name not in last] + last

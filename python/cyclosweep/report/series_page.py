@@ -8,15 +8,20 @@ from typing import Any
 import numpy as np
 
 from cyclosweep.atomic import write_text
-from cyclosweep.page import document
+from cyclosweep.page import bullets, document
 from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
 from cyclosweep.report.svg import figure_svg
-from cyclosweep.report.wording import interval, number, plain
+from cyclosweep.report.wording import KNOWN_AND_MORE, VERDICTS, interval, number, plain
 from cyclosweep.result.series import MEASURES, Trend
 
 Row = Mapping[str, Any]
 
-UNITS = {"friction_nm": "N m", "play_deg": "deg", "loop_compliance_deg_per_nm": "deg/(N m)"}
+UNITS = {
+    "friction_nm": "N m",
+    "play_deg": "deg",
+    "lost_motion_deg": "deg",
+    "loop_compliance_deg_per_nm": "deg/(N m)",
+}
 """Unit of each measure."""
 
 
@@ -41,7 +46,9 @@ def write_series_page(
         '<header class="top"><h1>Series of recordings</h1><div class="meta">Torque–twist '
         f"diagnosis<br>{done} of {len(rows)} diagnosed</div></header>",
         _trends(rows, trends),
-        f"<section><h2>Every recording</h2>{_table(rows, conditions)}</section>",
+        _by_side(rows, conditions),
+        _check_first(rows),
+        _not_read(rows),
         _failed(rows),
         '<p class="soft">Friction, play and compliance are read by straight lines through the '
         "middle of each loop, between 20 and 80 % of the largest torque, with 95 % intervals by "
@@ -50,6 +57,44 @@ def write_series_page(
         'those of the diagnosis. All columns: <a href="table.csv">table.csv</a>.</p>',
     ]
     write_text(path, document("Series of recordings", "".join(filter(None, body))))
+
+
+def _by_side(rows: Sequence[Row], conditions: Sequence[str]) -> str:
+    """Tables of the recordings, those measured at the input apart from those at the output."""
+    sides = sorted({str(row["side"]) for row in rows if row.get("side")}, reverse=True)
+    if len(sides) < 2:
+        return f"<section><h2>Every recording</h2>{_table(rows, conditions)}</section>"
+    # Those without a diagnosis are listed below, with the reason.
+    return "".join(
+        f"<section><h2>Measured at the {escape(side)} shaft</h2>"
+        f"{_table([row for row in rows if row.get('side') == side], conditions)}</section>"
+        for side in sides
+    )
+
+
+def _check_first(rows: Sequence[Row]) -> str:
+    """What is far from the drive file, by recording."""
+    return bullets(
+        "Check first",
+        [f"{row['recording']}: {row['remarks']}" for row in rows if row.get("remarks")],
+    )
+
+
+def _not_read(rows: Sequence[Row]) -> str:
+    """Why values are missing or read in another way, by recording."""
+    items = [
+        f"{row['recording']}: a value is missing because {row['not_read']}"
+        for row in rows
+        if row.get("not_read")
+    ]
+    items += [
+        f"{row['recording']}: play and compliance are those of the published model fitted to all "
+        "readings, as these are too few or too coarse for lines through the branches, and for a "
+        "friction"
+        for row in rows
+        if row.get("read_by") == "published model"
+    ]
+    return bullets("How values were read", items)
 
 
 def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
@@ -69,7 +114,7 @@ def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
             columns=len(panels),
             row_height=300,
         )
-        head = "".join(f"<th>{escape(_named(trend.measure))}</th>" for trend in own)
+        head = "".join(f"<th>{escape(heading(trend.measure))}</th>" for trend in own)
         lines = []
         for level in own[0].levels:
             cells = "".join(_mean(trend, level.value) for trend in own)
@@ -93,9 +138,11 @@ def _mean(trend: Trend, value: float) -> str:
     return f"<td>{escape(number(level.mean) + ends)}</td>"
 
 
-def _named(measure: str) -> str:
+def heading(measure: str) -> str:
     """Measure with its unit."""
-    return f"{MEASURES.get(measure, plain(measure))} ({UNITS.get(measure, '')})"
+    unit = UNITS.get(measure)
+    name = MEASURES.get(measure, plain(measure))
+    return f"{name} ({unit})" if unit else name
 
 
 def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
@@ -123,7 +170,7 @@ def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
     return Panel(
         title=MEASURES.get(trend.measure, plain(trend.measure)).capitalize(),
         x_label=plain(trend.condition),
-        y_label=_named(trend.measure),
+        y_label=heading(trend.measure),
         series=tuple(series),
         x_names=tuple((float(value), number(float(value))) for value in at),
     )
@@ -131,19 +178,21 @@ def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
 
 def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
     """Row of each recording: conditions, verdict, measures with intervals, effects with sizes."""
-    head = ["recording", *map(plain, conditions), "verdict", *map(_named, MEASURES), "effects"]
+    measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
+    head = ["recording", *map(plain, conditions), "verdict", *map(heading, measures), "effects"]
     words = {0, len(conditions) + 1, len(head) - 1}
 
     def cell(tag: str, place: int, content: str) -> str:
-        return f"<{tag}{' class=words' if place in words else ''}>{content}</{tag}>"
+        name = f' data-name="{escape(head[place])}"' if tag == "td" and place else ""
+        return f"<{tag}{' class=words' if place in words else ''}{name}>{content}</{tag}>"
 
     lines = []
     for row in rows:
         name = escape(str(row["recording"]))
         link = f'<a href="{name}/report.html">{name}</a>' if row["status"] == "ok" else name
         cells = [link, *(_value(row.get(condition)) for condition in conditions)]
-        cells.append(escape(str(row.get("verdict") or "no diagnosis")))
-        for measure in MEASURES:
+        cells.append(escape(verdict_of(row)))
+        for measure in measures:
             low, high = row.get(f"{measure}_low"), row.get(f"{measure}_high")
             ends = f" ({interval((low, high))})" if low is not None and high is not None else ""
             cells.append(escape(number(row.get(measure)) + ends))
@@ -153,9 +202,20 @@ def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
         )
     top = "".join(cell("th", k, escape(text)) for k, text in enumerate(head))
     return (
-        f'<div class="scroll"><table><thead><tr>{top}</tr></thead>'
+        f'<div class="scroll"><table class="stacked"><thead><tr>{top}</tr></thead>'
         f"<tbody>{''.join(lines)}</tbody></table></div>"
     )
+
+
+def verdict_of(row: Row) -> str:
+    """Verdict of a row in words."""
+    verdict = row.get("verdict")
+    if verdict is None:
+        return "no diagnosis"
+    words, _ = VERDICTS[verdict]
+    if verdict == "UNKNOWN_PHYSICS" and row.get("effects"):
+        return KNOWN_AND_MORE
+    return words
 
 
 def _sizes(row: Row) -> list[str]:

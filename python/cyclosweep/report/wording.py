@@ -24,13 +24,15 @@ VERDICTS: dict[Verdict, tuple[str, str]] = {
     "DATA_FAULT": ("The recording is faulty", "#a61b1b"),
 }
 """Verdict in plain words, and its colour."""
+KNOWN_AND_MORE = "Known effects found, and something without a name"
+"""The same where effects are named and something remains that has none."""
 
 
 def verdict_words(result: Answer) -> tuple[Verdict, str, str]:
     """Return verdict, its plain words and its colour."""
     words, tone = VERDICTS[result.verdict]
     if result.verdict == "UNKNOWN_PHYSICS" and result.effects:
-        words = "Known effects found, and something without a name"
+        words = KNOWN_AND_MORE
     if result.verdict == "IDENTIFIED" and len(result.explanation_set) > 1:
         words = f"Most probable cause ({100 * result.explanation_set[0].probability:.0f} %)"
     return result.verdict, words, tone

@@ -1,6 +1,7 @@
 """What a series of recordings shows: means at each value of a condition, and trends."""
 
 from dataclasses import dataclass
+from math import factorial
 
 MEASURES = {
     "friction_nm": "friction",
@@ -9,6 +10,9 @@ MEASURES = {
     "loop_compliance_deg_per_nm": "compliance",
 }
 """What is read of every recording without a model, by column of the table."""
+FEWEST = 6
+"""Fewest recordings from which a trend is tested: of fewer, chance alone gives any order too
+often."""
 CERTAIN = 0.05
 """Largest probability, corrected for the number of trends looked at, at which a trend is stated."""
 
@@ -51,6 +55,11 @@ class Trend:
         Holm's correction for all trends of the series.
     levels : tuple of Level
         Means at each value.
+    recordings : int
+        Recordings that have both.
+    apart : bool or None
+        Of few recordings, whether the intervals of the first and the last value lie apart; None
+        where one of them has none.
     """
 
     condition: str
@@ -59,6 +68,8 @@ class Trend:
     rising: int
     p_value: float
     levels: tuple[Level, ...]
+    recordings: int = FEWEST
+    apart: bool | None = None
 
     @property
     def text(self) -> str:
@@ -70,7 +81,34 @@ class Trend:
             f"{max(self.rising, falling)} of {self.pairs} pairs of recordings that differ in it "
             f"alone (p = {max(self.p_value, 1e-4):.2g})"
         )
+        if self.recordings < FEWEST:
+            return self._of_few(what, condition)
         if self.p_value > CERTAIN:
             return f"No trend of {what} with {condition} can be stated: in one order are {counted}."
         verb = "rises" if self.rising > falling else "falls"
         return f"{what.capitalize()} {verb} with {condition}: in this order are {counted}."
+
+    def _of_few(self, what: str, condition: str) -> str:
+        """Say what three to five recordings show: their order, and whether the ends differ."""
+        first, last = self.levels[0], self.levels[-1]
+        falling = self.pairs - self.rising
+        # Every order of n recordings is equally likely by chance; two of them are monotone.
+        chance = 2.0 / factorial(self.recordings)
+        if max(self.rising, falling) == self.pairs and self.pairs:
+            verb = "rises" if self.rising else "falls"
+            order = (
+                f"{verb} with {condition} from each recording to the next, "
+                f"{first.mean:.3g} to {last.mean:.3g} (chance alone would order {self.recordings} "
+                f"recordings so in {100 * chance:.2g} % of cases)"
+            )
+        else:
+            order = f"neither rises nor falls throughout with {condition}"
+        ends = {
+            None: "there are no intervals to compare the first and the last with",
+            True: "the 95 % intervals of the first and the last lie apart",
+            False: "the 95 % intervals of the first and the last overlap",
+        }[self.apart]
+        return (
+            f"{what.capitalize()} {order}; {ends}. {self.recordings} recordings are too few to "
+            f"state a trend: {FEWEST} or more are needed."
+        )

@@ -13,7 +13,15 @@ from cyclosweep.errors import DesignError, InputError
 from cyclosweep.page import Table, broken, bullets, definitions, document, section, table_html
 from cyclosweep.study_report.gather import FRONT_ROWS, StudyFacts
 from cyclosweep.study_report.pictures import effect_svg, feasible_svg, figure_image, scatter_svg
-from cyclosweep.study_report.words import NOTHING, label, method_words, number, summary, wish
+from cyclosweep.study_report.words import (
+    NOTHING,
+    label,
+    method_words,
+    number,
+    summary,
+    why_not_robust,
+    wish,
+)
 
 __all__ = ["study_page"]
 
@@ -238,7 +246,7 @@ def _unit(unit: str) -> str:
 
 def _robust(facts: StudyFacts) -> str:
     if not facts.robust or facts.tolerances is None:
-        return f'<p class="soft">{escape(_why_not_robust(facts))}</p>'
+        return f'<p class="soft">{escape(why_not_robust(facts))}</p>'
     columns = ["variant"]
     for each in facts.objectives:
         columns += [f"{label(each.column)}, as drawn", "5 %", "50 %", "95 %"]
@@ -267,18 +275,6 @@ def _robust(facts: StudyFacts) -> str:
             words=frozenset({len(columns) + 1}),
             lead=frozenset({0}),
         )
-    )
-
-
-def _why_not_robust(facts: StudyFacts) -> str:
-    """Why no candidates were made within tolerances."""
-    if facts.tolerances is None:
-        return "None: no dimension varies that could deviate; --tolerances FILE.toml gives some."
-    if not facts.aggregate.feasible:
-        return "None: no variant can be built and keeps the limits."
-    return (
-        "None: an objective or limit reads a column of your own, which a stored study does not "
-        "tell how to compute; --pareto and --limit take the expression itself."
     )
 
 

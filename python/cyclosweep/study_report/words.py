@@ -8,7 +8,7 @@ from cyclosweep.design.units import quantity
 from cyclosweep.study_report.gather import StudyFacts
 from cyclosweep.sweep.objective import Objective
 
-__all__ = ["label", "method_words", "number", "summary", "wish"]
+__all__ = ["label", "method_words", "number", "summary", "why_not_robust", "wish"]
 
 NOTHING = "–"
 
@@ -135,3 +135,15 @@ def _robust(facts: StudyFacts) -> list[str]:
         f"{best.usable:.1%} are usable"
         + (f" (most of the others: {best.refused})." if best.refused else ".")
     ]
+
+
+def why_not_robust(facts: StudyFacts) -> str:
+    """Why no candidates were made within tolerances."""
+    if facts.tolerances is None:
+        return "None: no dimension varies that could deviate; --tolerances FILE.toml gives some."
+    if not facts.aggregate.feasible:
+        return "None: no variant can be built and keeps the limits."
+    return (
+        "None: an objective or limit reads a column of your own, which a stored study does not "
+        "tell how to compute; --pareto and --limit take the expression itself."
+    )
