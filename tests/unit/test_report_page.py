@@ -233,7 +233,7 @@ def test_the_verdict_box_holds_two_sentences_and_what_to_do(whole: ReportData) -
     assert found is not None
     box = found[0]
     assert len(re.sub("<.*?>", "", box)) < 700
-    assert "are missing from the model (97 %): with it the error on data not used falls" in box
+    assert "are missing from the model (97 %): with them the error on data not used falls" in box
     assert "<b>Look at</b> what gives way above the load" in box
     assert whole.result.statement not in box
     assert whole.result.statement in page(whole)

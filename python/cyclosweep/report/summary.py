@@ -98,7 +98,8 @@ def _errors(answer: Answer) -> str:
     if answer.baseline.holdout_rmse_deg:
         before, after = answer.baseline.holdout_rmse_deg, answer.repaired.holdout_rmse_deg
         on = " on data not used"
-    return f"with it the error{on} falls from {number(before)} to {number(after)} deg"
+    them = "it" if len(answer.effects) == 1 else "them"
+    return f"with {them} the error{on} falls from {number(before)} to {number(after)} deg"
 
 
 def _rest(answer: Answer) -> str:
