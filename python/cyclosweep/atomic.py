@@ -62,6 +62,8 @@ def unfinished(path: str | Path) -> Iterator[Path]:
         if error.filename is not None and str(error.filename) != str(temporary):
             raise  # of another file
         number = error.errno or _number_in(str(error))
+        if number is None:
+            raise OSError(f"{target}: {error}") from error
         raise OSError(number, os.strerror(number), str(target)) from error
     except Exception as error:
         # A library that writes may say of a full disk that the file is broken.
@@ -73,10 +75,10 @@ def unfinished(path: str | Path) -> Iterator[Path]:
             temporary.unlink()
 
 
-def _number_in(text: str) -> int:
+def _number_in(text: str) -> int | None:
     """Number of the system's error in the words of a library in Rust."""
     found = re.search(r"\(os error (\d+)\)", text)
-    return int(found[1]) if found else errno.EIO
+    return int(found[1]) if found else None
 
 
 def write_text(path: str | Path, text: str) -> None:
