@@ -6,6 +6,9 @@ from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.words import degrees, listed, readable, with_article
 
+NEARLY_ALL = 0.995
+"""Share of the mismatch that would be written as all of it, though something is left."""
+
 
 def summary_of(answer: Answer) -> str:
     """Say in one or two sentences what was found and how much it explains.
@@ -88,7 +91,8 @@ def _named(answer: Answer) -> str:
     else:
         ends = answer.explained.ci95
         of = "" if ends is None else f" (95 %: {100 * ends[0]:.0f} to {100 * ends[1]:.0f})"
-        text = f"{names} {verb} {100 * share:.0f} %{of} {what}."
+        part = f"{100 * share:.0f} %{of}" if share < NEARLY_ALL else f"over {100 * NEARLY_ALL:g} %"
+        text = f"{names} {verb} {part} {what}."
     return text[:1].upper() + text[1:]
 
 
