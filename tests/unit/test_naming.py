@@ -9,8 +9,9 @@ from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import ODD_CURVE
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify import naming
-from cyclosweep.diagnosis.identify.class_check import LawCheck, check_laws
+from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.problem import prepare

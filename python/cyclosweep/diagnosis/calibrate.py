@@ -4,7 +4,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library
-from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
@@ -30,12 +30,12 @@ def calibrate(problem: Problem, library: Library, seed: int) -> Search:
         Its ``baseline`` is the calibrated published model; no effect has been fitted yet.
     """
     flexible = flexible_basis(problem, library, None)
-    search = Search(problem, _noise_left(problem, flexible), library, seed)
+    search = Search(problem, noise_left(problem, flexible), library, seed)
     search.flexible = flexible
     return search
 
 
-def noise_beyond(problem: Problem, library: Library, known: Candidate | None) -> Noise:
+def noise_beyond(problem: Problem, library: Library, known: FittedStructure | None) -> Noise:
     """Estimate the noise that a flexible model leaves of a recording.
 
     Parameters
@@ -44,22 +44,42 @@ def noise_beyond(problem: Problem, library: Library, known: Candidate | None) ->
         The prepared recording.
     library : Library
         Hypotheses, whose shapes the flexible model contains.
-    known : Candidate or None
+    known : FittedStructure or None
         A structure whose terms the flexible model contains as well.
 
     Returns
     -------
     Noise
     """
+    return noise_left(problem, flexible_beyond(problem, library, known))
+
+
+def flexible_beyond(problem: Problem, library: Library, known: FittedStructure | None) -> Floats:
+    """Columns of a flexible model that contains a structure.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    library : Library
+        Hypotheses, whose shapes the flexible model contains.
+    known : FittedStructure or None
+        A structure whose terms the flexible model contains as well.
+
+    Returns
+    -------
+    ndarray, shape (fitted, k)
+        Orthonormal.
+    """
     columns = None
     if known is not None:
-        use, history = problem.fitted, known.fit.history
-        terms = [term.columns(history)[use] for term in known.fit.terms]
+        use, history = problem.fitted, known.history
+        terms = [term.columns(history)[use] for term in known.terms]
         columns = np.column_stack([history.elastic_nm[use], *terms])
-    return _noise_left(problem, flexible_basis(problem, library, columns))
+    return flexible_basis(problem, library, columns)
 
 
-def _noise_left(problem: Problem, flexible: Floats) -> Noise:
+def noise_left(problem: Problem, flexible: Floats, *, all_noise: bool = False) -> Noise:
     """Estimate the noise that the columns of a flexible model leave of a recording.
 
     Parameters
@@ -68,6 +88,8 @@ def _noise_left(problem: Problem, flexible: Floats) -> Noise:
         The prepared recording.
     flexible : ndarray, shape (fitted, k)
         Orthonormal columns.
+    all_noise : bool
+        Take what is left for noise even where it looks like error of the model.
 
     Returns
     -------
@@ -81,4 +103,5 @@ def _noise_left(problem: Problem, flexible: Floats) -> Noise:
         problem.resolution_deg,
         problem.weight[use],
         gaps(use, problem.history.run, None)[use],
+        all_noise=all_noise,
     )

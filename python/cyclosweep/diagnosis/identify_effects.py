@@ -5,6 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from cyclosweep.diagnosis.calibrate import noise_beyond
+from cyclosweep.diagnosis.friction_in_noise import (
+    model_error_noise,
+    without_hidden_friction,
+)
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import search_in_stages, visibility
@@ -18,6 +22,11 @@ RESTARTS = 2
 LOUD = 1000.0
 """Signal-to-noise ratio from which a mismatch is judged against the error of models from the start:
 no law of an effect is exact to a thousandth."""
+CLEAR = 100.0
+"""Signal-to-noise ratio from which a mismatch that named effects do not explain is searched in
+stages at once: against the noise alone the error of a large effect's law hides what is smaller."""
+FEW_PIECES = 5.0
+"""Independent pieces below which what remains unexplained is no noise but error of the model."""
 SAME_NOISE = 0.04
 """Change of correlation, and of the logarithm of the size, up to which noise is the same."""
 
@@ -38,26 +47,42 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         With all visited structures. Another one where the best of them showed the noise to be
         another: the search then starts over with that noise.
     """
+    search = calibrated = without_hidden_friction(search)
     flexible = search.flexible
     if flexible is None:
         flexible = flexible_basis(search.problem, search.library, None)
     if search.noise.structured or visibility(search.baseline.fit, flexible) > LOUD:
         return _by_size(search, flexible, say)
+    loud = visibility(search.baseline.fit, flexible) > CLEAR
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()
         if best is None:
             break
-        noise = noise_beyond(search.problem, search.library, best)
+        noise = noise_beyond(search.problem, search.library, best.fit)
         if _is_same(noise, search.noise):
             break
+        given_up = loud and decide(search, [], 0.0).unexplained
         say("starting over with better-known noise")
         search = Search(search.problem, noise, search.library, search.seed)
+        if given_up:
+            return search_in_stages(search, flexible, say)
     else:
         search.run(say)
-    if decide(search, [], 0.0).unexplained:
-        return search_in_stages(search, flexible, say)
-    return search
+    if not decide(search, [], 0.0).unexplained:
+        return search
+    if _few_pieces(search.noise):
+        error = model_error_noise(calibrated)
+        if error is not None:
+            again = Search(search.problem, error, search.library, search.seed)
+            return _by_size(again, flexible, say)
+    return search_in_stages(search, flexible, say)
+
+
+def _few_pieces(noise: Noise) -> bool:
+    """Whether noise is so slow that a recording cannot tell it from error of the model."""
+    rows, correlation = len(noise.gap), noise.best_correlation
+    return rows * (1.0 - correlation) / (1.0 + correlation) < FEW_PIECES
 
 
 def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Search:
@@ -79,7 +104,7 @@ def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Se
     """
     staged = search_in_stages(search, flexible, say)
     if staged.start is not staged.baseline:
-        noise = noise_beyond(search.problem, search.library, staged.start)
+        noise = noise_beyond(search.problem, search.library, staged.start.fit)
         if not noise.structured and not _is_same(noise, search.noise):
             say("starting over with better-known noise")
             again = Search(search.problem, noise, search.library, search.seed)

@@ -24,6 +24,7 @@ POSITION = "offset that goes with the position of the mesh"
 POSITION_COMPLIANCE = "compliance that goes with the position of the mesh"
 RUN = "zero that moves from run to run"
 RUN_COMPLIANCE = "compliance that changes from run to run"
+RUN_PLAY = "play that changes from run to run"
 TEMPERATURE = "change that follows the temperature"
 
 CLASSES_OF_FAMILY = {
@@ -37,6 +38,15 @@ CLASSES_OF_FAMILY = {
 }
 """The classes of which effects of a family are, by the name of the family; frictions apart, whose
 loops are of constant width or open with the load by their own limits."""
+CLASSES_OF_EFFECT = {
+    "datum_drift": (RUN,),
+    "transmission_error": (POSITION,),
+    "thermal_drift": (TEMPERATURE,),
+}
+"""The same for effects of a family whose members differ in what they follow."""
+ONE_CAUSE = (POSITION, POSITION_COMPLIANCE, TEMPERATURE)
+"""Classes that say what the twist follows. Any law that follows the same has the same name, however
+its waves or its delays differ."""
 
 KNOTS = 24
 """Intervals of the load in which a smooth curve bends."""
@@ -142,6 +152,8 @@ def _by_state(history: History) -> Iterator[tuple[str, Floats]]:
         one = (history.run[:, None] == np.arange(history.run_count)).astype(np.float64)
         yield RUN, one
         yield RUN_COMPLIANCE, one * elastic[:, None]
+        if np.any(history.side > 0) and np.any(history.side < 0):
+            yield RUN_PLAY, one * history.side[:, None]
     if history.temperature_c is None or not np.ptp(history.temperature_c) > 0:
         return
     warm = history.temperature_c - float(np.mean(history.temperature_c))

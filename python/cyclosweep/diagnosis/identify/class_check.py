@@ -11,17 +11,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
-    CLASSES_OF_FAMILY,
     EVEN_CURVE,
     LOOP,
     ODD_CURVE,
+    ONE_CAUSE,
     OPENING_LOOP,
     RATE_LOOP,
+    RUN,
 )
 from cyclosweep.diagnosis.hypotheses.library import Library
-from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
+from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvidence
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.scan import evidence, likelihood_gain
+from cyclosweep.diagnosis.identify.law_in_class import (
+    LawCheck,
+    amplitude_count,
+    law_evidence,
+    law_places,
+    own_classes,
+)
+from cyclosweep.diagnosis.identify.run_offsets_check import (
+    LEAST_LEFT,
+    LEFT_BESIDE,
+    without_leftovers,
+)
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
@@ -29,12 +41,8 @@ from cyclosweep.simulation.effects.history import Floats
 LEAST_EVIDENCE = 0.5
 """Log evidence of its own that a law must have to be named [nat]. That something is missing was
 decided before; a faint law, whose shape the recording leaves open, is charged too much for it."""
-LEAST_LEFT = 3.0
-"""Log evidence that has to be left of a law beside a rival class that explains more [nat]."""
 FURTHER_LAW = 6.0
 """Log prior odds against each further law in the same class [nat], as in the search."""
-SHAPE_CHARGE = 1.0
-"""Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
 CLOSE = 1.6
 """Log evidence by which a class may be ahead of a law that is named [nat]: odds of five to one."""
 CLOSE_OTHER = 4.0
@@ -45,49 +53,25 @@ CLOSE_BESIDE = 1.5
 CLEARLY = 300.0
 """Log evidence of a law from which it is the law's own error that counts [nat]."""
 CLOSE_SHARE, CLOSE_LOOP_SHARE = 0.005, 0.02
-"""Share of the evidence beyond that by which the class may be ahead of curves, and of loops."""
+"""Share of the evidence beyond that by which the class may be ahead of curves, and of others."""
 LITTLE_MISSED = 0.05
 """What a law of more evidence may miss inside its class in any case, as root mean squares: where
 the noise is small no law is exact, and flexible groups are."""
 MOST_MISSED, MOST_MISSED_LOOP = 0.1, 0.25
 """What a named law may miss inside its class, as a share of both in root mean squares: laws of the
-literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops."""
+literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops or
+follow a position or a temperature."""
+WITHIN = 0.25
+"""What offsets of all runs may leave, over what they explain, as root mean squares, for any law of
+the datum to stand: what changes within the runs is no zero that moves from run to run."""
 LEAST_SUM = 0.6
 """Size of the sum of laws in one class over that of the largest, below which they are not named."""
-LEFT_BESIDE = 0.1
-"""The same as a share of the law's evidence."""
 CLEAR = 6.0
 """Log evidence from which a residual shows a class [nat]."""
 MOST_CLASSES = 4
 """Classes that are looked for in a residual."""
 LEAST_SIZE = 0.1
 """Size of a class over that of the largest from which it is listed."""
-
-
-@dataclass(frozen=True, slots=True)
-class LawCheck:
-    """How a law stands to its class of behaviour.
-
-    Attributes
-    ----------
-    name : str
-        Effect whose law it is.
-    behaviour : str
-        Class that explains what the law explains, best of all; empty where the recording shows
-        none.
-    missed_share : float
-        What the law misses inside its class over what both explain, as root mean squares.
-    deficit : float
-        Log evidence of the class over the law [nat].
-    holds : bool
-        Whether the law may be named.
-    """
-
-    name: str
-    behaviour: str
-    missed_share: float
-    deficit: float
-    holds: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,26 +128,8 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
     for term in fitted.terms:
         taken |= set(own_classes(term)) if term.name in withdrawn else set()
     found = [_check(fitted, classes, indices, own, taken - own) for indices, own in groups]
-    return tuple(check for group in found for check in group)
-
-
-def own_classes(term: Term) -> tuple[str, ...]:
-    """Classes of behaviour that a term of an effect belongs to.
-
-    Parameters
-    ----------
-    term : Term
-
-    Returns
-    -------
-    tuple of str
-        None for an effect of a family that is no class.
-    """
-    assert term.effect is not None
-    if not term.slips:
-        return CLASSES_OF_FAMILY.get(term.family, ())
-    plain, loaded = term.effect.friction_limits(term.shape)
-    return (LOOP,) * (plain > 0) + (OPENING_LOOP,) * (loaded > 0)
+    checks = [check for group in found for check in group]
+    return without_leftovers(fitted, classes, checks)
 
 
 def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:
@@ -248,8 +214,8 @@ def _check(
         One for each of the terms.
     """
     names = [fitted.terms[index].name for index in indices]
-    places = [place for index in indices for place in _places(fitted, index)]
-    amplitudes = sum(_amplitudes(fitted, index) for index in indices)
+    places = [place for index in indices for place in law_places(fitted, index)]
+    amplitudes = sum(amplitude_count(fitted, index) for index in indices)
     charged = (amplitudes, len(places) - amplitudes)
     others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
     known = orthonormal(fitted.sensitivity[:, others], 1e-6)
@@ -265,7 +231,7 @@ def _check(
     law = law - known @ (known.T @ law)
     residual = whole_residual + law
     residual = residual - known @ (known.T @ residual)
-    by_law = _law_evidence(residual, law, charged, classes.freedom)
+    by_law = law_evidence(residual, law, charged, classes.freedom)
     every = {
         name: classes.evidence(name, known, residual)
         for name in classes.columns
@@ -279,19 +245,24 @@ def _check(
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))
     replaced = False
-    loop = bool({LOOP, OPENING_LOOP, RATE_LOOP} & set(own))
+    loose = bool({LOOP, OPENING_LOOP, RATE_LOOP, *ONE_CAUSE} & set(own))
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
     close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
     beyond = max(by_law - CLEARLY, 0.0)
     rival = max(rivals, key=lambda name: every[name].evidence, default=None)
-    if rival is not None and every[rival].evidence > by_law + close:
+    follows = bool(own) and set(own) <= set(ONE_CAUSE)
+    # Where the class itself says what the twist follows, it is the class that has to be beaten.
+    beaten = max([by_law, *(every[name].evidence for name in family if follows)])
+    if rival is not None and every[rival].evidence > beaten + close:
         beside = classes.beside(known, rival)
         left_law, left_over = (each - beside @ (beside.T @ each) for each in (law, residual))
-        remains = _law_evidence(left_over, left_law, charged, classes.freedom)
+        remains = law_evidence(left_over, left_law, charged, classes.freedom)
         replaced = remains < max(LEAST_LEFT, LEFT_BESIDE * by_law)
-    stands = deficit <= close + (CLOSE_LOOP_SHARE if loop else CLOSE_SHARE) * beyond
-    stands |= beyond > 0.0 and share <= LITTLE_MISSED
-    whole = share <= (MOST_MISSED_LOOP if loop else MOST_MISSED)
+    stands = deficit <= close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
+    stands |= follows or (beyond > 0.0 and share <= LITTLE_MISSED)
+    if set(own) == {RUN} and RUN in every and _within_runs(every[RUN], residual, classes) <= WITHIN:
+        stands, loose = True, True
+    whole = share <= (MOST_MISSED_LOOP if loose else MOST_MISSED)
     whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < CLEAR
     # The terms of a whole loop were chosen by what they predict.
     seen = by_law >= LEAST_EVIDENCE or fitted.independent_share < 1.0
@@ -301,6 +272,27 @@ def _check(
     if behaviour and every[behaviour].evidence <= 0.0:
         behaviour = ""
     return [LawCheck(name, behaviour, share, float(deficit), holds) for name in names]
+
+
+def _within_runs(offsets: ClassEvidence, residual: Floats, classes: ClassColumns) -> float:
+    """What offsets of all runs leave of a residual beyond the noise, over what they explain.
+
+    Parameters
+    ----------
+    offsets : ClassEvidence
+        Of the class of offsets.
+    residual : ndarray, shape (fitted,)
+        White unit-variance residual.
+    classes : ClassColumns
+        With the degrees of freedom of the noise.
+
+    Returns
+    -------
+    float
+    """
+    left = residual - offsets.twist
+    beyond = max(float(left @ left) - classes.freedom, 0.0)
+    return float(np.sqrt(beyond / max(offsets.explained, 1e-300)))
 
 
 def _cancel(fitted: FittedStructure, laws: Sequence[Floats]) -> bool:
@@ -321,63 +313,3 @@ def _cancel(fitted: FittedStructure, laws: Sequence[Floats]) -> bool:
     seen = [law - line @ (line.T @ law) for law in laws]
     largest = max(float(np.linalg.norm(each)) for each in seen)
     return float(np.linalg.norm(np.sum(seen, axis=0))) < LEAST_SUM * largest
-
-
-def _places(fitted: FittedStructure, index: int) -> list[int]:
-    """Places of all parameters of a term.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    index : int
-        Which of the structure's terms.
-
-    Returns
-    -------
-    list of int
-    """
-    linear = [] if fitted.terms[index].slips else fitted.amplitude_places(index)
-    return linear + fitted.nonlinear_places(index)
-
-
-def _amplitudes(fitted: FittedStructure, index: int) -> int:
-    """Count the amplitudes of a term; a friction has its limit.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    index : int
-        Which of the structure's terms.
-
-    Returns
-    -------
-    int
-    """
-    return 1 if fitted.terms[index].slips else len(fitted.amplitude_places(index))
-
-
-def _law_evidence(residual: Floats, law: Floats, charged: tuple[int, int], freedom: float) -> float:
-    """Log evidence of a law with fitted amplitudes and shape [nat].
-
-    Parameters
-    ----------
-    residual : ndarray, shape (fitted,)
-        White unit-variance residual without the law.
-    law : ndarray, shape (fitted,)
-        Twist by the law, whitened.
-    charged : tuple of int
-        Number of its amplitudes, and of its other parameters.
-    freedom : float
-        Degrees of freedom with which the noise is known.
-
-    Returns
-    -------
-    float
-    """
-    amplitudes, others = charged
-    drop = max(2.0 * float(law @ residual) - float(law @ law), 0.0)
-    excess = max(float(residual @ residual) - freedom, 0.0)
-    gain = float(likelihood_gain(np.array(drop), excess, freedom))
-    return float(evidence(gain, float(amplitudes))) - SHAPE_CHARGE * others

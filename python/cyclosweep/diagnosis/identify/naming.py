@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import (
-    LawCheck,
     ShownClass,
     check_laws,
     shown_classes,
 )
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.search import Search
 
 

@@ -261,7 +261,7 @@ class Search:
         """Chi-squared of a residual beyond what noise explains."""
         return max(fitted.chi2 - self.noise.freedom, 0.0)
 
-    def _gain(self, before: FittedStructure, after: FittedStructure) -> float:
+    def gain(self, before: FittedStructure, after: FittedStructure) -> float:
         """Twice the log-likelihood gained from one fit to the next.
 
         Parameters
@@ -297,7 +297,7 @@ class Search:
                 if signed is None:
                     continue
                 rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
-                added = float(evidence(self._gain(candidate.fit, signed), max(rank, 1)))
+                added = float(evidence(self.gain(candidate.fit, signed), max(rank, 1)))
                 if added > 1.0:
                     return self._candidate(signed, candidate.gain + added, candidate.prior)
         return None
@@ -323,7 +323,7 @@ class Search:
         float
             In nat.
         """
-        gain = self._gain(parent.fit, joint)
+        gain = self.gain(parent.fit, joint)
         effect = joint.terms[-1].effect
         if effect is not None and effect.vector:
             places = joint.amplitude_places(len(joint.terms) - 1)

@@ -35,6 +35,11 @@ of the calibrated model."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
+TIMES_WHAT_IS_LEFT = 3.0
+"""Size of an effect over what the whole structure leaves beyond the noise, from which it is no
+model error in any case: laws that err by as much as the effect would leave more."""
+INDISPENSABLE = 10.0
+"""Log likelihood that a named effect must be worth beside an unnamed shape to be accepted [nat]."""
 
 
 def visibility(fitted: FittedStructure, flexible: Floats) -> float:
@@ -119,14 +124,19 @@ def search_in_stages(
         decision = decide(search, [], 0.0)
         if accepted:
             last = search
-        if decision.best is None or decision.unexplained:
+        if decision.best is None:
             break
-        found = _without_model_error(decision.best.fit, accepted, mismatch)
+        best = decision.best
+        found = _without_model_error(best.fit, accepted, mismatch, searched.noise.spread_deg)
+        if decision.unexplained:
+            doubtful = _doubtful(search, best, searched.noise.spread_deg)
+            found = tuple(term for term in found if term.name not in doubtful)
         if len(found) == len(accepted):
             break
-        so_far = 1.0 - sum(share for _, share in rivals)
-        others = [each for each in decision.explanations if each[0] is not decision.best]
-        rivals += [(candidate, so_far * share) for candidate, share in others]
+        if not decision.unexplained:
+            so_far = 1.0 - sum(share for _, share in rivals)
+            others = [each for each in decision.explanations if each[0] is not best]
+            rivals += [(candidate, so_far * share) for candidate, share in others]
         fitted = fit(searched.problem, searched.noise, found, search.baseline.fit, rounds=CONVERGED)
         accepted = fitted.terms
     if len(last.start.fit.terms) < len(accepted):
@@ -155,8 +165,58 @@ def _stage(searched: Search, factor: float, accepted: tuple[Term, ...]) -> Searc
     return Search(searched.problem, noise, searched.library, searched.seed, accepted)
 
 
+def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[str]:
+    """Terms that are not to be accepted of a structure that leaves something, or holds the unnamed.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the stage.
+    best : Candidate
+        Its best structure.
+    noise_deg : float
+        Standard deviation of the noise [deg].
+
+    Returns
+    -------
+    frozenset of str
+        Names of the terms without a name, and of those that do not stand out from what is left.
+    """
+    fitted = best.fit
+    left = _beyond_noise(fitted, noise_deg)
+    found = set[str]()
+    for k, (term, recognised) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
+        if term.name in search.start.names:
+            continue
+        others = tuple(each for each in fitted.terms if each is not term)
+        clear = float(np.std(size_of(fitted, k))) >= TIMES_WHAT_IS_LEFT * left
+        if not (recognised and clear) or (
+            0.5 * search.gain(search.refit(others).fit, fitted) < INDISPENSABLE
+        ):
+            found.add(term.name)
+    return frozenset(found)
+
+
+def _beyond_noise(fitted: FittedStructure, noise_deg: float) -> float:
+    """Root mean square of what a structure leaves beyond the noise.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    noise_deg : float
+        Standard deviation of the noise [deg].
+
+    Returns
+    -------
+    float
+        In deg.
+    """
+    return float(np.sqrt(max(fitted.rmse_deg**2 - noise_deg**2, 0.0)))
+
+
 def _without_model_error(
-    fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float
+    fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float, noise_deg: float
 ) -> tuple[Term, ...]:
     """Terms of a structure but those that may be model error of a term accepted before.
 
@@ -168,6 +228,8 @@ def _without_model_error(
         The terms accepted before.
     mismatch_deg : float
         Root mean square error of the calibrated model without effects [deg].
+    noise_deg : float
+        Standard deviation of the noise [deg].
 
     Returns
     -------
@@ -175,6 +237,7 @@ def _without_model_error(
     """
     before = {term.name for term in accepted}
     size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
+    left = _beyond_noise(fitted, noise_deg)
     kept = []
     for k, term in enumerate(fitted.terms):
         alike = [
@@ -183,6 +246,6 @@ def _without_model_error(
             if other.name in before and other.family == term.family
         ]
         least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * max(alike, default=0.0))
-        if term.name in before or size[k] >= least:
+        if term.name in before or size[k] >= min(least, TIMES_WHAT_IS_LEFT * left):
             kept.append(term)
     return tuple(kept)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import t as student_t
 
+from cyclosweep.diagnosis.prepare.autocorrelation import autocorrelation
 from cyclosweep.diagnosis.prepare.noise import (
     COARSE_STEP,
     Noise,
@@ -35,8 +36,6 @@ UNEVEN = 0.1
 """Difference of steps by the clock from steps by rows from which it matters which of them count."""
 STRETCHES = 40
 """Stretches whose sizes are compared."""
-CORRELATIONS = np.r_[0.0:0.975:0.01, 0.98:0.9981:0.003]
-"""Autocorrelations that are tried."""
 
 
 def estimate_noise(
@@ -46,6 +45,8 @@ def estimate_noise(
     resolution: float,
     weight: Floats,
     row_gap: Floats | None = None,
+    *,
+    all_noise: bool = False,
 ) -> Noise:
     """Noise from what a flexible basis leaves, by restricted maximum likelihood.
 
@@ -63,6 +64,8 @@ def estimate_noise(
         Samples averaged in each row.
     row_gap : ndarray, shape (n,), optional
         The same as ``gap``, counted in rows where that goes by the clock; the likelier one is used.
+    all_noise : bool
+        Take what is left for noise even where it looks like error of the model.
 
     Returns
     -------
@@ -75,10 +78,10 @@ def estimate_noise(
     scale = max(1.4826 * float(np.median(np.abs(left))), 1e-12)
     scale *= np.sqrt(count / freedom)
     clean = np.clip(left, -4 * scale, 4 * scale)
-    best, upper = _correlation(clean, basis, gap)
+    best, upper = autocorrelation(clean, basis, gap)
     rough = Noise(1.0, upper, best, np.inf, 0.0, freedom, gap)
     if row_gap is not None and not np.allclose(gap, row_gap, atol=UNEVEN):
-        other, its_upper = _correlation(clean, basis, row_gap)
+        other, its_upper = autocorrelation(clean, basis, row_gap)
         likelier = replace(rough, correlation=other, gap=row_gap).log_likelihood(clean)
         if likelier > replace(rough, correlation=best).log_likelihood(clean) + MUCH_LIKELIER:
             rough = Noise(1.0, its_upper, other, np.inf, 0.0, freedom, row_gap, by_rows=True)
@@ -95,15 +98,47 @@ def estimate_noise(
             if coarse is not None:
                 return coarse
         sigma = max(sigma, resolution / np.sqrt(12.0))
+    if all_noise:
+        return replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments)
     white = rough.whiten(left)
     rounded = rough.white_share > 0.0
     unsteady = best > MODEL_ERROR and unsteadiness(white, loud_only=rounded) > UNSTEADY
     if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
-        # What is left is not noise but error of the model; filtered, it would be fitted by its
-        # kinks. Rows count equally then, and noise is what differs from row to row.
-        floor = max(_floor(left), resolution / np.sqrt(12.0), 1e-6 * float(np.ptp(angle)), 1e-12)
-        return replace(rough, sigma_deg=floor, correlation=0.0, white_share=0.0, structured=True)
+        return as_model_error(rough, left, resolution, float(np.ptp(angle)))
     return replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments)
+
+
+def as_model_error(noise: Noise, left: Floats, resolution: float, travel: float) -> Noise:
+    """Noise of a recording in which what a flexible model leaves is error of the model.
+
+    Filtered by its autocorrelation, error of the model would be fitted by its kinks. Rows count
+    equally then, and noise is what differs from row to row.
+
+    Parameters
+    ----------
+    noise : Noise
+        What is left, described as noise.
+    left : ndarray, shape (n,)
+        What is left, in the order of the readings [deg].
+    resolution : float
+        Step of the angle reading [deg].
+    travel : float
+        Range of the measured twist [deg].
+
+    Returns
+    -------
+    Noise
+    """
+    least = max(difference_noise(left), resolution / np.sqrt(12.0), 1e-6 * travel, 1e-12)
+    return replace(
+        noise,
+        sigma_deg=least,
+        correlation=0.0,
+        white_share=0.0,
+        tail=np.inf,
+        score_moments=(1.0, 1.0),
+        structured=True,
+    )
 
 
 def unsteadiness(white: Floats, *, loud_only: bool = False) -> float:
@@ -155,8 +190,19 @@ def _neighbours(white: Floats, gap: Floats) -> float:
     return float(clipped[near] @ clipped[near - 1]) / total if total > 0 else 0.0
 
 
-def _floor(left: Floats) -> float:
-    """Standard deviation of white noise whose second differences are like those of a residual."""
+def difference_noise(left: Floats) -> float:
+    """Standard deviation of white noise whose second differences are like those of a residual.
+
+    Parameters
+    ----------
+    left : ndarray, shape (n,)
+        Residual in the order of the readings [deg].
+
+    Returns
+    -------
+    float
+        In deg.
+    """
     return 1.4826 * float(np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0))
 
 
@@ -191,60 +237,11 @@ def _coarse_noise(
     known = Noise(fine, 0.0, 0.0, np.inf, resolution, freedom, rough.gap, by_rows=rough.by_rows)
     mean = _scored_mean(angle, basis[:, :12], known, start_sigma)
     score, weight = known.residual(angle, mean)
-    best, upper = _correlation(score, inner[:, :1], rough.gap)
+    best, upper = autocorrelation(score, inner[:, :1], rough.gap)
     near_a_step = float(np.sum((weight * fine) ** 2))
     return replace(
         known, correlation=upper, best_correlation=best, freedom=max(near_a_step - 6.0, 4.0)
     )
-
-
-def _correlation(left: Floats, basis: Floats, gap: Floats) -> tuple[float, float]:
-    """Restricted likelihood of the autocorrelation: its best value and an upper one.
-
-    Parameters
-    ----------
-    left : ndarray, shape (n,)
-        What the basis leaves of the twist, without outliers [deg].
-    basis : ndarray, shape (n, k)
-        Orthonormal columns of the model.
-    gap : ndarray, shape (n,)
-        Steps since the row before, zero where unrelated.
-
-    Returns
-    -------
-    best, upper : float
-    """
-    near = np.flatnonzero((gap > 0) & (gap < 1.5))
-    if len(near) < 20:
-        return 0.0, 0.0
-    rows = np.column_stack([basis, left])
-    now, before = rows[near], rows[near - 1]
-    alone = np.ones(len(left), dtype=bool)
-    alone[near] = False
-    current, crossed = now.T @ now, now.T @ before
-    crossed = crossed + crossed.T
-    earlier = before.T @ before
-    start = rows[alone].T @ rows[alone]
-    k = basis.shape[1]
-    freedom = len(left) - k
-    grid = CORRELATIONS
-    value = np.empty(len(grid))
-    for index, rho in enumerate(grid):
-        gram = start + (current - rho * crossed + rho**2 * earlier) / (1 - rho**2)
-        inner, edge = gram[:k, :k], gram[:k, k]
-        sign, determinant = np.linalg.slogdet(inner)
-        rest = gram[k, k] - edge @ np.linalg.solve(inner, edge)
-        spread = len(near) * np.log(1 - rho**2)
-        value[index] = -0.5 * (spread + determinant + freedom * np.log(max(rest, 1e-300)))
-        if sign <= 0:
-            value[index] = -np.inf
-    best = int(np.argmax(value))
-    # The higher it is, the dearer an underestimate.
-    drop = 1.0 + 2.0 * grid[best] ** 2
-    within = np.flatnonzero(value > value[best] - drop)
-    if best == 0 and value[0] - value[1] > 1.0:
-        return 0.0, 0.0
-    return float(grid[best]), float(grid[within[-1]])
 
 
 def _size(

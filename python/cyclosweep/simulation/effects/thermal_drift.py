@@ -1,4 +1,4 @@
-"""Thermal change of clearance or datum."""
+"""Thermal change of datum, clearance or compliance."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,20 +10,21 @@ from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeFo
 from cyclosweep.simulation.effects.history import Floats, History
 
 REFERENCE_C = 20.0
-KINDS = ("datum", "clearance")
+KINDS = ("datum", "clearance", "compliance")
 
 
 class ThermalDrift(Effect):
-    """Offset, or clearance, in proportion to the temperature above 20 degC.
+    """Offset, clearance or compliance in proportion to the temperature above 20 degC.
 
-    `datum` and `clearance` say which of the two (or both) moves. With `delay_s` it follows the
+    `datum`, `clearance` and `compliance` say which of them moves. With `delay_s` it follows the
     recorded temperature late, because the sensor sits elsewhere than the part that expands.
     """
 
     name = "thermal_drift"
     physics = (
         "Disc, pins and housing expand differently, which changes the clearances and turns the "
-        "zero. Both follow the temperature."
+        "zero; plastics and greased joints give way more when they are warm. All of these follow "
+        "the temperature."
     )
     source = "thermal expansion of unlike materials"
     tell_tale = "offset follows temperature"
@@ -34,8 +35,9 @@ class ThermalDrift(Effect):
         Parameter("delay_s", "s", "time constant behind the recorded temperature", 1e-6, 1e9, True),
     )
     forms = (
-        ShapeForm(("datum",), ("clearance", "delay_s")),
-        ShapeForm(("clearance",), ("delay_s",)),
+        ShapeForm(("datum",), ("clearance", "compliance", "delay_s")),
+        ShapeForm(("clearance",), ("compliance", "delay_s")),
+        ShapeForm(("compliance",), ("delay_s",)),
     )
 
     def untestable(self, history: History) -> str | None:
@@ -46,8 +48,8 @@ class ThermalDrift(Effect):
         return reason
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Datum, clearance, or both, at once or with a delay."""
-        kinds: list[Shape] = [{"datum": 1.0}, {"clearance": 1.0}, {"datum": 1.0, "clearance": 1.0}]
+        """Datum, clearance, compliance, or the first two, at once or with a delay."""
+        kinds: list[Shape] = [*({kind: 1.0} for kind in KINDS), {"datum": 1.0, "clearance": 1.0}]
         if history.time_s is None or not spread(history.time_s) > 0:
             return kinds
         delays = [share * spread(history.time_s) for share in (0.01, 0.04)]
@@ -62,7 +64,7 @@ class ThermalDrift(Effect):
         return replace(bounds, upper=max(0.1 * spread(history.time_s), 4.0 * step))
 
     def columns(self, history: History, shape: Shape) -> Floats:
-        """Offset for 1 deg/K [deg]."""
+        """Twist for 1 deg/K, and for 1 deg/(N m K) of compliance [deg]."""
         assert history.temperature_c is not None
         warm = history.temperature_c - REFERENCE_C
         if "delay_s" in shape:
@@ -70,13 +72,21 @@ class ThermalDrift(Effect):
             once = np.arange(len(warm)) == 0
             risen = np.ascontiguousarray(warm - warm[0])
             warm = warm[0] + _core.creep_state(risen, history.time_s, once, shape["delay_s"])
-        parts = {"datum": warm, "clearance": history.side * warm}
+        parts = {
+            "datum": warm,
+            "clearance": history.side * warm,
+            "compliance": history.elastic_nm * warm,
+        }
         return np.column_stack([parts[name] for name in KINDS if name in shape])
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
-        """Shift of datum or clearance a kelvin."""
+        """Change of datum, clearance or compliance a kelvin."""
         return tuple(
-            Parameter(f"{name}_per_k", "deg/K", f"{name} a kelvin")
+            Parameter(
+                f"{name}_per_k",
+                "deg/(N m K)" if name == "compliance" else "deg/K",
+                f"{name} a kelvin",
+            )
             for name in KINDS
             if name in shape
         )

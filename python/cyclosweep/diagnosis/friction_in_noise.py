@@ -1,0 +1,83 @@
+"""Friction that a flexible model did not hold, and that was therefore taken for slow noise.
+
+Friction whose presliding is long, or unlike that of the shapes which the flexible model is made of,
+leaves a residual that is large and smooth: an autoregression near one describes it as noise, and
+everything then lies within the noise. A friction of a few parameters that explains most of the
+mismatch is no noise. It is looked for with noise as small as what rows differ by, and believed
+where the recording is far likelier with it and the noise that is then left.
+"""
+
+import numpy as np
+
+from cyclosweep.diagnosis.calibrate import flexible_beyond, noise_left
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.prepare.noise_estimate import as_model_error
+
+SLOW = 0.6
+"""Autocorrelation of the noise from which friction is looked for in it."""
+LOUD = 4.0
+"""Error of the calibrated model, over what rows differ by, from which it is."""
+FAR_LIKELIER = 100.0
+"""Log likelihood that the recording must gain [nat]. Noise of an autocorrelation of 0.99 gains a
+few nats from each parameter that is fitted to it."""
+
+
+def without_hidden_friction(search: Search) -> Search:
+    """Search with the noise that friction leaves, where friction was taken for noise.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+
+    Returns
+    -------
+    Search
+        The one given where its noise holds no friction.
+    """
+    noise, problem, library = search.noise, search.problem, search.library
+    if noise.structured or noise.best_correlation < SLOW or noise.step_deg > 0:
+        return search
+    little = model_error_noise(search)
+    if little is None or search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
+        return search
+    terms = friction_first(search, little)
+    if not terms:
+        return search
+    known = fit(problem, little, terms, search.baseline.fit, rounds=CONVERGED)
+    beyond = flexible_beyond(problem, library, known)
+    slow = noise_left(problem, beyond, all_noise=True)
+    if _log_likelihood(slow) < _log_likelihood(noise) + FAR_LIKELIER:
+        return search
+    again = Search(problem, noise_left(problem, beyond), library, search.seed)
+    again.flexible = beyond
+    return again
+
+
+def model_error_noise(search: Search) -> Noise | None:
+    """Noise of a calibrated search, if what its flexible model leaves is error of the model.
+
+    Parameters
+    ----------
+    search : Search
+
+    Returns
+    -------
+    Noise or None
+        None where the calibration has set no flexible model.
+    """
+    if search.flexible is None:
+        return None
+    problem = search.problem
+    angle = problem.angle_deg[problem.fitted]
+    left = angle - search.flexible @ (search.flexible.T @ angle)
+    return as_model_error(search.noise, left, problem.resolution_deg, float(np.ptp(angle)))
+
+
+def _log_likelihood(noise: Noise) -> float:
+    """Log likelihood [nat] of rows of this noise, but for a constant."""
+    rows = len(noise.gap)
+    return -rows * float(np.log(noise.sigma_deg)) - 0.5 * noise.log_determinant

@@ -1,0 +1,124 @@
+"""A law beside its class of behaviour: its own classes, its evidence, and how it stands."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
+    CLASSES_OF_EFFECT,
+    CLASSES_OF_FAMILY,
+    LOOP,
+    OPENING_LOOP,
+)
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.scan import evidence, likelihood_gain
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.simulation.effects.history import Floats
+
+SHAPE_CHARGE = 1.0
+"""Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
+
+
+@dataclass(frozen=True, slots=True)
+class LawCheck:
+    """How a law stands to its class of behaviour.
+
+    Attributes
+    ----------
+    name : str
+        Effect whose law it is.
+    behaviour : str
+        Class that explains what the law explains, best of all; empty where the recording shows
+        none.
+    missed_share : float
+        What the law misses inside its class over what both explain, as root mean squares.
+    deficit : float
+        Log evidence of the class over the law [nat].
+    holds : bool
+        Whether the law may be named.
+    """
+
+    name: str
+    behaviour: str
+    missed_share: float
+    deficit: float
+    holds: bool
+
+
+def own_classes(term: Term) -> tuple[str, ...]:
+    """Classes of behaviour that a term of an effect belongs to.
+
+    Parameters
+    ----------
+    term : Term
+
+    Returns
+    -------
+    tuple of str
+        None for an effect of a family that is no class.
+    """
+    assert term.effect is not None
+    if not term.slips:
+        return CLASSES_OF_EFFECT.get(term.name) or CLASSES_OF_FAMILY.get(term.family, ())
+    plain, loaded = term.effect.friction_limits(term.shape)
+    return (LOOP,) * (plain > 0) + (OPENING_LOOP,) * (loaded > 0)
+
+
+def law_places(fitted: FittedStructure, index: int) -> list[int]:
+    """Places of all parameters of a term.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    list of int
+    """
+    linear = [] if fitted.terms[index].slips else fitted.amplitude_places(index)
+    return linear + fitted.nonlinear_places(index)
+
+
+def amplitude_count(fitted: FittedStructure, index: int) -> int:
+    """Count the amplitudes of a term; a friction has its limit.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    int
+    """
+    return 1 if fitted.terms[index].slips else len(fitted.amplitude_places(index))
+
+
+def law_evidence(residual: Floats, law: Floats, charged: tuple[int, int], freedom: float) -> float:
+    """Log evidence of a law with fitted amplitudes and shape [nat].
+
+    Parameters
+    ----------
+    residual : ndarray, shape (fitted,)
+        White unit-variance residual without the law.
+    law : ndarray, shape (fitted,)
+        Twist by the law, whitened.
+    charged : tuple of int
+        Number of its amplitudes, and of its other parameters.
+    freedom : float
+        Degrees of freedom with which the noise is known.
+
+    Returns
+    -------
+    float
+    """
+    amplitudes, others = charged
+    drop = max(2.0 * float(law @ residual) - float(law @ law), 0.0)
+    excess = max(float(residual @ residual) - freedom, 0.0)
+    gain = float(likelihood_gain(np.array(drop), excess, freedom))
+    return float(evidence(gain, float(amplitudes))) - SHAPE_CHARGE * others

@@ -1,0 +1,101 @@
+"""Laws of the offsets of runs, judged beside each other.
+
+Offsets of runs are a few numbers. What one law misses of them another law fills: temperature or
+position of the mesh take up what a law of the datum leaves.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
+from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.law_in_class import (
+    LawCheck,
+    amplitude_count,
+    law_evidence,
+    law_places,
+    own_classes,
+)
+from cyclosweep.diagnosis.prepare.noise import orthonormal
+
+LEAST_LEFT = 3.0
+"""Log evidence that has to be left of a law beside a class that explains more [nat]."""
+LEFT_BESIDE = 0.1
+"""The same as a share of the law's evidence."""
+
+
+def without_leftovers(
+    fitted: FittedStructure, classes: ClassColumns, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw what vanishes beside the whole class of a larger effect of the same family.
+
+    Offsets of runs are a few numbers. What one law misses of them another law fills.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    classes : ClassColumns
+        Columns of every class.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    place = {term.name: k for k, term in enumerate(fitted.terms)}
+    found = {check.name: check for check in checks}
+    offsets = [check.name for check in checks if check.name in CLASSES_OF_EFFECT]
+    if len(offsets) < 2:
+        return tuple(checks)
+    size = {
+        name: float(np.linalg.norm(fitted.whitened_contribution(place[name], fitted.noise)))
+        for name in offsets
+    }
+    largest = max(offsets, key=lambda name: size[name])
+    for name in offsets:
+        if name == largest or not found[name].holds:
+            continue
+        for whole in own_classes(fitted.terms[place[largest]]):
+            if whole in classes.columns and _vanishes(fitted, classes, place[name], whole):
+                found[name] = replace(found[name], holds=False)
+    if not all(found[name].holds for name in offsets if name != largest):
+        # The others took part of it away; it is judged again without them.
+        found[largest] = replace(found[largest], holds=True)
+    return tuple(found[check.name] for check in checks)
+
+
+def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole: str) -> bool:
+    """Whether nothing is left of a law beside all columns of a class.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    classes : ClassColumns
+        Columns of every class.
+    index : int
+        Place of the law's term.
+    whole : str
+        Name of the class.
+
+    Returns
+    -------
+    bool
+    """
+    places = law_places(fitted, index)
+    others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
+    known = orthonormal(fitted.sensitivity[:, others], 1e-6)
+    law = classes.scale * fitted.whitened_contribution(index, fitted.noise)
+    residual = classes.scale * fitted.residual + law
+    amplitudes = amplitude_count(fitted, index)
+    charged = (amplitudes, len(places) - amplitudes)
+    evidences = []
+    for basis in (known, classes.beside(known, whole)):
+        left_law, left = (each - basis @ (basis.T @ each) for each in (law, residual))
+        evidences.append(law_evidence(left, left_law, charged, classes.freedom))
+    return evidences[1] < max(LEAST_LEFT, LEFT_BESIDE * evidences[0])
