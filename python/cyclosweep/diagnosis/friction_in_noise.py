@@ -15,6 +15,8 @@ from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_fir
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.noise_estimate import as_model_error
+from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.simulation.effects.history import Floats
 
 SLOW = 0.6
 """Autocorrelation of the noise from which friction is looked for in it."""
@@ -25,56 +27,59 @@ FAR_LIKELIER = 100.0
 few nats from each parameter that is fitted to it."""
 
 
-def without_hidden_friction(search: Search) -> Search:
+def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, Floats]:
     """Search with the noise that friction leaves, where friction was taken for noise.
 
     Parameters
     ----------
     search : Search
         Calibrated, with nothing visited.
+    flexible : ndarray, shape (fitted, k)
+        Orthonormal columns of the flexible model that left the noise.
 
     Returns
     -------
-    Search
+    search : Search
         The one given where its noise holds no friction.
+    flexible : ndarray, shape (fitted, k)
+        Columns of the flexible model that left its noise.
     """
     noise, problem, library = search.noise, search.problem, search.library
     if noise.structured or noise.best_correlation < SLOW or noise.step_deg > 0:
-        return search
-    little = model_error_noise(search)
-    if little is None or search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
-        return search
+        return search, flexible
+    little = model_error_noise(problem, noise, flexible)
+    if search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
+        return search, flexible
     terms = friction_first(search, little)
     if not terms:
-        return search
+        return search, flexible
     known = fit(problem, little, terms, search.baseline.fit, rounds=CONVERGED)
     beyond = flexible_beyond(problem, library, known)
     slow = noise_left(problem, beyond, all_noise=True)
     if _log_likelihood(slow) < _log_likelihood(noise) + FAR_LIKELIER:
-        return search
-    again = Search(problem, noise_left(problem, beyond), library, search.seed)
-    again.flexible = beyond
-    return again
+        return search, flexible
+    return Search(problem, noise_left(problem, beyond), library, search.seed), beyond
 
 
-def model_error_noise(search: Search) -> Noise | None:
-    """Noise of a calibrated search, if what its flexible model leaves is error of the model.
+def model_error_noise(problem: Problem, noise: Noise, flexible: Floats) -> Noise:
+    """Noise of a recording, if what a flexible model leaves of it is error of the model.
 
     Parameters
     ----------
-    search : Search
+    problem : Problem
+        The prepared recording.
+    noise : Noise
+        What the flexible model leaves, described as noise.
+    flexible : ndarray, shape (fitted, k)
+        Its orthonormal columns.
 
     Returns
     -------
-    Noise or None
-        None where the calibration has set no flexible model.
+    Noise
     """
-    if search.flexible is None:
-        return None
-    problem = search.problem
     angle = problem.angle_deg[problem.fitted]
-    left = angle - search.flexible @ (search.flexible.T @ angle)
-    return as_model_error(search.noise, left, problem.resolution_deg, float(np.ptp(angle)))
+    left = angle - flexible @ (flexible.T @ angle)
+    return as_model_error(noise, left, problem.resolution_deg, float(np.ptp(angle)))
 
 
 def _log_likelihood(noise: Noise) -> float:

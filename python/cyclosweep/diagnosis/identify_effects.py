@@ -47,13 +47,14 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         With all visited structures. Another one where the best of them showed the noise to be
         another: the search then starts over with that noise.
     """
-    search = calibrated = without_hidden_friction(search)
     flexible = search.flexible
     if flexible is None:
         flexible = flexible_basis(search.problem, search.library, None)
-    if search.noise.structured or visibility(search.baseline.fit, flexible) > LOUD:
+    search, flexible = without_hidden_friction(search, flexible)
+    calibrated = search.noise
+    mismatch = visibility(search.baseline.fit, flexible)
+    if calibrated.structured or mismatch > LOUD:
         return _by_size(search, flexible, say)
-    loud = visibility(search.baseline.fit, flexible) > CLEAR
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()
@@ -62,7 +63,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         noise = noise_beyond(search.problem, search.library, best.fit)
         if _is_same(noise, search.noise):
             break
-        given_up = loud and decide(search, [], 0.0).unexplained
+        given_up = mismatch > CLEAR and decide(search, [], 0.0).unexplained
         say("starting over with better-known noise")
         search = Search(search.problem, noise, search.library, search.seed)
         if given_up:
@@ -72,10 +73,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if not decide(search, [], 0.0).unexplained:
         return search
     if _few_pieces(search.noise):
-        error = model_error_noise(calibrated)
-        if error is not None:
-            again = Search(search.problem, error, search.library, search.seed)
-            return _by_size(again, flexible, say)
+        error = model_error_noise(search.problem, calibrated, flexible)
+        again = Search(search.problem, error, search.library, search.seed)
+        return _by_size(again, flexible, say)
     return search_in_stages(search, flexible, say)
 
 

@@ -23,17 +23,15 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvidence
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    LawBeside,
     LawCheck,
     amplitude_count,
+    basis_of_others,
     law_evidence,
     law_places,
     own_classes,
 )
-from cyclosweep.diagnosis.identify.run_offsets_check import (
-    LEAST_LEFT,
-    LEFT_BESIDE,
-    without_leftovers,
-)
+from cyclosweep.diagnosis.identify.run_offsets_check import without_leftovers
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
@@ -217,8 +215,7 @@ def _check(
     places = [place for index in indices for place in law_places(fitted, index)]
     amplitudes = sum(amplitude_count(fitted, index) for index in indices)
     charged = (amplitudes, len(places) - amplitudes)
-    others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
-    known = orthonormal(fitted.sensitivity[:, others], 1e-6)
+    known = basis_of_others(fitted, places)
     tangent, whole_residual = fitted.tangent, classes.scale * fitted.residual
     for name in sorted(set(taken) & set(classes.columns)):
         known, tangent = classes.beside(known, name), classes.beside(tangent, name)
@@ -254,10 +251,7 @@ def _check(
     # Where the class itself says what the twist follows, it is the class that has to be beaten.
     beaten = max([by_law, *(every[name].evidence for name in family if follows)])
     if rival is not None and every[rival].evidence > beaten + close:
-        beside = classes.beside(known, rival)
-        left_law, left_over = (each - beside @ (beside.T @ each) for each in (law, residual))
-        remains = law_evidence(left_over, left_law, charged, classes.freedom)
-        replaced = remains < max(LEAST_LEFT, LEFT_BESIDE * by_law)
+        replaced = LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
     stands = deficit <= close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
     stands |= follows or (beyond > 0.0 and share <= LITTLE_MISSED)
     if set(own) == {RUN} and RUN in every and _within_runs(every[RUN], residual, classes) <= WITHIN:

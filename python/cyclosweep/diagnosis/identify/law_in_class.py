@@ -1,5 +1,6 @@
 """A law beside its class of behaviour: its own classes, its evidence, and how it stands."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +11,17 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     LOOP,
     OPENING_LOOP,
 )
+from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import evidence, likelihood_gain
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
+LEAST_LEFT = 3.0
+"""Log evidence that has to be left of a law beside a class that explains more [nat]."""
+LEFT_BESIDE = 0.1
+"""The same as a share of the law's evidence."""
 SHAPE_CHARGE = 1.0
 """Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
 
@@ -122,3 +129,54 @@ def law_evidence(residual: Floats, law: Floats, charged: tuple[int, int], freedo
     excess = max(float(residual @ residual) - freedom, 0.0)
     gain = float(likelihood_gain(np.array(drop), excess, freedom))
     return float(evidence(gain, float(amplitudes))) - SHAPE_CHARGE * others
+
+
+def basis_of_others(fitted: FittedStructure, places: Collection[int]) -> Floats:
+    """Orthonormal basis of everything that is fitted besides these parameters.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    places : collection of int
+        Places of the parameters that are left out.
+
+    Returns
+    -------
+    ndarray, shape (fitted, q)
+        Whitened.
+    """
+    others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
+    return orthonormal(fitted.sensitivity[:, others], 1e-6)
+
+
+@dataclass(frozen=True, eq=False)
+class LawBeside:
+    """What a law explains beside everything else that is fitted.
+
+    Attributes
+    ----------
+    known : ndarray, shape (fitted, q)
+        Orthonormal basis of everything else.
+    law : ndarray, shape (fitted,)
+        Twist by the law, whitened, orthogonal to it.
+    residual : ndarray, shape (fitted,)
+        White unit-variance residual without the law, orthogonal to it.
+    charged : tuple of int
+        Number of the law's amplitudes, and of its other parameters.
+    evidence : float
+        Log evidence of the law [nat].
+    """
+
+    known: Floats
+    law: Floats
+    residual: Floats
+    charged: tuple[int, int]
+    evidence: float
+
+    def is_replaced(self, classes: ClassColumns, name: str) -> bool:
+        """Whether little is left of the law beside all columns of a class."""
+        beside = classes.beside(self.known, name)
+        law, left = (each - beside @ (beside.T @ each) for each in (self.law, self.residual))
+        remains = law_evidence(left, law, self.charged, classes.freedom)
+        return remains < max(LEAST_LEFT, LEFT_BESIDE * self.evidence)

@@ -13,18 +13,14 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    LawBeside,
     LawCheck,
     amplitude_count,
+    basis_of_others,
     law_evidence,
     law_places,
     own_classes,
 )
-from cyclosweep.diagnosis.prepare.noise import orthonormal
-
-LEAST_LEFT = 3.0
-"""Log evidence that has to be left of a law beside a class that explains more [nat]."""
-LEFT_BESIDE = 0.1
-"""The same as a share of the law's evidence."""
 
 
 def without_leftovers(
@@ -88,14 +84,11 @@ def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole:
     bool
     """
     places = law_places(fitted, index)
-    others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
-    known = orthonormal(fitted.sensitivity[:, others], 1e-6)
+    known = basis_of_others(fitted, places)
     law = classes.scale * fitted.whitened_contribution(index, fitted.noise)
     residual = classes.scale * fitted.residual + law
+    law, residual = (each - known @ (known.T @ each) for each in (law, residual))
     amplitudes = amplitude_count(fitted, index)
     charged = (amplitudes, len(places) - amplitudes)
-    evidences = []
-    for basis in (known, classes.beside(known, whole)):
-        left_law, left = (each - basis @ (basis.T @ each) for each in (law, residual))
-        evidences.append(law_evidence(left, left_law, charged, classes.freedom))
-    return evidences[1] < max(LEAST_LEFT, LEFT_BESIDE * evidences[0])
+    alone = law_evidence(residual, law, charged, classes.freedom)
+    return LawBeside(known, law, residual, charged, alone).is_replaced(classes, whole)

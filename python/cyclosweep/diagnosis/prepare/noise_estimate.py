@@ -129,7 +129,7 @@ def as_model_error(noise: Noise, left: Floats, resolution: float, travel: float)
     -------
     Noise
     """
-    least = max(difference_noise(left), resolution / np.sqrt(12.0), 1e-6 * travel, 1e-12)
+    least = max(_floor(left), resolution / np.sqrt(12.0), 1e-6 * travel, 1e-12)
     return replace(
         noise,
         sigma_deg=least,
@@ -190,19 +190,8 @@ def _neighbours(white: Floats, gap: Floats) -> float:
     return float(clipped[near] @ clipped[near - 1]) / total if total > 0 else 0.0
 
 
-def difference_noise(left: Floats) -> float:
-    """Standard deviation of white noise whose second differences are like those of a residual.
-
-    Parameters
-    ----------
-    left : ndarray, shape (n,)
-        Residual in the order of the readings [deg].
-
-    Returns
-    -------
-    float
-        In deg.
-    """
+def _floor(left: Floats) -> float:
+    """Standard deviation of white noise whose second differences are like those of a residual."""
     return 1.4826 * float(np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0))
 
 
