@@ -4,7 +4,9 @@ Friction whose presliding is long, or unlike that of the shapes which the flexib
 leaves a residual that is large and smooth: an autoregression near one describes it as noise, and
 everything then lies within the noise. A friction of a few parameters that explains most of the
 mismatch is no noise. It is looked for with noise as small as what rows differ by, and believed
-where the recording is far likelier with it and the noise that is then left.
+where the recording is far likelier with it and the noise that is then left, or where it leaves
+hardly anything. The likelihood does not see the latter: a drift of a recording of a few independent
+pieces costs next to nothing as noise, however large it is.
 """
 
 import numpy as np
@@ -25,6 +27,9 @@ LOUD = 4.0
 FAR_LIKELIER = 100.0
 """Log likelihood that the recording must gain [nat]. Noise of an autocorrelation of 0.99 gains a
 few nats from each parameter that is fitted to it."""
+HARDLY_ANYTHING = 0.1
+"""Share of the calibrated model's error that noise never leaves of itself when friction is fitted
+to it."""
 
 
 def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, Floats]:
@@ -54,6 +59,8 @@ def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, F
     if not terms:
         return search, flexible
     known = fit(problem, little, terms, search.baseline.fit, rounds=CONVERGED)
+    if known.rmse_deg < HARDLY_ANYTHING * search.baseline.fit.rmse_deg:
+        return Search(problem, little, library, search.seed), flexible
     beyond = flexible_beyond(problem, library, known)
     slow = noise_left(problem, beyond, all_noise=True)
     if _log_likelihood(slow) < _log_likelihood(noise) + FAR_LIKELIER:
