@@ -235,6 +235,7 @@ def solve_slip(
     load_factor: float = 0.0,
     growth: float = 0.0,
     reference_torque: float = 1.0,
+    forgetting: float = 0.0,
     law_torque: _Reals | None = None,
     law_twist: _Reals | None = None,
 ) -> tuple[_Reals, _Reals]: ...
@@ -245,6 +246,8 @@ def slip_state(
     stretch: _Reals,
     slip_angle: _Reals,
     share: _Reals,
+    *,
+    forgetting: float = 0.0,
 ) -> _Reals: ...
 def play(
     signal: _Reals,

@@ -26,6 +26,8 @@ TOP_NM = 31.0
 """Largest torque of every programme [N m]."""
 LEAST_NM = 0.4
 """Torque below which no reading is taken [N m]."""
+LOW_NM = 0.5
+"""Lowest torque at which a programme turns, so that every turning point is read [N m]."""
 HALVINGS = 48
 """Steps of the bisection; they leave less than a millionth of a degree."""
 REACH_DEG = 400.0
@@ -96,9 +98,9 @@ def rich_course(rng: np.random.Generator, runs: int = 10) -> Course:
     for number in range(runs):
         top = TOP_NM * (1.0 if number < 2 else float(rng.choice([0.4, 0.6, 0.8, 1.0])))
         rate = float(rng.choice([0.5, 0.9, 2.0]))
-        path = _ramps([0.1, top, -top, 0.55 * top, 0.1, 0.8 * top], rate)
+        path = _ramps([LOW_NM, top, -top, 0.55 * top, LOW_NM, 0.8 * top], rate)
         path += [0.8 * top] * 40
-        path += _ramps([0.8 * top, 0.3 * top, 0.8 * top, 0.1], rate)[1:]
+        path += _ramps([0.8 * top, 0.3 * top, 0.8 * top, LOW_NM], rate)[1:]
         torque += path
         time += (clock + np.arange(len(path))).tolist()
         run += [number + 1] * len(path)

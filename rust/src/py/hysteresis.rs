@@ -18,8 +18,8 @@ impl From<HistoryError> for PyErr {
 /// Angle and friction torque of a spring behind a dead zone with slip elements in parallel.
 #[pyfunction]
 #[pyo3(signature = (torque, offset, restart, start_angle, slip_angle, share, *, free_play, compliance,
-                    limit, load_factor=0.0, growth=0.0, reference_torque=1.0, law_torque=None,
-                    law_twist=None))]
+                    limit, load_factor=0.0, growth=0.0, reference_torque=1.0, forgetting=0.0,
+                    law_torque=None, law_twist=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments on the Python side"
@@ -38,6 +38,7 @@ fn solve_slip<'py>(
     load_factor: f64,
     growth: f64,
     reference_torque: f64,
+    forgetting: f64,
     law_torque: Option<Column<'py>>,
     law_twist: Option<Column<'py>>,
 ) -> PyResult<(Reals<'py>, Reals<'py>)> {
@@ -51,6 +52,7 @@ fn solve_slip<'py>(
         load_factor,
         growth,
         reference_torque,
+        forgetting,
     };
     let (law_torque, law_twist) = match (&law_torque, &law_twist) {
         (Some(torque), Some(twist)) => (torque.as_slice()?, twist.as_slice()?),
@@ -80,6 +82,11 @@ fn solve_slip<'py>(
 
 /// State of slip elements along a given angle history.
 #[pyfunction]
+#[pyo3(signature = (angle, restart, start_angle, stretch, slip_angle, share, *, forgetting=0.0))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one array per column of the history"
+)]
 fn slip_state<'py>(
     py: Python<'py>,
     angle: Column<'py>,
@@ -88,6 +95,7 @@ fn slip_state<'py>(
     stretch: Column<'py>,
     slip_angle: Column<'py>,
     share: Column<'py>,
+    forgetting: f64,
 ) -> PyResult<Reals<'py>> {
     let n = angle.len()?;
     let elements = SlipElements {
@@ -97,6 +105,7 @@ fn slip_state<'py>(
         load_factor: 0.0,
         growth: 0.0,
         reference_torque: 1.0,
+        forgetting,
     };
     let mut out = vec![0.0; n];
     let (angle, restart) = (angle.as_slice()?, restart.as_slice()?);

@@ -94,7 +94,7 @@ def usual_effects(
 
 
 def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStructure | None:
-    """Fit terms jointly; None where there are none, or an amplitude has the wrong sign.
+    """Fit terms jointly, less those whose amplitude has the wrong sign; None where none is left.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStruct
     if not terms:
         return None
     found = fit(search.problem, noise, tuple(terms), search.baseline.fit, rounds=CONVERGED)
-    return with_right_signs(found)
+    return with_right_signs(found, whole_effects=True)
 
 
 def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:

@@ -323,7 +323,10 @@ class JointFit:
         terms, white, beta = self._last
         slopes = []
         for k in range(len(values)):
-            step = 1e-3 * max(abs(values[k]), usual_change(self.fit_parameters[k], values[k]))
+            of = self.fit_parameters[k]
+            step = 1e-3 * max(abs(values[k]), usual_change(of, values[k]))
+            if values[k] + step > of.to_scale(of.quantity.upper):
+                step = -step
             ahead = values.copy()
             ahead[k] += step
             change = residual - self.residual(ahead)

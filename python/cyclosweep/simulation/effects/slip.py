@@ -37,10 +37,11 @@ SLIP_PARAMETERS = (
     Parameter("slip_deg", "deg", "median presliding distance", 1e-6, 1e3, logarithmic=True),
     Parameter("scatter", "", "spread of the presliding distances (sd of log)", 0.05, 3.0, True),
     Parameter("skew", "", "1: a power law up to a longest distance, 0: lognormal", -1.0, 1.0),
+    Parameter("forgetting", "", "0: turning points are remembered, 1: Dahl's law", 0.0, 1.0),
 )
 SLIP_FORMS = (
-    ShapeForm(("slip_deg", "scatter"), ("skew", "slack")),
-    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), ("skew", "slack")),
+    ShapeForm(("slip_deg", "scatter"), ("skew", "slack", "forgetting")),
+    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), ("skew", "slack", "forgetting")),
 )
 
 
@@ -126,6 +127,7 @@ def slip_state(
         np.ones(len(history)) if stretch is None else stretch,
         elements.slip_deg,
         elements.share,
+        forgetting=float(shape.get("forgetting", 0.0)),
     )
 
 
@@ -176,6 +178,7 @@ def solve_slip(
         load_factor=limits[1],
         growth=float(shape.get("growth", 0.0)),
         reference_torque=float(shape.get("reference_nm", 1.0)),
+        forgetting=float(shape.get("forgetting", 0.0)),
         law_torque=None if law is None else law[0],
         law_twist=None if law is None else law[1],
     )
@@ -244,7 +247,7 @@ class FrictionEffect(Effect):
         top = history.largest_torque_nm
         shape = {
             "slip_deg": slip_share * history.largest_twist_deg, "scatter": 1.0, "skew": 0.0,
-            "slack": 0.0, "growth": 0.7, "reference_nm": 0.3 * top,
+            "forgetting": 0.3, "slack": 0.0, "growth": 0.7, "reference_nm": 0.3 * top,
         }  # fmt: skip
         plain, loaded = self.friction_limits(shape)
         return shape, limit_share * top / plain if plain > 0 else 0.2 / loaded

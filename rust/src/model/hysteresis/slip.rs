@@ -9,8 +9,10 @@
 //!
 //! with `T_e` a spring behind a dead zone, linear or given point by point, and `z_j` the anchor of slip element `j`
 //! (Maxwell-slip or generalised Prandtl-Ishlinskii model, see Al-Bender, Lampaert and Swevers,
-//! IEEE Trans. Autom. Control 50(11), 2005, doi 10.1109/TAC.2005.858676). The equation is monotone in
-//! the angle, so it has one solution a sample, found by a safeguarded Newton step.
+//! IEEE Trans. Autom. Control 50(11), 2005, doi 10.1109/TAC.2005.858676). A share `forgetting` of each
+//! element follows Dahl's law instead (AIAA J. 14, 1976), whose state approaches the limit of the way it
+//! goes, `dx = (sign(d theta) - x) |d theta| / delta_j`, and remembers no turning points. The equation is
+//! monotone in the angle, so it has one solution a sample, found by a safeguarded Newton step.
 
 use crate::model::hysteresis::checks::{
     HistoryError, finite, not_negative, numbers, numbers_at_starts, positive, same_length, within,
@@ -31,6 +33,30 @@ pub struct SlipElements<'a> {
     pub growth: f64,
     /// Elastic torque at which the given slip distances hold when they grow with the limit.
     pub reference_torque: f64,
+    /// Share of every element that follows Dahl's law, from 0 to 1; the rest is Maxwell slip.
+    pub forgetting: f64,
+}
+
+/// What the elements remember of the angles before.
+#[derive(Debug, Clone)]
+struct Past {
+    /// Angle of the last sample.
+    angle: f64,
+    /// Anchor of each element by Maxwell slip.
+    anchor: Vec<f64>,
+    /// State of each element by Dahl's law, from -1 to 1.
+    dahl: Vec<f64>,
+}
+
+impl Past {
+    /// Fresh elements at an angle.
+    fn fresh(angle: f64, elements: usize) -> Self {
+        Self {
+            angle,
+            anchor: vec![angle; elements],
+            dahl: vec![0.0; elements],
+        }
+    }
 }
 
 /// Elastic law of the drive behind a symmetric dead zone: a line, or points joined by lines.
@@ -110,7 +136,9 @@ impl SlipElements<'_> {
         numbers("limit", &[self.limit])?;
         numbers("load_factor", &[self.load_factor])?;
         numbers("growth", &[self.growth])?;
-        numbers("reference_torque", &[self.reference_torque])
+        numbers("reference_torque", &[self.reference_torque])?;
+        not_negative("forgetting", &[self.forgetting])?;
+        not_negative("one less forgetting", &[1.0 - self.forgetting])
     }
 
     fn load_limit(&self, elastic_torque: f64) -> f64 {
@@ -126,32 +154,60 @@ impl SlipElements<'_> {
         (limit / reference).max(1e-9).powf(self.growth)
     }
 
-    /// Sum of the elements' states (each within its share), its slope in the angle, and the part of
-    /// the sum that elements hold which do not slide.
-    fn state(&self, angle: f64, anchor: &[f64], stretch: f64) -> (f64, f64, f64) {
+    /// Sum of the elements' states (each within its share), its slope in the angle, and how much it
+    /// falls with the stretch, relative to it.
+    fn state(&self, angle: f64, past: &Past, stretch: f64) -> (f64, f64, f64) {
+        let (slips, forgets) = (1.0 - self.forgetting, self.forgetting);
         let mut sum = 0.0;
         let mut slope = 0.0;
-        let mut held = 0.0;
-        for ((&slip, &share), &z) in self.slip_angle.iter().zip(self.share).zip(anchor) {
-            let reach = slip * stretch;
-            let ratio = (angle - z) / reach;
-            let clipped = ratio.clamp(-1.0, 1.0);
-            sum += share * clipped;
-            if clipped == ratio {
-                slope += share / reach;
-                held += share * clipped;
+        let mut falls = 0.0;
+        if slips > 0.0 {
+            for ((&slip, &share), &z) in self.slip_angle.iter().zip(self.share).zip(&past.anchor) {
+                let share = slips * share;
+                let reach = slip * stretch;
+                let ratio = (angle - z) / reach;
+                let clipped = ratio.clamp(-1.0, 1.0);
+                sum += share * clipped;
+                if clipped == ratio {
+                    slope += share / reach;
+                    falls += share * clipped;
+                }
             }
         }
-        (sum, slope, held)
+        if forgets > 0.0 {
+            for ((&slip, &share), &x) in self.slip_angle.iter().zip(self.share).zip(&past.dahl) {
+                let share = forgets * share;
+                let reach = slip * stretch;
+                let way = (angle - past.angle) / reach;
+                let (left, state) = dahl_step(x, way);
+                sum += share * state;
+                slope += share * left.abs() / reach;
+                falls += share * left.abs() * way;
+            }
+        }
+        (sum, slope, falls)
     }
 
-    /// Drags every anchor along so that no element is stretched beyond its reach.
-    fn drag_anchors(&self, angle: f64, anchor: &mut [f64], stretch: f64) {
-        for (&slip, z) in self.slip_angle.iter().zip(anchor) {
+    /// Moves the elements to an angle: no anchor is stretched beyond its reach.
+    fn go(&self, angle: f64, past: &mut Past, stretch: f64) {
+        for (&slip, z) in self.slip_angle.iter().zip(&mut past.anchor) {
             let reach = slip * stretch;
             *z = within(*z, angle - reach, angle + reach);
         }
+        if self.forgetting > 0.0 {
+            for (&slip, x) in self.slip_angle.iter().zip(&mut past.dahl) {
+                *x = dahl_step(*x, (angle - past.angle) / (slip * stretch)).1;
+            }
+        }
+        past.angle = angle;
     }
+}
+
+/// What is left to the limit of the way it goes, and the state, after a way in presliding distances.
+fn dahl_step(state: f64, way: f64) -> (f64, f64) {
+    let limit = if way < 0.0 { -1.0 } else { 1.0 };
+    let left = (limit - state) * (-way.abs()).exp();
+    (left, limit - left)
 }
 
 /// Angle and friction torque for a torque history.
@@ -184,13 +240,14 @@ pub fn solve_slip(
     numbers_at_starts("start_angle", start_angle, restart)?;
     spring.check()?;
     elements.check()?;
-    let mut anchor = vec![0.0; elements.slip_angle.len()];
+    let count = elements.slip_angle.len();
+    let mut past = Past::fresh(0.0, count);
     let mut last = Balance::default();
     let mut way = 0.0;
     for i in 0..torque.len() {
         let mut guess = last.angle;
         if i == 0 || restart[i] {
-            anchor.fill(start_angle[i]);
+            past = Past::fresh(start_angle[i], count);
             guess = start_angle[i];
             way = 0.0;
         } else {
@@ -205,8 +262,8 @@ pub fn solve_slip(
                 way = step;
             }
         }
-        last = balance(torque[i], offset[i], spring, elements, &anchor, guess);
-        elements.drag_anchors(last.angle, &mut anchor, last.stretch);
+        last = balance(torque[i], offset[i], spring, elements, &past, guess);
+        elements.go(last.angle, &mut past, last.stretch);
         angle[i] = last.angle;
         friction[i] = last.friction;
     }
@@ -236,17 +293,17 @@ fn balance(
     offset: f64,
     spring: Spring<'_>,
     elements: &SlipElements<'_>,
-    anchor: &[f64],
+    past: &Past,
     guess: f64,
 ) -> Balance {
     let evaluate = |angle: f64| {
         let (elastic, stiffness) = spring.torque(angle - offset);
         let limit = elements.load_limit(elastic);
         let stretch = elements.stretch(limit);
-        let (state, slope, held) = elements.state(angle, anchor, stretch);
-        // A growing limit also stretches the elements that hold.
+        let (state, slope, falls) = elements.state(angle, past, stretch);
+        // A growing limit also stretches the elements.
         let growth =
-            elements.load_factor * stiffness * elastic.signum() * (state - elements.growth * held);
+            elements.load_factor * stiffness * elastic.signum() * (state - elements.growth * falls);
         let force = limit * state;
         Balance {
             angle,
@@ -304,13 +361,14 @@ pub fn slip_state(
     positive("stretch", stretch)?;
     positive("slip_angle", elements.slip_angle)?;
     elements.check()?;
-    let mut anchor = vec![0.0; elements.slip_angle.len()];
+    let count = elements.slip_angle.len();
+    let mut past = Past::fresh(0.0, count);
     for i in 0..angle.len() {
         if i == 0 || restart[i] {
-            anchor.fill(start_angle[i]);
+            past = Past::fresh(start_angle[i], count);
         }
-        elements.drag_anchors(angle[i], &mut anchor, stretch[i]);
-        out[i] = elements.state(angle[i], &anchor, stretch[i]).0;
+        elements.go(angle[i], &mut past, stretch[i]);
+        out[i] = elements.state(angle[i], &past, stretch[i]).0;
     }
     Ok(())
 }

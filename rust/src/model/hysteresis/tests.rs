@@ -11,6 +11,7 @@ fn single(limit: f64, slip: &[f64]) -> SlipElements<'_> {
         load_factor: 0.0,
         growth: 0.0,
         reference_torque: 1.0,
+        forgetting: 0.0,
     }
 }
 
