@@ -9,6 +9,7 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.identify.alarm import Alarm
 from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty, shape_penalty
+from cyclosweep.diagnosis.identify.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import (
@@ -277,29 +278,17 @@ class Search:
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
     def _enriched(self, candidate: Candidate) -> Candidate | None:
-        """Give a term more freedom of shape where the residual asks for more of the same effect."""
-        found = candidate.scan
-        for k, term in enumerate(candidate.fit.terms):
-            if term.effect is None or term.slips:
+        """Give a term more freedom of shape where the residual asks for it."""
+        offers = richer_structures(
+            candidate, self.library, self.threshold, suffices=self.suffices(candidate)
+        )
+        for terms, rank in offers:
+            signed = with_right_signs(fit(self.problem, self.noise, terms, candidate.fit))
+            if signed is None:
                 continue
-            if candidate.excesses.get(term.name, 0.0) <= self.threshold:
-                continue
-            members = found.groups[term.name]
-            each = evidence(found.observed[members], found.ranks[members])
-            for index in members[np.argsort(-each)][:3]:
-                shape = term.effect.combined(term.shape, self.library.signatures[index].shape)
-                if shape is None:
-                    continue
-                terms = list(candidate.fit.terms)
-                terms[k] = replace(term, shape=shape)
-                joint = fit(self.problem, self.noise, terms, candidate.fit)
-                signed = with_right_signs(joint)
-                if signed is None:
-                    continue
-                rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
-                added = float(evidence(self.gain(candidate.fit, signed), max(rank, 1)))
-                if added > 1.0:
-                    return self._candidate(signed, candidate.gain + added, candidate.prior)
+            added = float(evidence(self.gain(candidate.fit, signed), rank))
+            if added > 1.0:
+                return self._candidate(signed, candidate.gain + added, candidate.prior)
         return None
 
     def _added(

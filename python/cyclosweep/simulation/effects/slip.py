@@ -228,6 +228,12 @@ class FrictionEffect(Effect):
         limit = plain + loaded * history.load_nm
         return np.asarray(-history.compliance_deg_per_nm * limit * state)[:, None]
 
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
+        """Shape of elements that may forget their turning points, which no search offers."""
+        if self.shape_parameters != SLIP_PARAMETERS or "forgetting" in shape:
+            return None
+        return {**shape, "forgetting": 0.3}
+
     def far_apart(self, shape: Shape, other: Shape) -> bool:
         """Whether presliding distances, or the starts, are worth a second start of a fit."""
         if shape.get("slack") != other.get("slack"):

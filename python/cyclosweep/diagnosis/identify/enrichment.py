@@ -1,0 +1,67 @@
+"""Richer shapes of the effects of a structure, offered where its residual asks for them."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.library import Library
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.scan import evidence
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.simulation.effects.base import Shape
+
+TRIED = 3
+"""Shapes of an effect that are tried, those that explain most of the residual."""
+
+
+def richer_structures(
+    candidate: Candidate, library: Library, threshold: float, *, suffices: bool
+) -> Iterator[tuple[tuple[Term, ...], int]]:
+    """Structures in which one effect has more freedom of shape.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The structure.
+    library : Library
+        All hypotheses.
+    threshold : float
+        Excess of an effect's own shapes beyond which it is given more freedom [nat].
+    suffices : bool
+        Whether the structure leaves nothing but noise. Friction is given more freedom whatever the
+        residual looks like, where it does not: what a law of friction misses looks like loops,
+        curves and drifts.
+
+    Yields
+    ------
+    terms : tuple of Term
+    rank : int
+        Parameters added, at least one.
+    """
+    terms = candidate.fit.terms
+    slips = [k for k, term in enumerate(terms) if term.slips]
+    if slips and not suffices:
+        effect = terms[slips[0]].effect
+        shape = None if effect is None else effect.combined(terms[slips[0]].shape, {})
+        if shape is not None:
+            yield _with_shape(terms, slips[0], shape), 1
+    found = candidate.scan
+    for k, term in enumerate(terms):
+        if term.effect is None or term.slips:
+            continue
+        if candidate.excesses.get(term.name, 0.0) <= threshold:
+            continue
+        members = found.groups[term.name]
+        each = evidence(found.observed[members], found.ranks[members])
+        for index in members[np.argsort(-each)][:TRIED]:
+            shape = term.effect.combined(term.shape, library.signatures[index].shape)
+            if shape is None:
+                continue
+            rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
+            yield _with_shape(terms, k, shape), max(rank, 1)
+
+
+def _with_shape(terms: tuple[Term, ...], index: int, shape: Shape) -> tuple[Term, ...]:
+    """Terms of which one has another shape."""
+    return (*terms[:index], replace(terms[index], shape=shape), *terms[index + 1 :])
