@@ -5,6 +5,7 @@ and stiffening or leaves them its own, and what it leaves of a wrong start hides
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     for term, _ in usual_effects(search, *STARTS[0]):
         alone = _fitted(search, noise, [term]) if term.slips else None
         offered += [] if alone is None else [alone]
-    best = min(offered, key=_cost)
+    best = _from_better_start(search, noise, min(offered, key=_cost))
     if not any(term.slips for term in best.terms):
         return ()
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
@@ -111,6 +112,31 @@ def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStruct
         return None
     found = fit(search.problem, noise, tuple(terms), search.baseline.fit, rounds=CONVERGED)
     return with_right_signs(found, whole_effects=True)
+
+
+def _from_better_start(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:
+    """Start the runs with friction that has slipped, where that explains more than fresh elements.
+
+    Parameters
+    ----------
+    search : Search
+    noise : Noise
+        Noise and model error together.
+    best : FittedStructure
+        The best fit, with fresh elements on the flank at the start of a run.
+
+    Returns
+    -------
+    FittedStructure
+    """
+    if search.problem.history.free_play_deg <= 0.0:
+        return best
+    begun = [
+        replace(term, shape={**term.shape, "slack": 1.0}) if "slack" in term.shape else term
+        for term in best.terms
+    ]
+    slipped = _fitted(search, noise, begun)
+    return best if slipped is None or _cost(slipped) >= _cost(best) else slipped
 
 
 def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:
