@@ -46,10 +46,12 @@ def solve_slip(
     load: float = 0.0,
     growth: float = 0.0,
     reference_nm: float = 1.0,
+    forgetting: float = 0.0,
 ) -> tuple[Floats, Floats]:
     """Balance of torques by bisection, one sample after the other."""
     angle, friction = np.zeros(len(torque)), np.zeros(len(torque))
     anchor = np.full(len(slip), start[0])
+    before, dahl = start[0], np.zeros(len(slip))
 
     def elastic(twist: float) -> float:
         if abs(twist) <= play:
@@ -63,11 +65,15 @@ def solve_slip(
 
     def force(at: float, base: float) -> float:
         most, stretch = hold(at - base)
-        return most * float(np.sum(share * np.clip((at - anchor) / (slip * stretch), -1, 1)))
+        reach = slip * stretch
+        slipping = np.clip((at - anchor) / reach, -1, 1)
+        forgets = dahl_states(dahl, at - before, reach)
+        return most * float(np.sum(share * ((1 - forgetting) * slipping + forgetting * forgets)))
 
     for i in range(len(torque)):
         if i and restart[i]:
             anchor = np.full(len(slip), start[i])
+            before, dahl = start[i], np.zeros(len(slip))
         low, high = offset[i] - 1e4, offset[i] + 1e4
         for _ in range(60):
             middle = 0.5 * (low + high)
@@ -79,7 +85,23 @@ def solve_slip(
         friction[i] = force(angle[i], offset[i])
         reach = slip * hold(angle[i] - offset[i])[1]
         anchor = np.clip(anchor, angle[i] - reach, angle[i] + reach)
+        dahl = dahl_states(dahl, angle[i] - before, reach)
+        before = angle[i]
     return angle, friction
+
+
+def dahl_states(states: Floats, way: float, reach: Floats) -> Floats:
+    """Dahl's law in closed form along a way in one direction."""
+    limit = 1.0 if way >= 0 else -1.0
+    return np.asarray(limit - (limit - states) * np.exp(-abs(way) / reach))
+
+
+def dahl_by_steps(state: float, way: float, reach: float, steps: int = 20_000) -> float:
+    """Dahl's law, many small explicit steps."""
+    step = way / steps
+    for _ in range(steps):
+        state += (np.sign(step) - state) * abs(step) / reach
+    return state
 
 
 def slip_state(

@@ -32,24 +32,34 @@ def random_history(seed: int, play: float) -> tuple[Floats, Floats, Mask, Floats
 
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("curved", [False, True], ids=["line", "law"])
-@pytest.mark.parametrize("growth", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize(
+    ("growth", "forgetting"), [(0.0, 0.0), (0.4, 0.0), (1.0, 0.0), (0.0, 1.0), (0.4, 0.35)]
+)
 @pytest.mark.parametrize(("limit", "load"), [(0.8, 0.0), (0.0, 0.2), (0.6, 0.25)])
 @pytest.mark.parametrize("play", [0.0, 3.0])
 def test_slip_in_the_angle(
-    seed: int, curved: bool, growth: float, limit: float, load: float, play: float
+    seed: int,
+    curved: bool,
+    growth: float,
+    forgetting: float,
+    limit: float,
+    load: float,
+    play: float,
 ) -> None:
     torque, offset, restart, start = random_history(seed, play)
     slip, share = np.array([0.05, 0.4, 2.0]), np.array([0.5, 0.3, 0.2])
     angle, friction = core.solve_slip(
         torque, offset, restart, start, slip, share,
         free_play=play, compliance=2.0, limit=limit, load_factor=load, growth=growth,
-        reference_torque=9.0, law_torque=LAW_TORQUE if curved else None,
+        reference_torque=9.0, forgetting=forgetting,
+        law_torque=LAW_TORQUE if curved else None,
         law_twist=LAW_TWIST if curved else None,
     )  # fmt: skip
     law = slow.through(LAW_TORQUE, LAW_TWIST) if curved else slow.line(2.0)
     expected, force = slow.solve_slip(
-        torque, offset, restart, start, slip, share, play, law, limit, load, growth, 9.0
-    )
+        torque, offset, restart, start, slip, share, play, law, limit, load, growth, 9.0,
+        forgetting,
+    )  # fmt: skip
     np.testing.assert_allclose(angle, expected, atol=1e-6)
     np.testing.assert_allclose(friction, force, atol=1e-6)
 
@@ -62,6 +72,27 @@ def test_state_along_an_angle(seed: int) -> None:
     fast = core.slip_state(angle, restart, start, stretch, slip, share)
     expected = slow.slip_state(angle, restart, start, stretch, slip, share)
     np.testing.assert_allclose(fast, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("way", [0.3, -2.0])
+def test_state_that_forgets_follows_dahls_law(way: float) -> None:
+    angle = np.array([0.4, 0.4 + way])
+    none, ones = np.zeros(2, dtype=bool), np.ones(2)
+    slip, share = np.array([0.7]), np.array([1.0])
+    found = core.slip_state(angle, none, np.zeros(2), ones, slip, share, forgetting=1.0)
+    first = slow.dahl_by_steps(0.0, 0.4, 0.7)
+    np.testing.assert_allclose(found, [first, slow.dahl_by_steps(first, way, 0.7)], atol=1e-4)
+
+
+def test_only_what_is_remembered_closes_a_small_loop() -> None:
+    # Up, a small way back, up again: Maxwell slip returns to the same state, Dahl's law does not.
+    angle = np.array([0.0, 1.0, 0.9, 1.0])
+    none, ones = np.zeros(4, dtype=bool), np.ones(4)
+    slip, share = np.array([0.05, 0.4, 2.0]), np.array([0.5, 0.3, 0.2])
+    closes = core.slip_state(angle, none, np.zeros(4), ones, slip, share)
+    opens = core.slip_state(angle, none, np.zeros(4), ones, slip, share, forgetting=1.0)
+    assert closes[3] == pytest.approx(closes[1], abs=1e-12)
+    assert abs(opens[3] - opens[1]) > 1e-3
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.7])

@@ -50,6 +50,12 @@ def test_solve_slip_refuses_infinite_loads(name: str) -> None:
         _core.solve_slip(*arrays.values(), free_play=1.0, compliance=2.0, limit=0.1)
 
 
+@pytest.mark.parametrize("share", [-0.1, 1.1, math.nan])
+def test_slip_state_refuses_a_share_that_is_none(share: float) -> None:
+    with pytest.raises(ValueError, match="forgetting"):
+        _core.slip_state(ZERO, FRESH, ZERO, np.ones(3), SLIP, SHARE, forgetting=share)
+
+
 def test_slip_state_of_nothing_is_nothing() -> None:
     none = np.zeros(0)
     assert len(_core.slip_state(none, np.zeros(0, dtype=bool), none, none, SLIP, SHARE)) == 0

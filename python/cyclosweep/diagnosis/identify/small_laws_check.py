@@ -1,0 +1,59 @@
+"""Small laws beside a large one of the same class of behaviour.
+
+No law of the literature is another one: stiffening as by Hertz and as by a logarithm differ by some
+hundredths. Where the larger effect is far above the noise, a small law of the same class takes up
+what the larger one's law misses, leaves nothing, and is no effect.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck, own_classes
+from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.simulation.effects.history import Floats
+
+LEAST_SHARE = 0.25
+"""Size of a law over that of a larger one of its class from which it is an effect of its own."""
+LOUD = 100.0
+"""Signal-to-noise ratio of the larger one from which its law's error counts."""
+
+
+def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tuple[LawCheck, ...]:
+    """Withdraw laws that are small beside a loud one of the same class.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    place = {term.name: k for k, term in enumerate(fitted.terms)}
+    size = {check.name: size_of(fitted, place[check.name]) for check in checks}
+    classes = {check.name: set(own_classes(fitted.terms[place[check.name]])) for check in checks}
+
+    def is_small(name: str) -> bool:
+        return any(
+            classes[name] & classes[other]
+            and np.std(size[name]) < LEAST_SHARE * np.std(size[other])
+            and _visibility(fitted, size[other]) > LOUD
+            for other in size
+            if other != name
+        )
+
+    return tuple(replace(c, holds=False) if is_small(c.name) else c for c in checks)
+
+
+def _visibility(fitted: FittedStructure, size_deg: Floats) -> float:
+    """Signal-to-noise ratio of a part of the twist on the fitted rows."""
+    noise = replace(fitted.noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
+    use = fitted.problem.fitted
+    _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
+    return float(np.linalg.norm(noise.design(size_deg, weight)))
