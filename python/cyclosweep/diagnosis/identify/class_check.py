@@ -32,7 +32,6 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     own_classes,
 )
 from cyclosweep.diagnosis.identify.run_offsets_check import without_leftovers
-from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
@@ -128,7 +127,7 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
         taken |= set(own_classes(term)) if term.name in withdrawn else set()
     found = [_check(fitted, classes, indices, own, taken - own) for indices, own in groups]
     checks = [check for group in found for check in group]
-    return without_small_laws(fitted, without_leftovers(fitted, classes, checks))
+    return without_leftovers(fitted, classes, checks)
 
 
 def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.identify.class_check import (
 )
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +64,19 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
     part, withdrawn = accepted, list[LawCheck]()
     while True:
         checks = check_laws(part.fit)
+        judged = all(check.holds for check in checks)
+        if judged:
+            # Those that are left stood for their class together with the small ones.
+            checks = without_small_laws(part.fit, checks)
         gone = [check for check in checks if not check.holds]
-        if not gone:
-            return Naming(part, (*checks, *withdrawn), shown_classes(part.fit))
-        withdrawn += gone
         names = {check.name for check in checks if check.holds}
-        terms = tuple(term for term in part.fit.terms if term.name in names)
-        part = search.refit(terms) if terms else search.baseline
+        if gone:
+            terms = tuple(term for term in part.fit.terms if term.name in names)
+            part = search.refit(terms) if terms else search.baseline
+        withdrawn += gone
+        if judged:
+            held = (check for check in checks if check.holds)
+            return Naming(part, (*held, *withdrawn), shown_classes(part.fit))
 
 
 def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
@@ -93,6 +100,9 @@ def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
         if not gone:
             break
         withdrawn += gone
+    checks = without_small_laws(accepted.fit, checks)
+    withdrawn += [check for check in checks if not check.holds]
+    checks = tuple(check for check in checks if check.holds)
     part = accepted
     if withdrawn:
         alone = accepted.fit.only({check.name for check in checks}) if checks else None
