@@ -1,27 +1,21 @@
 """Change of the drive while it was tested: the same part of the load history, earlier and later."""
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.growth import growth
-from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.sweeps import FEWEST_ROWS, Sweep, equal_sweeps
 from cyclosweep.result import DriveChange
 from cyclosweep.simulation.effects.history import Floats, History
 
-SAME_ENDS = 0.04
-"""Share of the range of torque within which the ends of two equal sweeps agree."""
-SAME_RATE = 1.5
-"""Factor within which the rates of two equal sweeps agree, where there is a clock."""
-LEAST_LOAD = 0.3
-"""Share of the largest torque that a sweep has to reach on a side to show a slope there."""
+BY_RUN = "compliance by run"
+"""Name of the shape with a compliance for each run."""
 WINDOW = (0.25, 0.95)
 """Part of the load of a sweep over which its slope is taken: away from the dead zone, and from the
 reversal itself."""
-FEWEST_ROWS = 3
-"""Rows of a sweep from which a slope is taken."""
 FEWEST_SWEEPS = 6
 """Equal sweeps beyond one a group from which a trend is told from scatter."""
 DRAWS = 1999
@@ -38,55 +32,6 @@ LEAST_RATIO = 4.0
 sweeps share slow noise, which the random orders do not."""
 NORMAL_95 = 1.96
 """Half width of a 95 % interval in standard errors."""
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """Rows between two reversals on one side of zero torque.
-
-    Attributes
-    ----------
-    rows : ndarray of int
-        Rows, in order.
-    state : tuple of int
-        Side, direction, whether it is the first of its run, and position of the mesh.
-    start_nm, end_nm : float
-        Torques of the reversals before and after [N m].
-    rate : float
-        Rate of the torque [N m/s]; zero without a clock.
-    limit_nm : float
-        Largest load on this side [N m].
-    """
-
-    rows: np.ndarray
-    state: tuple[float, ...]
-    start_nm: float
-    end_nm: float
-    rate: float
-    limit_nm: float
-
-    def equals(self, other: "Sweep", room_nm: float) -> bool:
-        """Whether another sweep passes the same states.
-
-        Parameters
-        ----------
-        other : Sweep
-            The other one.
-        room_nm : float
-            Torque within which the ends agree [N m].
-
-        Returns
-        -------
-        bool
-        """
-        if self.state != other.state:
-            return False
-        if abs(self.start_nm - other.start_nm) > room_nm:
-            return False
-        if abs(self.end_nm - other.end_nm) > room_nm:
-            return False
-        slow, fast = sorted((self.rate, other.rate))
-        return fast <= SAME_RATE * slow
 
 
 @dataclass(frozen=True)
@@ -126,8 +71,9 @@ class Trend:
 def find_change(concluded: Conclusion) -> DriveChange | None:
     """Compare equal parts of the load history, as measured and with the named effects removed.
 
-    Two comparisons: slopes of equal sweeps (same direction, reversals, mesh position and rate),
-    and growth of the loops at equal torque where the range grows. Neither a law that is not quite
+    Slopes of equal sweeps (same direction, reversals, mesh position and rate), and growth of the
+    loops at equal torque where the range grows; where too little is passed twice, compliances of
+    the runs, if the best structure has one for each. Neither a law that is not quite
     right nor another load can differ between them. What the accepted effects explain, as creep
     that settles, is no change; what they alone would bring in is none either.
 
@@ -148,7 +94,7 @@ def find_change(concluded: Conclusion) -> DriveChange | None:
     line = fit.history.datum_deg + fit.history.side * fit.history.free_play_deg
     effects = fit.mean_deg - line - compliance * problem.history.applied_nm
     cleaned = problem.angle_deg - effects if fit.terms else problem.angle_deg
-    return _by_sweeps(concluded, cleaned) or _by_growth(concluded, cleaned)
+    return _by_sweeps(concluded, cleaned) or _by_growth(concluded, cleaned) or _by_runs(concluded)
 
 
 def _by_sweeps(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None:
@@ -214,6 +160,59 @@ def _by_growth(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None
     )
 
 
+def _by_runs(concluded: Conclusion) -> DriveChange | None:
+    """Trend of the compliances of the runs, in the structure that explains the recording best.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the structures that were visited.
+
+    Returns
+    -------
+    DriveChange or None
+        None where that structure has no compliance for each run, or they show no trend.
+    """
+    best = concluded.search.best()
+    if best is None or BY_RUN not in best.names:
+        return None
+    runs = _run_compliances(best.fit, best.fit.names.index(BY_RUN))
+    found = trend_of([runs], concluded.search.seed) if runs.shape[1] else None
+    if found is None or not found.is_change:
+        return None
+    return _drive_change(
+        concluded.accepted.fit.history.compliance_deg_per_nm,
+        (found.slope * (found.first - found.middle), found.slope * (found.last - found.middle)),
+        found.std_error * (found.last - found.first),
+        found.p_value,
+        found.sweeps,
+    )
+
+
+def _run_compliances(fitted: FittedStructure, index: int) -> Floats:
+    """Place, logarithm of the compliance and weight of every fitted run.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        A structure with a compliance for each run.
+    index : int
+        Which of its terms that is.
+
+    Returns
+    -------
+    ndarray, shape (3, runs)
+    """
+    history, use = fitted.history, fitted.problem.fitted
+    own = fitted.beta[fitted.amplitude_places(index)] + history.compliance_deg_per_nm
+    found = []
+    for run, compliance in enumerate(own):
+        rows = np.flatnonzero(use & (history.run == run))
+        if len(rows) >= FEWEST_ROWS and compliance > 0:
+            found.append((float(rows.mean()) / len(history), np.log(compliance), 1.0))
+    return np.array(found).reshape(-1, 3).T
+
+
 def _drive_change(
     compliance: float,
     logarithms: tuple[float, float],
@@ -252,58 +251,6 @@ def _drive_change(
     )
 
 
-def equal_sweeps(history: History) -> list[list[Sweep]]:
-    """Group the sweeps of a load history by the states that they pass; single ones are left out.
-
-    Parameters
-    ----------
-    history : History
-        Load history of the prepared rows.
-
-    Returns
-    -------
-    list of list of Sweep
-        Each in the order recorded.
-    """
-    room = SAME_ENDS * float(np.ptp(history.applied_nm))
-    groups: list[list[Sweep]] = []
-    for sweep in _sweeps(history):
-        for group in groups:
-            if group[0].equals(sweep, room):
-                group.append(sweep)
-                break
-        else:
-            groups.append([sweep])
-    return [group for group in groups if len(group) > 1]
-
-
-def _sweeps(history: History) -> list[Sweep]:
-    """Sweeps between reversals, each side of zero torque apart, in the order recorded."""
-    torque = history.applied_nm
-    threshold = REVERSAL_SHARE * float(np.ptp(torque))
-    found = []
-    for number in np.unique(history.run):
-        rows = np.flatnonzero(history.run == number)
-        ends = [0, *turning_points(torque[rows], threshold).tolist(), len(rows) - 1]
-        for first, last in itertools.pairwise(ends):
-            part = rows[first : last + 1]
-            if len(part) < FEWEST_ROWS:
-                continue
-            start, end = float(torque[part[0]]), float(torque[part[-1]])
-            direction = 1.0 if end > start else -1.0
-            rate = 0.0
-            if history.time_s is not None:
-                lapse = float(history.time_s[part[-1]] - history.time_s[part[0]])
-                rate = abs(end - start) / lapse if lapse > 0 else 0.0
-            crank = 0.0 if history.crank_deg is None else float(history.crank_deg[part[0]])
-            for side in (1.0, -1.0):
-                limit = max(side * start, side * end)
-                if limit >= LEAST_LOAD * history.largest_torque_nm:
-                    state = (side, direction, float(first == 0), crank)
-                    found.append(Sweep(part, state, start, end, rate, limit))
-    return found
-
-
 def trend(
     history: History, angle_deg: Floats, groups: list[list[Sweep]], seed: int
 ) -> Trend | None:
@@ -324,7 +271,23 @@ def trend(
     -------
     Trend or None
     """
-    parts = [_slopes(history, angle_deg, group) for group in groups]
+    return trend_of([_slopes(history, angle_deg, group) for group in groups], seed)
+
+
+def trend_of(parts: list[Floats], seed: int) -> Trend | None:
+    """Trend of logarithms of compliances; None where too few can be compared.
+
+    Parameters
+    ----------
+    parts : list of ndarray, shape (3, k)
+        Place, logarithm and weight, a group of comparable ones each.
+    seed : int
+        Seed of the random orders.
+
+    Returns
+    -------
+    Trend or None
+    """
     parts = [part for part in parts if part.shape[1] > 1]
     count = sum(part.shape[1] for part in parts)
     if count - len(parts) < FEWEST_SWEEPS:

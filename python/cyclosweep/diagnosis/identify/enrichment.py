@@ -9,7 +9,7 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.simulation.effects.base import Shape
+from cyclosweep.simulation.effects.base import Effect, Shape
 
 TRIED = 3
 """Shapes of an effect that are tried, those that explain most of the residual."""
@@ -58,8 +58,14 @@ def richer_structures(
             shape = term.effect.combined(term.shape, library.signatures[index].shape)
             if shape is None:
                 continue
-            rank = len(term.effect.amplitudes(shape)) - len(term.effect.amplitudes(term.shape))
+            rank = _freedom(term.effect, shape) - _freedom(term.effect, term.shape)
             yield _with_shape(terms, k, shape), max(rank, 1)
+
+
+def _freedom(effect: Effect, shape: Shape) -> int:
+    """Number of parameters that are fitted of an effect with this shape."""
+    fitted = sum(parameter.name in shape for parameter in effect.shape_parameters)
+    return len(effect.amplitudes(shape)) + fitted
 
 
 def _with_shape(terms: tuple[Term, ...], index: int, shape: Shape) -> tuple[Term, ...]:

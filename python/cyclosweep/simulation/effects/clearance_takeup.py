@@ -8,6 +8,8 @@ import numpy as np
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
+KINKS = 6
+"""Most loads at which the slope drops."""
 FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
 """Loads of first engagement, and ranges, in which it is looked for, over the largest load."""
 
@@ -36,6 +38,10 @@ class ClearanceTakeup(Effect):
     shape_parameters = (
         Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
         Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
+        *(
+            Parameter(f"kink_{k}_nm", "N m", f"load at which pins of group {k} engage", 0.0, 1e6)
+            for k in range(1, KINKS + 1)
+        ),
     )
     forms = (ShapeForm(("first_nm", "range_nm")), ShapeForm(numbered="kink_{}_nm"))
 
@@ -51,8 +57,10 @@ class ClearanceTakeup(Effect):
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """First engagement in the lower half; a kink further out is what a sensor's limit shows."""
         top = history.largest_torque_nm
-        if parameter.name == "first_nm":
+        if parameter.name in ("first_nm", "kink_1_nm"):
             return replace(parameter, lower=0.0, upper=0.45 * top)
+        if parameter.name.startswith("kink"):
+            return replace(parameter, lower=0.0, upper=0.9 * top)
         return replace(parameter, lower=1e-3 * top, upper=0.9 * top)
 
     def columns(self, history: History, shape: Shape) -> Floats:
@@ -69,7 +77,8 @@ class ClearanceTakeup(Effect):
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Kinks of both; a range of engagement becomes a kink at either end."""
-        return listed("kink_{}_nm", [*_kinks(shape), *_kinks(found)])
+        kinks = sorted({*_kinks(shape), *_kinks(found)})
+        return listed("kink_{}_nm", kinks) if len(kinks) <= KINKS else None
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Kinks at which the slope drops."""
