@@ -17,9 +17,10 @@ def spring_of(model: CalibratedLine, largest_torque_nm: float) -> TrainSpring:
     """Spring of a model at the shaft to which it belongs.
 
     Elastic effects bend the law point by point; friction becomes slip elements in parallel. Their
-    limits and how these follow the load are the model's; their stiffness is constant: the one that
-    they have at the torque for which the model states its presliding distances, or at half of the
-    largest torque where it states none.
+    limits and how these follow the load are the model's. They remember their turning points
+    (`forgetting` is left out), and their stiffness is constant: the one that they have at the
+    torque for which the model states its presliding distances, or at half of the largest torque
+    where it states none.
 
     Parameters
     ----------

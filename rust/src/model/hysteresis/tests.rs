@@ -131,7 +131,7 @@ proptest! {
     fn balance_holds_and_friction_stays_within_its_limit(
         torque in prop::collection::vec(-30.0..30.0f64, 2..60),
         limit in 0.0..2.0f64, load in 0.0..0.3f64, growth in prop::sample::select(vec![0.0, 1.0]),
-        curved: bool,
+        forgetting in 0.0..1.0f64, curved: bool,
     ) {
         let torques = [-60.0, -20.0, -2.0, 0.0, 2.0, 20.0, 60.0];
         let n = torque.len();
@@ -139,6 +139,7 @@ proptest! {
         let elements = SlipElements {
             slip_angle: &slip, share: &[0.5, 0.3, 0.2], limit, load_factor: load, growth,
             reference_torque: 10.0,
+            forgetting,
         };
         let bent = [-90.0, -60.0, -2.0, 0.0, 2.0, 60.0, 90.0];
         let spring = if curved {
