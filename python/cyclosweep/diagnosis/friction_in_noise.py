@@ -59,13 +59,13 @@ def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, F
     if not terms:
         return search, flexible
     known = fit(problem, little, terms, search.baseline.fit, rounds=CONVERGED)
-    if known.rmse_deg < HARDLY_ANYTHING * search.baseline.fit.rmse_deg:
-        return Search(problem, little, library, search.seed), flexible
     beyond = flexible_beyond(problem, library, known)
     slow = noise_left(problem, beyond, all_noise=True)
-    if _log_likelihood(slow) < _log_likelihood(noise) + FAR_LIKELIER:
-        return search, flexible
-    return Search(problem, noise_left(problem, beyond), library, search.seed), beyond
+    if is_far_likelier(slow, noise):
+        return Search(problem, noise_left(problem, beyond), library, search.seed), beyond
+    if known.rmse_deg < HARDLY_ANYTHING * search.baseline.fit.rmse_deg:
+        return Search(problem, little, library, search.seed), flexible
+    return search, flexible
 
 
 def model_error_noise(problem: Problem, noise: Noise, flexible: Floats) -> Noise:
@@ -87,6 +87,23 @@ def model_error_noise(problem: Problem, noise: Noise, flexible: Floats) -> Noise
     angle = problem.angle_deg[problem.fitted]
     left = angle - flexible @ (flexible.T @ angle)
     return as_model_error(noise, left, problem.resolution_deg, float(np.ptp(angle)))
+
+
+def is_far_likelier(noise: Noise, other: Noise) -> bool:
+    """Whether a recording is far likelier with one description of its noise than with another.
+
+    Parameters
+    ----------
+    noise : Noise
+        What one model leaves.
+    other : Noise
+        What another one leaves.
+
+    Returns
+    -------
+    bool
+    """
+    return _log_likelihood(noise) >= _log_likelihood(other) + FAR_LIKELIER
 
 
 def _log_likelihood(noise: Noise) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.calibrate import noise_beyond
 from cyclosweep.diagnosis.friction_in_noise import (
+    is_far_likelier,
     model_error_noise,
     without_hidden_friction,
 )
@@ -61,7 +62,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         if best is None:
             break
         noise = noise_beyond(search.problem, search.library, best.fit)
-        if _is_same(noise, search.noise):
+        if _is_same(noise, search.noise) or is_far_likelier(search.noise, noise):
             break
         given_up = mismatch > CLEAR and decide(search, [], 0.0).unexplained
         say("starting over with better-known noise")

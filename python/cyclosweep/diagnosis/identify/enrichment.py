@@ -63,11 +63,34 @@ def richer_structures(
 
 
 def _freedom(effect: Effect, shape: Shape) -> int:
-    """Number of parameters that are fitted of an effect with this shape."""
+    """Number of parameters that are fitted of an effect with this shape.
+
+    Parameters
+    ----------
+    effect : Effect
+    shape : mapping
+
+    Returns
+    -------
+    int
+    """
     fitted = sum(parameter.name in shape for parameter in effect.shape_parameters)
     return len(effect.amplitudes(shape)) + fitted
 
 
 def _with_shape(terms: tuple[Term, ...], index: int, shape: Shape) -> tuple[Term, ...]:
-    """Terms of which one has another shape."""
+    """Terms of which one has another shape.
+
+    Parameters
+    ----------
+    terms : tuple of Term
+    index : int
+        Which of them.
+    shape : mapping
+        Its other shape.
+
+    Returns
+    -------
+    tuple of Term
+    """
     return (*terms[:index], replace(terms[index], shape=shape), *terms[index + 1 :])

@@ -52,7 +52,19 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
 
 
 def _visibility(fitted: FittedStructure, size_deg: Floats) -> float:
-    """Signal-to-noise ratio of a part of the twist on the fitted rows."""
+    """Signal-to-noise ratio of a part of the twist.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure, with the noise.
+    size_deg : ndarray, shape (fitted,)
+        Part of the twist [deg].
+
+    Returns
+    -------
+    float
+    """
     noise = replace(fitted.noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
     use = fitted.problem.fitted
     _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])

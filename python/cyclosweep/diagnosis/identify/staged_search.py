@@ -253,7 +253,17 @@ def _without_model_error(
 
 
 def _same_class(one: Term, other: Term) -> bool:
-    """Whether two effects are of the same class of behaviour."""
+    """Whether two effects are of the same class of behaviour.
+
+    Parameters
+    ----------
+    one : Term
+    other : Term
+
+    Returns
+    -------
+    bool
+    """
     if one.effect is None or other.effect is None:
         return False
     return bool(set(own_classes(one)) & set(own_classes(other)))
