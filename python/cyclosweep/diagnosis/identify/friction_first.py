@@ -47,7 +47,7 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     baseline = search.baseline.fit
     best: FittedStructure | None = None
     for limit, slip in STARTS:
-        begun = [term for term, _ in usual_effects(search, limit, slip)]
+        begun = _freer_terms(search, limit, slip)
         joint = _fitted(search, noise, begun)
         if joint is not None and (best is None or joint.rmse_deg < best.rmse_deg):
             best = joint
@@ -56,7 +56,7 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     if best is None:
         return ()
     offered = [_prune(search, noise, best)]
-    for term, _ in usual_effects(search, *STARTS[0]):
+    for term in _freer_terms(search, *STARTS[0]):
         alone = _fitted(search, noise, [term]) if term.slips else None
         offered += [] if alone is None else [alone]
     best = _from_better_start(search, noise, min(offered, key=_cost))
@@ -64,6 +64,30 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
         return ()
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
     return best.terms if removed > LEAST_REMOVED else ()
+
+
+def _freer_terms(search: Search, limit_share: float, slip_share: float) -> list[Term]:
+    """Terms of the usual effects, friction with all freedom of shape that it can have.
+
+    Whole loops of a few runs are forecast better without it: there friction is given none.
+
+    Parameters
+    ----------
+    search : Search
+    limit_share, slip_share : float
+        See `usual_effects`.
+
+    Returns
+    -------
+    list of Term
+    """
+    terms = []
+    for term, _ in usual_effects(search, limit_share, slip_share):
+        freer = None
+        if term.effect is not None and term.slips:
+            freer = term.effect.combined(term.shape, {})
+        terms.append(term if freer is None else replace(term, shape=freer))
+    return terms
 
 
 def usual_effects(
@@ -136,7 +160,8 @@ def _from_better_start(search: Search, noise: Noise, best: FittedStructure) -> F
         for term in best.terms
     ]
     slipped = _fitted(search, noise, begun)
-    return best if slipped is None or _cost(slipped) >= _cost(best) else slipped
+    better = slipped is not None and _cost(slipped) < _cost(best) - EFFECT_CHARGE
+    return slipped if slipped is not None and better else best
 
 
 def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:

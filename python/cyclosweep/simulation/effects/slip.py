@@ -253,7 +253,7 @@ class FrictionEffect(Effect):
         top = history.largest_torque_nm
         shape = {
             "slip_deg": slip_share * history.largest_twist_deg, "scatter": 1.0, "skew": 0.0,
-            "forgetting": 0.3, "slack": 0.0, "growth": 0.7, "reference_nm": 0.3 * top,
+            "slack": 0.0, "growth": 0.7, "reference_nm": 0.3 * top,
         }  # fmt: skip
         plain, loaded = self.friction_limits(shape)
         return shape, limit_share * top / plain if plain > 0 else 0.2 / loaded
