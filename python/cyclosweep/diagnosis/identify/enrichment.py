@@ -58,6 +58,11 @@ def richer_structures(
             shape = term.effect.combined(term.shape, library.signatures[index].shape)
             if shape is None:
                 continue
+            # Beside friction every further shape parameter costs a path of the shaft in each step.
+            if slips and _shape_freedom(term.effect, shape) > _shape_freedom(
+                term.effect, term.shape
+            ):
+                continue
             rank = _freedom(term.effect, shape) - _freedom(term.effect, term.shape)
             yield _with_shape(terms, k, shape), max(rank, 1)
 
@@ -74,8 +79,22 @@ def _freedom(effect: Effect, shape: Shape) -> int:
     -------
     int
     """
-    fitted = sum(parameter.name in shape for parameter in effect.shape_parameters)
-    return len(effect.amplitudes(shape)) + fitted
+    return len(effect.amplitudes(shape)) + _shape_freedom(effect, shape)
+
+
+def _shape_freedom(effect: Effect, shape: Shape) -> int:
+    """Number of shape parameters that are fitted.
+
+    Parameters
+    ----------
+    effect : Effect
+    shape : mapping
+
+    Returns
+    -------
+    int
+    """
+    return sum(parameter.name in shape for parameter in effect.shape_parameters)
 
 
 def _with_shape(terms: tuple[Term, ...], index: int, shape: Shape) -> tuple[Term, ...]:

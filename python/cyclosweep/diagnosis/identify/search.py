@@ -35,8 +35,8 @@ MOST_SHAPE_ERROR = 20.0
 """Evidence up to which a remainder is so taken; a further effect of visibility 7 has more."""
 MOST_ENRICHED = 2
 """Times an effect is given more freedom of shape."""
-RICH_ROUNDS = 20
-"""Most iterations of the fit of an effect with more freedom."""
+USUAL_ROUNDS, RICH_ROUNDS = 6, 20
+"""Most iterations of the fit of an effect with more freedom, beside friction and otherwise."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 MOST_FOLLOWED = 7
@@ -285,7 +285,8 @@ class Search:
             candidate, self.library, self.threshold, suffices=self.suffices(candidate)
         )
         for terms, rank in offers:
-            joint = fit(self.problem, self.noise, terms, candidate.fit, rounds=RICH_ROUNDS)
+            rounds = USUAL_ROUNDS if any(term.slips for term in terms) else RICH_ROUNDS
+            joint = fit(self.problem, self.noise, terms, candidate.fit, rounds=rounds)
             signed = with_right_signs(joint)
             if signed is None:
                 continue
