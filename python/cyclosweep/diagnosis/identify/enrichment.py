@@ -16,7 +16,12 @@ TRIED = 3
 
 
 def richer_structures(
-    candidate: Candidate, library: Library, threshold: float, *, suffices: bool
+    candidate: Candidate,
+    library: Library,
+    threshold: float,
+    *,
+    suffices: bool,
+    accepted: frozenset[str],
 ) -> Iterator[tuple[tuple[Term, ...], int]]:
     """Structures in which one effect has more freedom of shape.
 
@@ -32,6 +37,8 @@ def richer_structures(
         Whether the structure leaves nothing but noise. Friction is given more freedom whatever the
         residual looks like, where it does not: what a law of friction misses looks like loops,
         curves and drifts.
+    accepted : frozenset of str
+        Names of terms whose freedom was decided before.
 
     Yields
     ------
@@ -41,7 +48,7 @@ def richer_structures(
     """
     terms = candidate.fit.terms
     slips = [k for k, term in enumerate(terms) if term.slips]
-    if slips and not suffices:
+    if slips and not suffices and terms[slips[0]].name not in accepted:
         effect = terms[slips[0]].effect
         shape = None if effect is None else effect.combined(terms[slips[0]].shape, {})
         if shape is not None:

@@ -24,6 +24,8 @@ EFFECT_CHARGE = 8.0
 """What an effect must gain beside its parameters, in the same unit: the odds against one more."""
 LEAST_REMOVED = 0.5
 """Share of the mean square mismatch that these effects must take away together."""
+LEAST_FORGETTING = 0.05
+"""Share of a friction that forgets its turning points from which it is fitted further."""
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
@@ -63,7 +65,17 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     if not any(term.slips for term in best.terms):
         return ()
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
-    return best.terms if removed > LEAST_REMOVED else ()
+    return _settled(best.terms) if removed > LEAST_REMOVED else ()
+
+
+def _settled(terms: Sequence[Term]) -> tuple[Term, ...]:
+    """Terms less the freedom to forget where friction hardly does."""
+    return tuple(
+        replace(term, shape={k: v for k, v in term.shape.items() if k != "forgetting"})
+        if term.shape.get("forgetting", 1.0) < LEAST_FORGETTING
+        else term
+        for term in terms
+    )
 
 
 def _freer_terms(search: Search, limit_share: float, slip_share: float) -> list[Term]:

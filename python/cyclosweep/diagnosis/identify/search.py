@@ -282,7 +282,11 @@ class Search:
     def _enriched(self, candidate: Candidate) -> Candidate | None:
         """Give a term more freedom of shape where the residual asks for it."""
         offers = richer_structures(
-            candidate, self.library, self.threshold, suffices=self.suffices(candidate)
+            candidate,
+            self.library,
+            self.threshold,
+            suffices=self.suffices(candidate),
+            accepted=self.start.names,
         )
         for terms, rank in offers:
             rounds = USUAL_ROUNDS if any(term.slips for term in terms) else RICH_ROUNDS
