@@ -119,14 +119,7 @@ def _by_sweeps(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None
     left = trend(problem.history, cleaned_deg, groups, concluded.search.seed)
     if left is None or not left.is_change or left.slope * measured.slope < 0:
         return None
-    compliance = concluded.accepted.fit.history.compliance_deg_per_nm
-    return _drive_change(
-        compliance,
-        (left.slope * (left.first - left.middle), left.slope * (left.last - left.middle)),
-        left.std_error * (left.last - left.first),
-        left.p_value,
-        left.sweeps,
-    )
+    return _change_by(left, concluded.accepted.fit.history.compliance_deg_per_nm)
 
 
 def _by_growth(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None:
@@ -177,16 +170,10 @@ def _by_runs(concluded: Conclusion) -> DriveChange | None:
     if best is None or BY_RUN not in best.names:
         return None
     runs = _run_compliances(best.fit, best.fit.names.index(BY_RUN))
-    found = trend_of([runs], concluded.search.seed) if runs.shape[1] else None
+    found = trend_of([runs], concluded.search.seed)
     if found is None or not found.is_change:
         return None
-    return _drive_change(
-        concluded.accepted.fit.history.compliance_deg_per_nm,
-        (found.slope * (found.first - found.middle), found.slope * (found.last - found.middle)),
-        found.std_error * (found.last - found.first),
-        found.p_value,
-        found.sweeps,
-    )
+    return _change_by(found, concluded.accepted.fit.history.compliance_deg_per_nm)
 
 
 def _run_compliances(fitted: FittedStructure, index: int) -> Floats:
@@ -211,6 +198,28 @@ def _run_compliances(fitted: FittedStructure, index: int) -> Floats:
         if len(rows) >= FEWEST_ROWS and compliance > 0:
             found.append((float(rows.mean()) / len(history), np.log(compliance), 1.0))
     return np.array(found).reshape(-1, 3).T
+
+
+def _change_by(trend: Trend, compliance: float) -> DriveChange:
+    """Change of the compliance along a trend, the calibrated one being that at its middle.
+
+    Parameters
+    ----------
+    trend : Trend
+    compliance : float
+        Calibrated compliance [deg/(N m)].
+
+    Returns
+    -------
+    DriveChange
+    """
+    return _drive_change(
+        compliance,
+        (trend.slope * (trend.first - trend.middle), trend.slope * (trend.last - trend.middle)),
+        trend.std_error * (trend.last - trend.first),
+        trend.p_value,
+        trend.sweeps,
+    )
 
 
 def _drive_change(

@@ -49,10 +49,9 @@ def richer_structures(
     terms = candidate.fit.terms
     slips = [k for k, term in enumerate(terms) if term.slips]
     if slips and not suffices and terms[slips[0]].name not in accepted:
-        effect = terms[slips[0]].effect
-        shape = None if effect is None else effect.combined(terms[slips[0]].shape, {})
-        if shape is not None:
-            yield _with_shape(terms, slips[0], shape), 1
+        freer = freer_friction(terms[slips[0]])
+        if freer is not None:
+            yield _with_term(terms, slips[0], freer), 1
     found = candidate.scan
     for k, term in enumerate(terms):
         if term.effect is None or term.slips:
@@ -66,31 +65,20 @@ def richer_structures(
             if shape is None:
                 continue
             # Beside friction every further shape parameter costs a path of the shaft in each step.
-            if slips and _shape_freedom(term.effect, shape) > _shape_freedom(
-                term.effect, term.shape
-            ):
+            before, after = (_freedom(term.effect, each) for each in (term.shape, shape))
+            if slips and after[1] > before[1]:
                 continue
-            rank = _freedom(term.effect, shape) - _freedom(term.effect, term.shape)
-            yield _with_shape(terms, k, shape), max(rank, 1)
+            yield _with_term(terms, k, replace(term, shape=shape)), max(sum(after) - sum(before), 1)
 
 
-def _freedom(effect: Effect, shape: Shape) -> int:
-    """Number of parameters that are fitted of an effect with this shape.
-
-    Parameters
-    ----------
-    effect : Effect
-    shape : mapping
-
-    Returns
-    -------
-    int
-    """
-    return len(effect.amplitudes(shape)) + _shape_freedom(effect, shape)
+def freer_friction(term: Term) -> Term | None:
+    """Friction that may forget its turning points; None for another term, and where it may."""
+    shape = term.effect.combined(term.shape, {}) if term.effect is not None and term.slips else None
+    return None if shape is None else replace(term, shape=shape)
 
 
-def _shape_freedom(effect: Effect, shape: Shape) -> int:
-    """Number of shape parameters that are fitted.
+def _freedom(effect: Effect, shape: Shape) -> tuple[int, int]:
+    """Numbers of amplitudes and of shape parameters that are fitted.
 
     Parameters
     ----------
@@ -99,24 +87,25 @@ def _shape_freedom(effect: Effect, shape: Shape) -> int:
 
     Returns
     -------
-    int
+    tuple of int
     """
-    return sum(parameter.name in shape for parameter in effect.shape_parameters)
+    shapes = sum(parameter.name in shape for parameter in effect.shape_parameters)
+    return len(effect.amplitudes(shape)), shapes
 
 
-def _with_shape(terms: tuple[Term, ...], index: int, shape: Shape) -> tuple[Term, ...]:
-    """Terms of which one has another shape.
+def _with_term(terms: tuple[Term, ...], index: int, term: Term) -> tuple[Term, ...]:
+    """Terms of which one is another.
 
     Parameters
     ----------
     terms : tuple of Term
     index : int
         Which of them.
-    shape : mapping
-        Its other shape.
+    term : Term
+        The other one.
 
     Returns
     -------
     tuple of Term
     """
-    return (*terms[:index], replace(terms[index], shape=shape), *terms[index + 1 :])
+    return (*terms[:index], term, *terms[index + 1 :])

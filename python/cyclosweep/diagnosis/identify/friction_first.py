@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cyclosweep.diagnosis.identify.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
@@ -93,13 +94,8 @@ def _freer_terms(search: Search, limit_share: float, slip_share: float) -> list[
     -------
     list of Term
     """
-    terms = []
-    for term, _ in usual_effects(search, limit_share, slip_share):
-        freer = None
-        if term.effect is not None and term.slips:
-            freer = term.effect.combined(term.shape, {})
-        terms.append(term if freer is None else replace(term, shape=freer))
-    return terms
+    usual = usual_effects(search, limit_share, slip_share)
+    return [freer_friction(term) or term for term, _ in usual]
 
 
 def usual_effects(
@@ -172,8 +168,9 @@ def _from_better_start(search: Search, noise: Noise, best: FittedStructure) -> F
         for term in best.terms
     ]
     slipped = _fitted(search, noise, begun)
-    better = slipped is not None and _cost(slipped) < _cost(best) - EFFECT_CHARGE
-    return slipped if slipped is not None and better else best
+    if slipped is None or _cost(slipped) >= _cost(best) - EFFECT_CHARGE:
+        return best
+    return slipped
 
 
 def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:

@@ -18,6 +18,9 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
+LEAST_OF_CLASS = 0.25
+"""Size of an effect over that of a larger one of its class from which it is its own: a smaller
+law takes up what the larger one's law misses, and leaves nothing of it."""
 LEAST_LEFT = 3.0
 """Log evidence that has to be left of a law beside a class that explains more [nat]."""
 LEFT_BESIDE = 0.1
@@ -69,6 +72,23 @@ def own_classes(term: Term) -> tuple[str, ...]:
         return CLASSES_OF_EFFECT.get(term.name) or CLASSES_OF_FAMILY.get(term.family, ())
     plain, loaded = term.effect.friction_limits(term.shape)
     return (LOOP,) * (plain > 0) + (OPENING_LOOP,) * (loaded > 0)
+
+
+def share_class(one: Term, other: Term) -> bool:
+    """Whether two terms are effects of the same class of behaviour.
+
+    Parameters
+    ----------
+    one : Term
+    other : Term
+
+    Returns
+    -------
+    bool
+    """
+    if one.effect is None or other.effect is None:
+        return False
+    return bool(set(own_classes(one)) & set(own_classes(other)))
 
 
 def law_places(fitted: FittedStructure, index: int) -> list[int]:

@@ -11,12 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck, own_classes
+from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, LawCheck, share_class
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Floats
 
-LEAST_SHARE = 0.25
-"""Size of a law over that of a larger one of its class from which it is an effect of its own."""
 LOUD = 100.0
 """Signal-to-noise ratio of the larger one from which its law's error counts."""
 
@@ -35,14 +33,14 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
     -------
     tuple of LawCheck
     """
-    place = {term.name: k for k, term in enumerate(fitted.terms)}
-    size = {check.name: size_of(fitted, place[check.name]) for check in checks}
-    classes = {check.name: set(own_classes(fitted.terms[place[check.name]])) for check in checks}
+    judged = {check.name for check in checks}
+    terms = {term.name: term for term in fitted.terms if term.name in judged}
+    size = {t.name: size_of(fitted, k) for k, t in enumerate(fitted.terms) if t.name in judged}
 
     def is_small(name: str) -> bool:
         return any(
-            classes[name] & classes[other]
-            and np.std(size[name]) < LEAST_SHARE * np.std(size[other])
+            share_class(terms[name], terms[other])
+            and np.std(size[name]) < LEAST_OF_CLASS * np.std(size[other])
             and _visibility(fitted, size[other]) > LOUD
             for other in size
             if other != name

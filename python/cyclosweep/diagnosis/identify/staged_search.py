@@ -16,7 +16,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
-from cyclosweep.diagnosis.identify.law_in_class import own_classes
+from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, share_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -35,8 +35,7 @@ LEAST_OF_MISMATCH = 0.04
 of the calibrated model."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
-accepted before, as a share of the other's size; of the same class of behaviour whatever is left,
-because such a law takes up the other's error and leaves nothing of it."""
+accepted before, as a share of the other's size."""
 TIMES_WHAT_IS_LEFT = 3.0
 """Size of an effect over what the whole structure leaves beyond the noise, from which it is no
 model error in any case: laws that err by as much as the effect would leave more."""
@@ -244,26 +243,9 @@ def _without_model_error(
     for k, term in enumerate(fitted.terms):
         others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
         family = max((s for s, each in others if each.family == term.family), default=0.0)
-        alike = max((s for s, each in others if _same_class(each, term)), default=0.0)
+        alike = max((s for s, each in others if share_class(each, term)), default=0.0)
         least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
-        if term.name in before or (stands_out and size[k] >= LEAST_OF_FAMILY * alike):
+        if term.name in before or (stands_out and size[k] >= LEAST_OF_CLASS * alike):
             kept.append(term)
     return tuple(kept)
-
-
-def _same_class(one: Term, other: Term) -> bool:
-    """Whether two effects are of the same class of behaviour.
-
-    Parameters
-    ----------
-    one : Term
-    other : Term
-
-    Returns
-    -------
-    bool
-    """
-    if one.effect is None or other.effect is None:
-        return False
-    return bool(set(own_classes(one)) & set(own_classes(other)))
