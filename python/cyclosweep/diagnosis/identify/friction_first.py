@@ -62,7 +62,7 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
     for term in _freer_terms(search, *STARTS[0]):
         alone = _fitted(search, noise, [term]) if term.slips else None
         offered += [] if alone is None else [alone]
-    best = _from_better_start(search, noise, min(offered, key=_cost))
+    best = from_better_start(search, noise, min(offered, key=_cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms):
         return ()
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
@@ -146,8 +146,12 @@ def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStruct
     return with_right_signs(found, whole_effects=True)
 
 
-def _from_better_start(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:
-    """Start the runs with friction that has slipped, where that explains more than fresh elements.
+def from_better_start(
+    search: Search, noise: Noise, best: FittedStructure, charge: float
+) -> FittedStructure:
+    """Start the runs with friction in its other state, where that explains clearly more.
+
+    Runs begin with fresh friction on the first flank, or with friction that has slipped.
 
     Parameters
     ----------
@@ -155,7 +159,9 @@ def _from_better_start(search: Search, noise: Noise, best: FittedStructure) -> F
     noise : Noise
         Noise and model error together.
     best : FittedStructure
-        The best fit, with fresh elements on the flank at the start of a run.
+        The best fit, with friction in either state.
+    charge : float
+        What the other state must gain, see `PARAMETER_CHARGE`.
 
     Returns
     -------
@@ -163,14 +169,16 @@ def _from_better_start(search: Search, noise: Noise, best: FittedStructure) -> F
     """
     if search.problem.history.free_play_deg <= 0.0:
         return best
+    if not any("slack" in term.shape for term in best.terms):
+        return best
     begun = [
-        replace(term, shape={**term.shape, "slack": 1.0}) if "slack" in term.shape else term
+        replace(term, shape={**term.shape, "slack": 1.0 - term.shape["slack"]})
+        if "slack" in term.shape
+        else term
         for term in best.terms
     ]
-    slipped = _fitted(search, noise, begun)
-    if slipped is None or _cost(slipped) >= _cost(best) - EFFECT_CHARGE:
-        return best
-    return slipped
+    other = _fitted(search, noise, begun)
+    return best if other is None or _cost(other) >= _cost(best) - charge else other
 
 
 def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:

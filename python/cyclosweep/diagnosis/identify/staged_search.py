@@ -15,7 +15,12 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
+from cyclosweep.diagnosis.identify.friction_first import (
+    CONVERGED,
+    PARAMETER_CHARGE,
+    friction_first,
+    from_better_start,
+)
 from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, share_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
@@ -116,6 +121,7 @@ def search_in_stages(
     if begun:
         fitted = fit(searched.problem, searched.noise, begun, fitted, rounds=CONVERGED)
         accepted = fitted.terms
+    restarted = False
     for _ in range(MOST_STAGES):
         factor = error_factor(visibility(fitted, flexible))
         if not accepted and factor == 1.0:
@@ -128,6 +134,15 @@ def search_in_stages(
         if decision.best is None:
             break
         best = decision.best
+        turned = from_better_start(searched, searched.noise, best.fit, PARAMETER_CHARGE)
+        if accepted and turned is not best.fit and not restarted:
+            # What was found beside friction in the wrong state may be the error of that state.
+            restarted = True
+            before = {term.name for term in accepted}
+            kept = tuple(term for term in turned.terms if term.name in before)
+            fitted = fit(searched.problem, searched.noise, kept, turned, rounds=CONVERGED)
+            accepted = fitted.terms
+            continue
         found = _without_model_error(best.fit, accepted, mismatch, searched.noise.spread_deg)
         if decision.unexplained:
             doubtful = _doubtful(search, best, searched.noise.spread_deg)

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.friction_first import (
     PARAMETER_CHARGE,
     STARTS,
@@ -121,6 +122,9 @@ def _found(search: Search) -> Forecast | None:
     ]
     zero = not problem.one_sided and _crosses_late(problem)
     first = fit_forecast(problem, model, terms, zero=zero, most=10)
+    if first.error_deg > _simulation_error(search):
+        # A staircase so steep that the shaft jumps has no settled path from which to fit further.
+        return first
     return _better(
         first, fit_forecast(problem, first.model, first.terms, zero=zero, most=10, blur=BLUR)
     )
@@ -197,7 +201,7 @@ def _usual_structure(search: Search, base: Forecast) -> Forecast | None:
     if usual is None:
         return None
     best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
-    return _extend(search, _prune(problem, best))
+    return freer_where_it_pays(problem, _extend(search, _prune(problem, best)))
 
 
 def _usual(search: Search, base: Forecast) -> Forecast | None:
@@ -286,6 +290,34 @@ def _extend(search: Search, best: Forecast) -> Forecast:
             fit_forecast(problem, joint.model, joint.terms, zero=joint.has_zero, most=8, blur=BLUR),
         )
     return best
+
+
+def freer_where_it_pays(problem: Problem, best: Forecast) -> Forecast:
+    """Let friction forget its turning points where the evidence for it is strong.
+
+    Only from a fit without that freedom: begun with it, fits end in bad optima.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    Forecast
+    """
+    terms = [freer_friction(term) or term for term in best.terms]
+    if terms == list(best.terms):
+        return best
+    values = zip(best.model.effects, terms, strict=True)
+    effects = tuple(replace(value, shape=term.shape) for value, term in values)
+    model, zero = replace(best.model, effects=effects), best.has_zero
+    freed = _better(
+        fit_forecast(problem, model, terms, zero=zero, most=10),
+        fit_forecast(problem, model, terms, zero=zero, most=15, blur=BLUR),
+    )
+    return freed if _cost(freed) < _cost(best) - DECIDED else best
 
 
 def _cost(model: Forecast) -> float:

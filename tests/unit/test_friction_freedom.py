@@ -1,0 +1,92 @@
+"""What is found out about friction after its first fit: how runs began, and what it forgets."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+import cyclosweep.diagnosis.identify.staged_search as staged_search
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.whole_loop import stepwise
+from cyclosweep.simulation.effects import effects
+from cyclosweep.simulation.model import EffectValue, Model
+from cyclosweep_challenge.scoreboard.made import Recipe, make
+
+DRIVE = cs.Drive.reference_87()
+SHAPE = {"slip_deg": 4.0, "scatter": 0.6, "skew": 0.5}
+FREE_PLAY_DEG = 28.0
+
+
+def recording(**friction: float) -> cs.Recording:
+    """A programme of several runs, the twist by friction of a known law."""
+    programme = make(Recipe(4_420))
+    value = EffectValue("friction_hysteresis", {**SHAPE, **friction}, (2.0,))
+    model = Model(2.5, FREE_PLAY_DEG, 0.0, effects=(value,))
+    angle = cs.simulate(model, programme).angle_deg
+    assert angle is not None
+    noise = np.random.default_rng(5).normal(0.0, 0.05, angle.size)
+    return programme.with_angle(angle + noise)
+
+
+class CapturedError(Exception):
+    """The search, as soon as friction is looked for."""
+
+
+@pytest.fixture
+def search_of(monkeypatch: pytest.MonkeyPatch) -> Callable[[cs.Recording], Search]:
+    """Search of a recording in the state in which friction is looked for."""
+    kept: list[Search] = []
+
+    def capture(search: Search, noise: Noise) -> tuple[Term, ...]:
+        kept.append(search)
+        raise CapturedError
+
+    monkeypatch.setattr(staged_search, "friction_first", capture)
+
+    def run(made: cs.Recording) -> Search:
+        with pytest.raises(CapturedError):
+            cs.diagnose(made, DRIVE, full=False)
+        return kept[-1]
+
+    return run
+
+
+def friction_term(slack: float) -> Term:
+    effect = next(each for each in effects() if each.name == "friction_hysteresis")
+    return Term(effect, {**SHAPE, "slack": slack}, None, 2.0)
+
+
+@pytest.mark.parametrize("slack", [0.0, 1.0])
+def test_the_state_in_which_runs_began_is_found_from_either(
+    slack: float, search_of: Callable[[cs.Recording], Search]
+) -> None:
+    search = search_of(recording(slack=slack))
+    noise = search.noise
+    for begun in (0.0, 1.0):
+        terms = (friction_term(begun),)
+        first = fit(search.problem, noise, terms, search.baseline.fit, rounds=20)
+        best = from_better_start(search, noise, first, PARAMETER_CHARGE)
+        assert best.terms[0].shape["slack"] == slack
+        assert (best is first) == (begun == slack)
+
+
+@pytest.mark.parametrize("forgetting", [0.0, 1.0])
+def test_whole_loops_are_fitted_with_friction_that_forgets_only_where_it_does(
+    forgetting: float, search_of: Callable[[cs.Recording], Search]
+) -> None:
+    law = {"forgetting": forgetting} if forgetting else {}
+    problem = search_of(recording(slack=0.0, **law)).problem
+    term = friction_term(0.0)
+    value = EffectValue(term.name, term.shape, (2.0,))
+    begun = replace(stepwise.starting_model(problem), effects=(value,))
+    usual = stepwise.fit_forecast(problem, begun, (term,), zero=False, most=10)
+    freed = stepwise.freer_where_it_pays(problem, usual)
+    assert ("forgetting" in freed.terms[0].shape) == bool(forgetting)
+    if forgetting:
+        assert freed.error_deg < 0.7 * usual.error_deg
