@@ -15,7 +15,7 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
 from cyclosweep.simulation.effects import effects
-from cyclosweep.simulation.model import EffectValue, Model
+from cyclosweep.simulation.model import EffectValue
 from cyclosweep_challenge.scoreboard.made import Recipe, make
 
 DRIVE = cs.Drive.reference_87()
@@ -27,7 +27,7 @@ def recording(**friction: float) -> cs.Recording:
     """A programme of several runs, the twist by friction of a known law."""
     programme = make(Recipe(4_420))
     value = EffectValue("friction_hysteresis", {**SHAPE, **friction}, (2.0,))
-    model = Model(2.5, FREE_PLAY_DEG, 0.0, effects=(value,))
+    model = cs.Model(2.5, FREE_PLAY_DEG, 0.0, effects=(value,))
     angle = cs.simulate(model, programme).angle_deg
     assert angle is not None
     noise = np.random.default_rng(5).normal(0.0, 0.05, angle.size)
