@@ -161,8 +161,12 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     if repeats.is_physics:
         shape = "staircase tied to the position of the mesh"
         place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
+    if repeats.order is not None:
+        shape = "staircase tied to the position of the mesh"
+        spaced = repeats.order.in_words(fitted.problem.history.mesh_ratio)
+        place = f"{spaced}, repeating from run to run (correlation {repeats.correlation:.2f})"
     evidence, wave = accepted.sinusoid
-    if wave is not None and evidence > STRONG_WAVE:
+    if repeats.order is None and wave is not None and evidence > STRONG_WAVE:
         place += f", strongest {wave.place}"
     return Remainder(
         shape=shape,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -55,6 +56,11 @@ MEDIAN_RATIO = 1.1
 """The same for the median of all files [-]."""
 REPEATS = 0.6
 """Correlation of the remainders of two ramps from which a staircase repeats [-]."""
+MOTOR_ORDER = 42.0
+"""Order of the staircase in a turn of the motor. The makers speak of motor poles; 42 is the order
+at which, and at whose multiples, the spectra of all files together stand out."""
+SAME_ORDER = 0.03
+"""Share of it by which an order may differ."""
 CELL_DEG = 0.1
 """Width of the cells of angle in which the remainders of two ramps are compared [deg]."""
 FEWEST_CELLS = 12
@@ -145,9 +151,15 @@ def _repeating(loops: Loops, error: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _staircase_named(outcome: Outcome) -> bool:
-    """Whether what repeats from ramp to ramp, here or by the diagnosis, is named by position."""
+    """Whether what repeats from ramp to ramp, here or by the diagnosis, is named by position.
+
+    By an effect that goes with the position, or by the right order of its steps.
+    """
     left = outcome.words.partition("|")[0]
     repeats = outcome.figures.get("repeats", 0.0) >= REPEATS or "staircase" in left
+    stated = re.search(r"order ([\d.]+) of a turn of the input", left)
+    if stated is not None and abs(float(stated[1]) / MOTOR_ORDER - 1.0) <= SAME_ORDER:
+        return True
     return not repeats or bool(set(POSITION) & set(outcome.named))
 
 

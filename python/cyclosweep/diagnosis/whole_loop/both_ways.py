@@ -53,7 +53,7 @@ def direction_correlation(problem: Problem) -> float | None:
         ends = np.unique(np.r_[0, ends, len(index) - 1])
         legs = [index[a + 1 : b + 1] for a, b in itertools.pairwise(ends)]
         legs = [leg[rows[leg]] for leg in legs]
-        profiles = [_profile(torque[leg], angle[leg], width) for leg in legs]
+        profiles = [profile(torque[leg], angle[leg], width, CELLS / TREND) for leg in legs]
         for (cells, one), (others, other) in itertools.pairwise(profiles):
             _, here, there = np.intersect1d(cells, others, return_indices=True)
             first.append(one[here])
@@ -85,7 +85,7 @@ def in_words(correlation: float | None) -> str:
     )
 
 
-def _profile(torque: Floats, angle: Floats, width: float) -> tuple[Ints, Floats]:
+def profile(torque: Floats, angle: Floats, width: float, trend: float) -> tuple[Ints, Floats]:
     """Torque over angle less a local line.
 
     Parameters
@@ -96,6 +96,8 @@ def _profile(torque: Floats, angle: Floats, width: float) -> tuple[Ints, Floats]
         Angle [deg].
     width : float
         Width of a cell [deg].
+    trend : float
+        Width of the local line in cells, one standard deviation.
 
     Returns
     -------
@@ -107,7 +109,7 @@ def _profile(torque: Floats, angle: Floats, width: float) -> tuple[Ints, Floats]
         return np.zeros(0, np.int64), np.zeros(0)
     cell, which = np.unique(np.floor(angle / width).astype(np.int64), return_inverse=True)
     mean = np.bincount(which, torque) / np.bincount(which)
-    away = (cell[None, :] - cell[:, None]) * (TREND / CELLS)
+    away = (cell[None, :] - cell[:, None]) / trend
     weight = np.exp(-0.5 * away**2)
     sums = [np.sum(weight * away**k, axis=1) for k in range(3)]
     level, slope = weight @ mean, (weight * away) @ mean

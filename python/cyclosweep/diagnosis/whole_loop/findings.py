@@ -5,21 +5,20 @@ from scipy import stats
 
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_words
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
+from cyclosweep.diagnosis.whole_loop.staircase_found import (
+    angle_in_words,
+    named_staircase,
+    staircase,
+)
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
-from cyclosweep.simulation.effects.orders import travels
 from cyclosweep.simulation.elastic_law import elastic_law
 
 LEAST_MOVEMENT = 0.6
 """Share of the nominal dead zone below which friction has held the shaft inside its play."""
 MOST_FRICTION = 0.35
 """Share of the largest torque from which Coulomb friction decides what the loop looks like."""
-STEPS = (3.0, 40.0)
-"""Fewest and most steps of a staircase over the range of the angle."""
-CLEAR_PERIOD = 0.1
-"""Share of the residual that a period has to explain to be given."""
 NORMAL_95 = 1.96
 """Half width of a 95 % interval in standard errors."""
 
@@ -56,11 +55,11 @@ def findings(
         found.append(_stiffness(problem, unsteady=unsteady))
     else:
         found.append(_finding("stiffness", "Not reported, for the same reason as the play."))
-    named = _named_staircase(forecast)
+    named = named_staircase(forecast)
     if named is not None:
         found.append(named)
     elif repeats is not None and repeats.correlation > LEAST_REPEAT and not unsteady:
-        found.append(_staircase(problem, forecast, repeats))
+        found.append(staircase(problem, forecast, repeats))
     return tuple(found)
 
 
@@ -108,11 +107,6 @@ def _finding(topic: str, text: str) -> Finding:
     Finding
     """
     return Finding(topic=topic, text=text)
-
-
-def _angle(value_deg: float) -> str:
-    """Angle in deg and arcmin."""
-    return f"{value_deg:.3g} deg ({60 * value_deg:.3g} arcmin)"
 
 
 def _half_interval(forecast: Forecast, kind: str, effect: str = "") -> float:
@@ -180,8 +174,8 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     dead = 2.0 * forecast.model.free_play_deg
     half = 2 * _half_interval(forecast, "play")
     text = (
-        f"Dead zone of the fitted simulation: {_angle(dead)} ± {half:.2g} deg (95 %) from flank to "
-        "flank, a parameter of that model."
+        f"Dead zone of the fitted simulation: {angle_in_words(dead)} ± {half:.2g} deg (95 %) from "
+        "flank to flank, a parameter of that model."
     )
     law = elastic_law(forecast.model, problem.history.largest_torque_nm)
     if law is not None:
@@ -312,89 +306,3 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
         f"branches from {values.min():.2g} to {values.max():.2g}. Unlike the stiffness by straight "
         "lines it contains what friction takes of the torque on the way up.",
     )
-
-
-def _named_staircase(forecast: Forecast) -> Finding | None:
-    """Orders of a staircase that is one of the effects; None where none is."""
-    for term, value in zip(forecast.terms, forecast.model.effects, strict=True):
-        if term.effect is not None and travels(term.shape):
-            amplitudes = np.array(value.amplitudes)
-            law = term.effect.found_law(forecast.history, term.shape, amplitudes)
-            return _finding("staircase", f"Named: {term.name.replace('_', ' ')}. {law}")
-    return None
-
-
-def _staircase(problem: Problem, forecast: Forecast, repeats: Repetition) -> Finding:
-    """Steps that repeat at the same positions.
-
-    Parameters
-    ----------
-    problem : Problem
-    forecast : Forecast
-    repeats : Repetition
-        How well the residual of one run predicts that of another.
-
-    Returns
-    -------
-    Finding
-    """
-    rows = problem.whole_fitted
-    left = (problem.angle_deg - forecast.angle_deg)[rows]
-    period = step_period(problem.angle_deg[rows], left)
-    spaced = "" if period is None else f", spaced about {_angle(period)} at the measured shaft"
-    return _finding(
-        "staircase",
-        f"Steps of about {_angle(float(np.quantile(np.abs(left), 0.9)))} remain that no effect "
-        f"explains{spaced}. {_repeated(problem, repeats)}",
-    )
-
-
-def _repeated(problem: Problem, repeats: Repetition) -> str:
-    """Say how far the steps repeat, by the same measure as the verdict.
-
-    Parameters
-    ----------
-    problem : Problem
-    repeats : Repetition
-        How well the residual of one run predicts that of another.
-
-    Returns
-    -------
-    str
-    """
-    if not repeats.is_physics:
-        return (
-            f"They repeat only in part from run to run (correlation {repeats.correlation:.2f}): "
-            "too little to tie them to the position of the mesh."
-        )
-    return (
-        "They repeat at the same positions from run to run (correlation "
-        f"{repeats.correlation:.2f}): they are tied to the position of mesh and motor, not to "
-        f"noise.{in_words(direction_correlation(problem))}"
-    )
-
-
-def step_period(angle_deg: Floats, residual_deg: Floats) -> float | None:
-    """Return the period in the angle that explains most of a residual.
-
-    Parameters
-    ----------
-    angle_deg, residual_deg : ndarray of float, shape (n,)
-        Measured angle, and what the model leaves of it [deg].
-
-    Returns
-    -------
-    float or None
-        The period [deg]; None where none stands out.
-    """
-    clean = residual_deg - residual_deg.mean()
-    total = float(clean @ clean)
-    best, gain = None, 0.0
-    for period in float(np.ptp(angle_deg)) / np.geomspace(*STEPS, 120):
-        phase = 2 * np.pi * angle_deg / period
-        wave = np.column_stack([np.ones_like(phase), np.cos(phase), np.sin(phase)])
-        basis = np.linalg.qr(wave)[0]
-        value = float(np.sum((basis.T @ clean) ** 2)) / max(total, 1e-300)
-        if value > gain:
-            best, gain = float(period), value
-    return best if gain > CLEAR_PERIOD else None

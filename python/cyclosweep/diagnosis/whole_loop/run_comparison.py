@@ -1,13 +1,14 @@
 """Whether runs of one recording agree: residuals that repeat, and loops that drift."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.repetition import Repetition
+from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
+from cyclosweep.diagnosis.whole_loop.step_order import step_order
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 DRIFT_RATIO = 1.8
@@ -132,6 +133,9 @@ def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
     if found:
         middle = sorted(found, key=lambda r: r.correlation)
         best = middle[len(middle) // 2]
+    if best.correlation > LEAST_REPEAT:
+        order = step_order(history.applied_nm, problem.angle_deg, history.run)
+        best = replace(best, order=order)
     return best
 
 
