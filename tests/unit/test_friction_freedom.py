@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
+from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.simulation.effects import effects
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep_challenge.scoreboard.made import Recipe, make
@@ -84,8 +85,8 @@ def test_whole_loops_are_fitted_with_friction_that_forgets_only_where_it_does(
     problem = search_of(recording(slack=0.0, **law)).problem
     term = friction_term(0.0)
     value = EffectValue(term.name, term.shape, (2.0,))
-    begun = replace(stepwise.starting_model(problem), effects=(value,))
-    usual = stepwise.fit_forecast(problem, begun, (term,), zero=False, most=10)
+    begun = replace(starting_model(problem), effects=(value,))
+    usual = fit_forecast(problem, begun, (term,), zero=False, most=10)
     freed = stepwise.freer_where_it_pays(problem, usual)
     assert ("forgetting" in freed.terms[0].shape) == bool(forgetting)
     if forgetting:
