@@ -13,8 +13,8 @@ from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
-from cyclosweep.diagnosis.whole_loop import stepwise
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
+from cyclosweep.diagnosis.whole_loop.usual_loop import freer_where_it_pays
 from cyclosweep.simulation.effects import effects
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep_challenge.scoreboard.made import Recipe, make
@@ -87,7 +87,7 @@ def test_whole_loops_are_fitted_with_friction_that_forgets_only_where_it_does(
     value = EffectValue(term.name, term.shape, (2.0,))
     begun = replace(starting_model(problem), effects=(value,))
     usual = fit_forecast(problem, begun, (term,), zero=False, most=10)
-    freed = stepwise.freer_where_it_pays(problem, usual)
+    freed = freer_where_it_pays(problem, usual)
     assert ("forgetting" in freed.terms[0].shape) == bool(forgetting)
     if forgetting:
         assert freed.error_deg < 0.7 * usual.error_deg

@@ -154,19 +154,16 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     """
     fitted = accepted.fit
     left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
+    how = f"from run to run (correlation {repeats.correlation:.2f})"
     shape, place = "misfit of the model", "which does not repeat from run to run"
-    if repeats.correlation > LEAST_REPEAT:
-        how = f"correlation {repeats.correlation:.2f}"
-        place = f"which repeats only in part from run to run ({how})"
-    if repeats.is_physics:
-        shape = "staircase tied to the position of the mesh"
-        place = f"repeating from run to run (correlation {repeats.correlation:.2f})"
-    if repeats.order is not None:
-        shape = "staircase tied to the position of the mesh"
-        spaced = repeats.order.in_words(fitted.problem.history.mesh_ratio)
-        place = f"{spaced}, repeating from run to run (correlation {repeats.correlation:.2f})"
+    if repeats.is_physics or repeats.order is not None:
+        shape, place = "staircase tied to the position of the mesh", f"repeating {how}"
+    elif repeats.correlation > LEAST_REPEAT:
+        place = f"which repeats only in part {how}"
     evidence, wave = accepted.sinusoid
-    if repeats.order is None and wave is not None and evidence > STRONG_WAVE:
+    if repeats.order is not None:
+        place = f"{repeats.order.in_words(fitted.problem.history.mesh_ratio)}, {place}"
+    elif wave is not None and evidence > STRONG_WAVE:
         place += f", strongest {wave.place}"
     return Remainder(
         shape=shape,

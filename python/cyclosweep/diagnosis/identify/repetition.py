@@ -32,6 +32,10 @@ class StepOrder:
     chance: float
     crest_deg: Mapping[int, float] = field(default_factory=dict)
 
+    def of_input(self, mesh_ratio: float) -> float:
+        """Cycles a turn of the input, which turns so often a turn of the measured shaft."""
+        return 360.0 * self.cycles_per_deg / mesh_ratio
+
     def in_words(self, mesh_ratio: float) -> str:
         """Distance of the steps and their order.
 
@@ -44,9 +48,9 @@ class StepOrder:
         -------
         str
         """
-        order = 360.0 * self.cycles_per_deg / mesh_ratio
         return (
-            f"every {1.0 / self.cycles_per_deg:.3g} deg, order {order:.3g} of a turn of the input"
+            f"every {1.0 / self.cycles_per_deg:.3g} deg, order {self.of_input(mesh_ratio):.3g} "
+            "of a turn of the input"
         )
 
 

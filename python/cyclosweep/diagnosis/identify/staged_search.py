@@ -134,15 +134,16 @@ def search_in_stages(
         if decision.best is None:
             break
         best = decision.best
-        turned = from_better_start(searched, searched.noise, best.fit, PARAMETER_CHARGE)
-        if accepted and turned is not best.fit and not restarted:
-            # What was found beside friction in the wrong state may be the error of that state.
-            restarted = True
-            before = {term.name for term in accepted}
-            kept = tuple(term for term in turned.terms if term.name in before)
-            fitted = fit(searched.problem, searched.noise, kept, turned, rounds=CONVERGED)
-            accepted = fitted.terms
-            continue
+        if accepted and not restarted:
+            turned = from_better_start(searched, searched.noise, best.fit, PARAMETER_CHARGE)
+            if turned is not best.fit:
+                # What was found beside friction in the wrong state may be the error of that state.
+                restarted = True
+                before = {term.name for term in accepted}
+                kept = tuple(term for term in turned.terms if term.name in before)
+                fitted = fit(searched.problem, searched.noise, kept, turned, rounds=CONVERGED)
+                accepted = fitted.terms
+                continue
         found = _without_model_error(best.fit, accepted, mismatch, searched.noise.spread_deg)
         if decision.unexplained:
             doubtful = _doubtful(search, best, searched.noise.spread_deg)

@@ -49,10 +49,7 @@ def direction_correlation(problem: Problem) -> float | None:
     second: list[Floats] = []
     for run in np.unique(problem.history.run[rows]):
         index = np.flatnonzero(problem.history.run == run)
-        ends = turning_points(torque[index], TURN * float(np.ptp(torque[rows])))
-        ends = np.unique(np.r_[0, ends, len(index) - 1])
-        legs = [index[a + 1 : b + 1] for a, b in itertools.pairwise(ends)]
-        legs = [leg[rows[leg]] for leg in legs]
+        legs = [leg[rows[leg]] for leg in legs_of(torque, index, float(np.ptp(torque[rows])))]
         profiles = [profile(torque[leg], angle[leg], width, CELLS / TREND) for leg in legs]
         for (cells, one), (others, other) in itertools.pairwise(profiles):
             _, here, there = np.intersect1d(cells, others, return_indices=True)
@@ -62,6 +59,27 @@ def direction_correlation(problem: Problem) -> float | None:
         return None
     # By ranks: what is left of a reversal is a few cells of any size.
     return float(stats.spearmanr(np.concatenate(first), np.concatenate(second)).statistic)
+
+
+def legs_of(torque: Floats, index: Ints, range_nm: float) -> list[Ints]:
+    """Rows of a run from each of its turning points to the next.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        Torque of the whole recording [N m].
+    index : ndarray of int
+        Rows of the run.
+    range_nm : float
+        Range of the torque, a share of which makes a turn [N m].
+
+    Returns
+    -------
+    list of ndarray of int
+    """
+    ends = turning_points(torque[index], TURN * range_nm)
+    ends = np.unique(np.r_[0, ends, len(index) - 1])
+    return [index[a + 1 : b + 1] for a, b in itertools.pairwise(ends)]
 
 
 def in_words(correlation: float | None) -> str:

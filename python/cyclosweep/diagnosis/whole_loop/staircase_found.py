@@ -74,20 +74,15 @@ def _repeated(problem: Problem, repeats: Repetition) -> str:
     """
     order = repeats.order
     spaced = "" if order is None else f" {_ordered(order, problem.history.mesh_ratio)}"
-    if not repeats.is_physics and order is not None:
+    how = f"from run to run (correlation {repeats.correlation:.2f})"
+    if repeats.is_physics:
         return (
-            f"They repeat in part from run to run (correlation {repeats.correlation:.2f}).{spaced}"
+            f"They repeat at the same positions {how}: they are tied to the position of mesh and "
+            f"motor, not to noise.{spaced}{in_words(direction_correlation(problem))}"
         )
-    if not repeats.is_physics:
-        return (
-            f"They repeat only in part from run to run (correlation {repeats.correlation:.2f}): "
-            "too little to tie them to the position of the mesh."
-        )
-    return (
-        "They repeat at the same positions from run to run (correlation "
-        f"{repeats.correlation:.2f}): they are tied to the position of mesh and motor, not to "
-        f"noise.{spaced}{in_words(direction_correlation(problem))}"
-    )
+    if order is not None:
+        return f"They repeat in part {how}.{spaced}"
+    return f"They repeat only in part {how}: too little to tie them to the position of the mesh."
 
 
 def _ordered(order: StepOrder, mesh_ratio: float) -> str:
@@ -103,7 +98,7 @@ def _ordered(order: StepOrder, mesh_ratio: float) -> str:
     -------
     str
     """
-    apart = order.apart_share * 360.0 * order.cycles_per_deg / mesh_ratio
+    apart = order.apart_share * order.of_input(mesh_ratio)
     signs = {1: "positive", -1: "negative"}
     crests = [
         f"at {order.crest_deg[side]:.2f} deg under {signs[side]} load"

@@ -14,8 +14,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from cyclosweep.diagnosis.identify.repetition import StepOrder
-from cyclosweep.diagnosis.whole_loop.both_ways import TURN, profile
-from cyclosweep.recording.structure import turning_points
+from cyclosweep.diagnosis.whole_loop.both_ways import legs_of, profile
 from cyclosweep.simulation.effects.history import Floats, Ints
 
 LOADED = (0.08, 0.93)
@@ -110,9 +109,7 @@ def _legs(torque: Floats, angle: Floats, run: Ints) -> Iterator[_Leg]:
     parts = []
     for each in np.unique(run):
         index = np.flatnonzero(run == each)
-        ends = turning_points(torque[index], TURN * float(np.ptp(torque)))
-        for a, b in itertools.pairwise(np.unique(np.r_[0, ends, len(index) - 1])):
-            leg = index[a + 1 : b + 1]
+        for leg in legs_of(torque, index, float(np.ptp(torque))):
             for side in (1, -1):
                 load = side * torque[leg] / top
                 part = leg[(load > LOADED[0]) & (load < LOADED[1])]

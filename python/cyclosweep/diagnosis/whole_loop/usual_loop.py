@@ -1,0 +1,269 @@
+"""What loops usually show, fitted as a simulation to all rows.
+
+From several starts, then pruned, extended and freed, each as far as it gains more than its
+parameters are charged.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.enrichment import freer_friction
+from cyclosweep.diagnosis.identify.friction_first import (
+    PARAMETER_CHARGE,
+    STARTS,
+    usual_effects,
+)
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
+from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.diagnosis.whole_loop.forecast import BLUR, Forecast, fit_forecast
+from cyclosweep.simulation.effects import Effect
+from cyclosweep.simulation.model import EffectValue
+
+DECIDED = 6.0
+"""Difference of two costs from which the evidence is strong (Kass and Raftery, J. Am. Stat.
+Assoc. 90, 1995: twice the logarithm of a ratio of 20)."""
+MOST_ADDED = 1
+"""Effects added beyond the usual ones."""
+TRIED = 2
+"""Effects that are fitted in a step, those whose shape is most like what is left."""
+
+
+def usual_structure(search: Search, base: Forecast) -> Forecast | None:
+    """Usual effects less those that are not worth their parameters, with what is worth its own.
+
+    Parameters
+    ----------
+    search : Search
+    base : Forecast
+        That of the published model alone.
+
+    Returns
+    -------
+    Forecast or None
+    """
+    problem = search.problem
+    usual = _usual(search, base)
+    if usual is None:
+        return None
+    best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
+    return freer_where_it_pays(problem, _extend(search, _prune(problem, best)))
+
+
+def _usual(search: Search, base: Forecast) -> Forecast | None:
+    """Effects that such loops usually show, all at once, from several starts.
+
+    One at a time, friction takes the place of the stiffening and does not give it back; and the
+    crossings of the dead zone leave many small minima.
+
+    Parameters
+    ----------
+    search : Search
+    base : Forecast
+        That of the published model alone.
+
+    Returns
+    -------
+    Forecast or None
+    """
+    problem = search.problem
+    zero = not problem.one_sided and crosses_late(problem)
+    found: Forecast | None = None
+    for limit, slip in STARTS:
+        begun = usual_effects(search, limit, slip)
+        if not begun:
+            return None
+        terms = [term for term, _ in begun]
+        values = [EffectValue(term.name, term.shape, (size,)) for term, size in begun]
+        model = replace(base.model, effects=tuple(values))
+        joint = fit_forecast(problem, model, terms, zero=zero, most=10)
+        found = joint if found is None else better(found, joint)
+    return found
+
+
+def _prune(problem: Problem, best: Forecast) -> Forecast:
+    """Leave out what gains less than its parameters are charged.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    Forecast
+    """
+    for name in sorted(best.names):
+        kept = [k for k, term in enumerate(best.terms) if term.name != name]
+        if not kept:
+            continue
+        terms = tuple(best.terms[k] for k in kept)
+        model = replace(best.model, effects=tuple(best.model.effects[k] for k in kept))
+        without = fit_forecast(problem, model, terms, zero=best.has_zero, most=5)
+        if cost(without) < cost(best):
+            best = without
+    return best
+
+
+def _extend(search: Search, best: Forecast) -> Forecast:
+    """Add effects that look like what is left, as long as they gain more than they are charged.
+
+    Parameters
+    ----------
+    search : Search
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    Forecast
+    """
+    problem = search.problem
+    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
+    for _ in range(MOST_ADDED):
+        tried = [
+            _with(problem, best, known[name], shape)
+            for name, shape in _most_similar(search, best)[:TRIED]
+        ]
+        if not tried:
+            break
+        joint = min(tried, key=cost)
+        if cost(joint) >= cost(best):
+            break
+        best = better(
+            joint,
+            fit_forecast(problem, joint.model, joint.terms, zero=joint.has_zero, most=8, blur=BLUR),
+        )
+    return best
+
+
+def freer_where_it_pays(problem: Problem, best: Forecast) -> Forecast:
+    """Let friction forget its turning points where the evidence for it is strong.
+
+    Only from a fit without that freedom: begun with it, fits end in bad optima.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    Forecast
+    """
+    terms = [freer_friction(term) or term for term in best.terms]
+    if terms == list(best.terms):
+        return best
+    values = zip(best.model.effects, terms, strict=True)
+    effects = tuple(replace(value, shape=term.shape) for value, term in values)
+    model, zero = replace(best.model, effects=effects), best.has_zero
+    freed = better(
+        fit_forecast(problem, model, terms, zero=zero, most=10),
+        fit_forecast(problem, model, terms, zero=zero, most=15, blur=BLUR),
+    )
+    return freed if cost(freed) < cost(best) - DECIDED else best
+
+
+def cost(model: Forecast) -> float:
+    """Minus twice the log likelihood of a residual's pieces, and the charge for the parameters."""
+    charge = PARAMETER_CHARGE * len(model.parameters)
+    return 2.0 * INDEPENDENT_PIECES * float(np.log(model.error_deg)) + charge
+
+
+def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:
+    """Fit a simulation with one more effect, starting from a small amplitude of it.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : Forecast
+        The best simulation so far.
+    effect : Effect
+    shape : dict of str to float
+        Shape parameters.
+
+    Returns
+    -------
+    Forecast
+    """
+    columns = effect.columns(best.history, shape)
+    largest = np.abs(columns).max(axis=0, initial=1e-12)
+    little = 0.01 * problem.history.largest_twist_deg / np.maximum(largest, 1e-12)
+    model = replace(
+        best.model,
+        effects=(*best.model.effects, EffectValue(effect.name, shape, tuple(map(float, little)))),
+    )
+    terms = (*best.terms, Term(effect, shape))
+    return fit_forecast(problem, model, terms, zero=best.has_zero, most=8)
+
+
+def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, float]]]:
+    """Shapes of elastic effects that explain most of what is left, with physical signs.
+
+    Others are left to recordings with more than one rate, position or temperature: along a single
+    ramp each of them can take any shape.
+
+    Parameters
+    ----------
+    search : Search
+    best : Forecast
+        The best simulation so far.
+
+    Returns
+    -------
+    list of (str, dict of str to float)
+        Name and shape, the one that explains most first.
+    """
+    problem = search.problem
+    rows = problem.fitted
+    history = best.history
+    left = (problem.angle_deg - best.angle_deg)[rows]
+    line = line_design(history, history.elastic_nm, one_sided=problem.one_sided)
+    basis = np.linalg.qr(line[rows])[0]
+    left = left - basis @ (basis.T @ left)
+    gains: dict[str, tuple[float, dict[str, float]]] = {}
+    for signature in search.library.signatures:
+        effect = signature.effect
+        if effect is None or not effect.elastic or effect.name in best.names:
+            continue
+        columns = effect.columns(history, signature.shape)[rows]
+        if columns.shape[1] > 1 or not np.all(np.isfinite(columns)):
+            continue
+        column = columns[:, 0] - basis @ (basis.T @ columns[:, 0])
+        size = float(column @ column)
+        if size <= 1e-9 * float(columns[:, 0] @ columns[:, 0]):
+            continue
+        along = float(column @ left)
+        if signature.signs[0] > 0 and along < 0:
+            continue
+        gain = along**2 / size
+        if gain > gains.get(effect.name, (0.0, {}))[0]:
+            gains[effect.name] = (gain, {k: float(v) for k, v in signature.shape.items()})
+    order = sorted(gains, key=lambda name: -gains[name][0])
+    return [(name, gains[name][1]) for name in order]
+
+
+def crosses_late(problem: Problem) -> bool:
+    """Whether crossings of the dead zone were recorded that show the torque's zero."""
+    history, rows = problem.history, problem.whole_fitted
+    pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
+    return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
+
+
+def better(first: Forecast, second: Forecast) -> Forecast:
+    """Forecast with the smaller error; the first where they are equal.
+
+    Parameters
+    ----------
+    first : Forecast
+    second : Forecast
+
+    Returns
+    -------
+    Forecast
+    """
+    return second if second.error_deg < first.error_deg else first
