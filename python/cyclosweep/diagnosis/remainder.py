@@ -154,12 +154,11 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     """
     fitted = accepted.fit
     left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
-    how = f"from run to run (correlation {repeats.correlation:.2f})"
     shape, place = "misfit of the model", "which does not repeat from run to run"
     if repeats.is_physics or repeats.order is not None:
-        shape, place = "staircase tied to the position of the mesh", f"repeating {how}"
+        shape, place = "staircase tied to the position of the mesh", f"repeating {repeats.in_words}"
     elif repeats.correlation > LEAST_REPEAT:
-        place = f"which repeats only in part {how}"
+        place = f"which repeats only in part {repeats.in_words}"
     evidence, wave = accepted.sinusoid
     if repeats.order is not None:
         place = f"{repeats.order.in_words(fitted.problem.history.mesh_ratio)}, {place}"

@@ -73,6 +73,11 @@ class Repetition:
     order: StepOrder | None = None
 
     @property
+    def in_words(self) -> str:
+        """Between what it repeats, and how well."""
+        return f"from run to run (correlation {self.correlation:.2f})"
+
+    @property
     def is_physics(self) -> bool:
         """Whether something remains that repeats."""
         return self.cells >= FEWEST_CELLS and self.correlation > REPEATING

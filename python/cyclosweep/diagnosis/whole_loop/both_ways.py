@@ -44,12 +44,12 @@ def direction_correlation(problem: Problem) -> float | None:
     """
     rows = problem.whole_fitted | problem.whole_held_out
     torque, angle = problem.history.applied_nm, problem.angle_deg
-    width = float(np.ptp(angle[rows])) / CELLS
+    width, whole = float(np.ptp(angle[rows])) / CELLS, float(np.ptp(torque[rows]))
     first: list[Floats] = []
     second: list[Floats] = []
     for run in np.unique(problem.history.run[rows]):
         index = np.flatnonzero(problem.history.run == run)
-        legs = [leg[rows[leg]] for leg in legs_of(torque, index, float(np.ptp(torque[rows])))]
+        legs = [leg[rows[leg]] for leg in legs_of(torque, index, whole)]
         profiles = [profile(torque[leg], angle[leg], width, CELLS / TREND) for leg in legs]
         for (cells, one), (others, other) in itertools.pairwise(profiles):
             _, here, there = np.intersect1d(cells, others, return_indices=True)

@@ -269,8 +269,8 @@ def fit_forecast(
     )
 
 
-def refit(known: Forecast, *, rows: Flags | None = None, most: int) -> Forecast:
-    """Fit the same structure again, on other rows or for longer.
+def refit(known: Forecast, *, rows: Flags | None = None, most: int, blur: float = 0.0) -> Forecast:
+    """Fit the same structure again, on other rows, for longer or blurred.
 
     Parameters
     ----------
@@ -280,11 +280,19 @@ def refit(known: Forecast, *, rows: Flags | None = None, most: int) -> Forecast:
         Rows to fit; default: all that count, crossings included.
     most : int
         Most iterations.
+    blur : float
+        See `fit_forecast`.
 
     Returns
     -------
     Forecast
     """
     return fit_forecast(
-        known.problem, known.model, known.terms, zero=known.has_zero, rows=rows, most=most
+        known.problem,
+        known.model,
+        known.terms,
+        zero=known.has_zero,
+        rows=rows,
+        most=most,
+        blur=blur,
     )

@@ -74,15 +74,17 @@ def _repeated(problem: Problem, repeats: Repetition) -> str:
     """
     order = repeats.order
     spaced = "" if order is None else f" {_ordered(order, problem.history.mesh_ratio)}"
-    how = f"from run to run (correlation {repeats.correlation:.2f})"
     if repeats.is_physics:
         return (
-            f"They repeat at the same positions {how}: they are tied to the position of mesh and "
-            f"motor, not to noise.{spaced}{in_words(direction_correlation(problem))}"
+            f"They repeat at the same positions {repeats.in_words}: they are tied to the position "
+            f"of mesh and motor, not to noise.{spaced}{in_words(direction_correlation(problem))}"
         )
     if order is not None:
-        return f"They repeat in part {how}.{spaced}"
-    return f"They repeat only in part {how}: too little to tie them to the position of the mesh."
+        return f"They repeat in part {repeats.in_words}.{spaced}"
+    return (
+        f"They repeat only in part {repeats.in_words}: too little to tie them to the position of "
+        "the mesh."
+    )
 
 
 def _ordered(order: StepOrder, mesh_ratio: float) -> str:

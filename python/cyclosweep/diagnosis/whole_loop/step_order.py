@@ -105,11 +105,11 @@ def _legs(torque: Floats, angle: Floats, run: Ints) -> Iterator[_Leg]:
     ------
     _Leg
     """
-    top = float(np.abs(torque).max(initial=0.0))
+    top, whole = float(np.abs(torque).max(initial=0.0)), float(np.ptp(torque))
     parts = []
     for each in np.unique(run):
         index = np.flatnonzero(run == each)
-        for leg in legs_of(torque, index, float(np.ptp(torque))):
+        for leg in legs_of(torque, index, whole):
             for side in (1, -1):
                 load = side * torque[leg] / top
                 part = leg[(load > LOADED[0]) & (load < LOADED[1])]

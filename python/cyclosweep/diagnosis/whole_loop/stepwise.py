@@ -26,7 +26,7 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import (
     DECIDED,
     better,
     cost,
-    crosses_late,
+    shows_torque_zero,
     usual_structure,
 )
 
@@ -113,14 +113,11 @@ def _found(search: Search, simulated_deg: float) -> Forecast | None:
         replace(term, shape=value.shape, amplitude=value.amplitudes[0] if term.slips else 0.0)
         for term, value in zip(fitted.terms, model.effects, strict=True)
     ]
-    zero = not problem.one_sided and crosses_late(problem)
-    first = fit_forecast(problem, model, terms, zero=zero, most=10)
+    first = fit_forecast(problem, model, terms, zero=shows_torque_zero(problem), most=10)
     if first.error_deg > simulated_deg:
         # A staircase so steep that the shaft jumps has no settled path from which to fit further.
         return first
-    return better(
-        first, fit_forecast(problem, first.model, first.terms, zero=zero, most=10, blur=BLUR)
-    )
+    return better(first, refit(first, most=10, blur=BLUR))
 
 
 def _simulation_error(search: Search) -> float:

@@ -18,7 +18,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
-from cyclosweep.diagnosis.whole_loop.forecast import BLUR, Forecast, fit_forecast
+from cyclosweep.diagnosis.whole_loop.forecast import BLUR, Forecast, fit_forecast, refit
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.model import EffectValue
 
@@ -48,8 +48,8 @@ def usual_structure(search: Search, base: Forecast) -> Forecast | None:
     usual = _usual(search, base)
     if usual is None:
         return None
-    best = fit_forecast(problem, usual.model, usual.terms, zero=usual.has_zero, most=10, blur=BLUR)
-    return freer_where_it_pays(problem, _extend(search, _prune(problem, best)))
+    best = _prune(problem, refit(usual, most=10, blur=BLUR))
+    return freer_where_it_pays(problem, _extend(search, best))
 
 
 def _usual(search: Search, base: Forecast) -> Forecast | None:
@@ -69,7 +69,7 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
     Forecast or None
     """
     problem = search.problem
-    zero = not problem.one_sided and crosses_late(problem)
+    zero = shows_torque_zero(problem)
     found: Forecast | None = None
     for limit, slip in STARTS:
         begun = usual_effects(search, limit, slip)
@@ -121,22 +121,17 @@ def _extend(search: Search, best: Forecast) -> Forecast:
     -------
     Forecast
     """
-    problem = search.problem
-    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
     for _ in range(MOST_ADDED):
         tried = [
-            _with(problem, best, known[name], shape)
-            for name, shape in _most_similar(search, best)[:TRIED]
+            _with(search.problem, best, effect, shape)
+            for effect, shape in _most_similar(search, best)[:TRIED]
         ]
         if not tried:
             break
         joint = min(tried, key=cost)
         if cost(joint) >= cost(best):
             break
-        best = better(
-            joint,
-            fit_forecast(problem, joint.model, joint.terms, zero=joint.has_zero, most=8, blur=BLUR),
-        )
+        best = better(joint, refit(joint, most=8, blur=BLUR))
     return best
 
 
@@ -201,7 +196,7 @@ def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, flo
     return fit_forecast(problem, model, terms, zero=best.has_zero, most=8)
 
 
-def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, float]]]:
+def _most_similar(search: Search, best: Forecast) -> list[tuple[Effect, dict[str, float]]]:
     """Shapes of elastic effects that explain most of what is left, with physical signs.
 
     Others are left to recordings with more than one rate, position or temperature: along a single
@@ -215,8 +210,8 @@ def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, f
 
     Returns
     -------
-    list of (str, dict of str to float)
-        Name and shape, the one that explains most first.
+    list of (Effect, dict of str to float)
+        Effect and shape, the one that explains most first.
     """
     problem = search.problem
     rows = problem.fitted
@@ -225,7 +220,7 @@ def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, f
     line = line_design(history, history.elastic_nm, one_sided=problem.one_sided)
     basis = np.linalg.qr(line[rows])[0]
     left = left - basis @ (basis.T @ left)
-    gains: dict[str, tuple[float, dict[str, float]]] = {}
+    found: dict[str, tuple[float, Effect, dict[str, float]]] = {}
     for signature in search.library.signatures:
         effect = signature.effect
         if effect is None or not effect.elastic or effect.name in best.names:
@@ -241,14 +236,17 @@ def _most_similar(search: Search, best: Forecast) -> list[tuple[str, dict[str, f
         if signature.signs[0] > 0 and along < 0:
             continue
         gain = along**2 / size
-        if gain > gains.get(effect.name, (0.0, {}))[0]:
-            gains[effect.name] = (gain, {k: float(v) for k, v in signature.shape.items()})
-    order = sorted(gains, key=lambda name: -gains[name][0])
-    return [(name, gains[name][1]) for name in order]
+        if gain > (found[effect.name][0] if effect.name in found else 0.0):
+            shape = {name: float(value) for name, value in signature.shape.items()}
+            found[effect.name] = (gain, effect, shape)
+    order = sorted(found.values(), key=lambda each: -each[0])
+    return [(effect, shape) for _, effect, shape in order]
 
 
-def crosses_late(problem: Problem) -> bool:
+def shows_torque_zero(problem: Problem) -> bool:
     """Whether crossings of the dead zone were recorded that show the torque's zero."""
+    if problem.one_sided:
+        return False
     history, rows = problem.history, problem.whole_fitted
     pulled = history.side * history.applied_nm < -1e-3 * history.largest_torque_nm
     return bool(np.any(rows & ~problem.fitted) or np.any(rows & pulled))
