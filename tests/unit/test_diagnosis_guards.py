@@ -76,7 +76,7 @@ def test_what_errs_by_several_times_the_noise_is_not_all(bent: Search) -> None:
         assert decision.verdict == verdict
         assert decision.unexplained
     softening = Term(effects.find("overload_softening"), {"onset_nm": 5.0, "power": 2.0})
-    good = bent.refit((softening,))
+    good = bent.refit((softening,), bent.baseline.fit)
     assert no_more_than_fits(claimed, good, bent, 0.95) is claimed
 
 

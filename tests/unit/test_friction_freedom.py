@@ -44,7 +44,7 @@ def search_of(monkeypatch: pytest.MonkeyPatch) -> Callable[[cs.Recording], Searc
     """Search of a recording in the state in which friction is looked for."""
     kept: list[Search] = []
 
-    def capture(search: Search, noise: Noise) -> tuple[Term, ...]:
+    def capture(search: Search, noise: Noise) -> None:
         kept.append(search)
         raise CapturedError
 
@@ -72,7 +72,7 @@ def test_the_state_in_which_runs_began_is_found_from_either(
     for begun in (0.0, 1.0):
         terms = (friction_term(begun),)
         first = fit(search.problem, noise, terms, search.baseline.fit, rounds=20)
-        best = from_better_start(search, noise, first, PARAMETER_CHARGE)
+        best = from_better_start(noise, first, PARAMETER_CHARGE)
         assert best.terms[0].shape["slack"] == slack
         assert (best is first) == (begun == slack)
 

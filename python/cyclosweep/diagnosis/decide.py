@@ -207,6 +207,7 @@ def _named_part(search: Search, candidate: Candidate) -> Candidate:
         named = [t for t, own in zip(candidate.fit.terms, candidate.recognised, strict=True) if own]
         if not named:
             return search.baseline
-        found = search.visited.get(frozenset(t.name for t in named)) or search.refit(tuple(named))
+        known = search.visited.get(frozenset(t.name for t in named))
+        found = known or search.refit(tuple(named), candidate.fit)
         worst = search.baseline.fit.rmse_deg
     return found if found.fit.rmse_deg <= worst else search.baseline

@@ -55,10 +55,10 @@ def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, F
     little = model_error_noise(problem, noise, flexible)
     if search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
         return search, flexible
-    terms = friction_first(search, little)
-    if not terms:
+    found = friction_first(search, little)
+    if found is None:
         return search, flexible
-    known = fit(problem, little, terms, search.baseline.fit, rounds=CONVERGED)
+    known = fit(problem, little, found.terms, found, rounds=CONVERGED)
     beyond = flexible_beyond(problem, library, known)
     slow = noise_left(problem, beyond, all_noise=True)
     if is_far_likelier(slow, noise):

@@ -109,7 +109,7 @@ def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Se
         if not noise.structured and not _is_same(noise, search.noise):
             say("starting over with better-known noise")
             again = Search(search.problem, noise, search.library, search.seed)
-            staged = search_in_stages(again, flexible, say, staged.start.fit.terms)
+            staged = search_in_stages(again, flexible, say, staged.start.fit)
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged

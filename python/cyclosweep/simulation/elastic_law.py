@@ -1,6 +1,6 @@
 """Twist over elastic torque of a model whose effects bend the straight line."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -62,13 +62,13 @@ class ElasticLaw:
     torque_nm: Floats
     twist_deg: Floats
 
+    def twist_at(self, torque_nm: Floats) -> Floats:
+        """Twist at elastic torques [deg], shape as ``torque_nm`` [N m]."""
+        return np.interp(torque_nm, self.torque_nm, self.twist_deg)
+
 
 def elastic_law(model: CalibratedLine, largest_torque_nm: float) -> ElasticLaw | None:
-    """Elastic law of the compliance and all effects that belong to it.
-
-    The points lie closer towards zero; beyond three times the largest torque the law goes on
-    straight. A stretch where the effects together would let the twist fall with growing torque is
-    taken as rigid.
+    """Elastic law of the compliance and all effects that belong to it; see `law_of_twist`.
 
     Parameters
     ----------
@@ -85,24 +85,76 @@ def elastic_law(model: CalibratedLine, largest_torque_nm: float) -> ElasticLaw |
     effects = [value for value in model.effects if value.effect.elastic]
     if not effects and model.elastic_curve is None:
         return None
-    reach = 3.0 * max(largest_torque_nm, 1e-9)
-    half = reach * np.geomspace(1e-5, 1.0, LAW_POINTS)
-    torque = np.r_[-half[::-1], half]
-    side = np.sign(torque)
-    history = History(
-        applied_nm=torque,
-        elastic_nm=torque,
-        angle_deg=side * model.free_play_deg + model.elastic_twist(torque),
+
+    def twist(torque: Floats) -> Floats:
+        straight = model.elastic_twist(torque)
+        line = model.compliance_deg_per_nm, model.free_play_deg
+        history = history_through(torque, straight, line, model.output_pin_count)
+        return np.asarray(straight + linear_twist(effects, history))
+
+    return law_of_twist(twist, largest_torque_nm, model.compliance_deg_per_nm)
+
+
+def history_through(
+    torque_nm: Floats, twist_deg: Floats, line: tuple[float, float], output_pin_count: int
+) -> History:
+    """Load history that passes through elastic torques in one run, each on its own flank.
+
+    Parameters
+    ----------
+    torque_nm : ndarray, shape (n,)
+        Elastic torque [N m], never zero.
+    twist_deg : ndarray, shape (n,)
+        Twist beyond the dead zone at that torque [deg].
+    line : tuple of float
+        Compliance [deg/(N m)] and free play [deg].
+    output_pin_count : int
+        Number of output pins.
+
+    Returns
+    -------
+    History
+    """
+    side = np.sign(torque_nm)
+    compliance, free_play = line
+    return History(
+        applied_nm=torque_nm,
+        elastic_nm=torque_nm,
+        angle_deg=side * free_play + twist_deg,
         side=side,
-        run=np.zeros(len(torque), dtype=np.int64),
-        restart=np.arange(len(torque)) == 0,
-        compliance_deg_per_nm=model.compliance_deg_per_nm,
-        free_play_deg=model.free_play_deg,
-        output_pin_count=model.output_pin_count,
+        run=np.zeros(len(torque_nm), dtype=np.int64),
+        restart=np.arange(len(torque_nm)) == 0,
+        compliance_deg_per_nm=compliance,
+        free_play_deg=free_play,
+        output_pin_count=output_pin_count,
     )
-    twist = model.elastic_twist(torque) + linear_twist(effects, history)
-    least = 1e-3 * model.compliance_deg_per_nm
-    upper = np.maximum.accumulate(np.r_[0.0, twist[LAW_POINTS:]] - least * np.r_[0.0, half])
-    lower = np.maximum.accumulate(np.r_[0.0, -twist[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])
+
+
+def law_of_twist(
+    twist: Callable[[Floats], Floats], largest_torque_nm: float, compliance_deg_per_nm: float
+) -> ElasticLaw:
+    """Elastic law of a function, made to rise everywhere.
+
+    The points lie closer towards zero; beyond three times the largest torque the law goes on
+    straight. A stretch where the twist would fall with growing torque is taken as rigid.
+
+    Parameters
+    ----------
+    twist : callable
+        From torques [N m] to the twist beyond the dead zone [deg].
+    largest_torque_nm : float
+        Largest torque of the programme [N m].
+    compliance_deg_per_nm : float
+        Usual slope, of which a thousandth is the least [deg/(N m)].
+
+    Returns
+    -------
+    ElasticLaw
+    """
+    half = 3.0 * max(largest_torque_nm, 1e-9) * np.geomspace(1e-5, 1.0, LAW_POINTS)
+    twists = twist(np.r_[-half[::-1], half])
+    least = 1e-3 * compliance_deg_per_nm
+    upper = np.maximum.accumulate(np.r_[0.0, twists[LAW_POINTS:]] - least * np.r_[0.0, half])
+    lower = np.maximum.accumulate(np.r_[0.0, -twists[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])
     upper, lower = upper + least * np.r_[0.0, half], lower + least * np.r_[0.0, half]
     return ElasticLaw(np.r_[-half[::-1], 0.0, half], np.r_[-lower[:0:-1], upper])

@@ -42,12 +42,15 @@ class UnnamedShape:
         From a load history of n rows to columns for unit amplitudes, shape (n, k) [deg].
     positive : bool
         Whether its amplitude cannot be negative.
+    elastic : bool
+        Whether it is a function of the elastic torque, flank and direction alone.
     """
 
     family: str
     place: str
     make: Callable[[History], Floats]
     positive: bool = False
+    elastic: bool = False
 
 
 _OFFSETS = frozenset({"run offsets"})
@@ -193,10 +196,14 @@ def _curves(history: History) -> Iterator[UnnamedShape]:
         "smooth odd curve",
         "over the whole range of torque",
         lambda h: h.side[:, None] * hats(h.load_nm, knots),
+        elastic=True,
     )
     if np.any(history.side > 0) and np.any(history.side < 0):
         yield UnnamedShape(
-            "even curve", "over the whole range of torque", lambda h: hats(h.load_nm, knots)
+            "even curve",
+            "over the whole range of torque",
+            lambda h: hats(h.load_nm, knots),
+            elastic=True,
         )
     rough = np.array([0.0, 0.3, 1.0]) * top
     yield UnnamedShape(
@@ -226,7 +233,7 @@ def _cells(history: History) -> Iterator[UnnamedShape]:
         ]
         return np.column_stack(parts)
 
-    yield UnnamedShape("torque and direction", "over torque and direction", cells)
+    yield UnnamedShape("torque and direction", "over torque and direction", cells, elastic=True)
 
 
 def _runs(history: History) -> Iterator[UnnamedShape]:

@@ -33,6 +33,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
 )
 from cyclosweep.diagnosis.identify.run_offsets_check import without_leftovers
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
@@ -59,6 +60,9 @@ MOST_MISSED, MOST_MISSED_LOOP = 0.1, 0.25
 """What a named law may miss inside its class, as a share of both in root mean squares: laws of the
 literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops or
 follow a position or a temperature."""
+ERROR_OF_OTHERS = 0.01
+"""What another law misses, as a share of its own size, that may lie in the class of a smaller one:
+no law is exact to a hundredth."""
 WITHIN = 0.25
 """What offsets of all runs may leave, over what they explain, as root mean squares, for any law of
 the datum to stand: what changes within the runs is no zero that moves from run to run."""
@@ -252,11 +256,15 @@ def _check(
     beaten = max([by_law, *(every[name].evidence for name in family if follows)])
     if rival is not None and every[rival].evidence > beaten + close:
         replaced = LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
+    # A law is judged by its class no closer than to the error that much larger ones leave there.
+    error = ERROR_OF_OTHERS * _size_over(fitted, indices)
+    little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))
+    most = float(np.clip(np.hypot(MOST_MISSED, error), 0.0, MOST_MISSED_LOOP))
     stands = deficit <= close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
-    stands |= follows or (beyond > 0.0 and share <= LITTLE_MISSED)
+    stands |= follows or ((beyond > 0.0 or error > LITTLE_MISSED) and share <= little)
     if set(own) == {RUN} and RUN in every and _within_runs(every[RUN], residual, classes) <= WITHIN:
         stands, loose = True, True
-    whole = share <= (MOST_MISSED_LOOP if loose else MOST_MISSED)
+    whole = share <= (MOST_MISSED_LOOP if loose else most)
     whole |= deficit < 0.0 or max((each.evidence for each in left), default=0.0) < CLEAR
     # The terms of a whole loop were chosen by what they predict.
     seen = by_law >= LEAST_EVIDENCE or fitted.independent_share < 1.0
@@ -266,6 +274,27 @@ def _check(
     if behaviour and every[behaviour].evidence <= 0.0:
         behaviour = ""
     return [LawCheck(name, behaviour, share, float(deficit), holds) for name in names]
+
+
+def _size_over(fitted: FittedStructure, indices: Sequence[int]) -> float:
+    """Size of the largest other law over that of some laws together, as root mean squares.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    indices : sequence of int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    float
+        Zero where there is no other law.
+    """
+    own = np.sum([size_of(fitted, index) for index in indices], axis=0)
+    others = [k for k in range(len(fitted.terms)) if k not in indices]
+    largest = max((float(np.std(size_of(fitted, k))) for k in others), default=0.0)
+    return largest / max(float(np.std(own)), 1e-300)
 
 
 def _within_runs(offsets: ClassEvidence, residual: Floats, classes: ClassColumns) -> float:

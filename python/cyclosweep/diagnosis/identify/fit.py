@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
 from cyclosweep.diagnosis.identify.fitted_structure import (
@@ -14,7 +13,9 @@ from cyclosweep.diagnosis.identify.fitted_structure import (
     TorqueZero,
 )
 from cyclosweep.diagnosis.identify.joint_fit import JointFit, usual_change
+from cyclosweep.diagnosis.identify.path_law import path_law
 from cyclosweep.diagnosis.identify.repetition import Repetition
+from cyclosweep.diagnosis.identify.secant_fit import minimise
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
@@ -25,6 +26,8 @@ from cyclosweep.simulation.simulate import EffectValue, Model
 
 FEWEST_ROWS = 6
 """Fewer rows than this cannot even calibrate the baseline."""
+STEPS_A_ROUND = 2
+"""Steps with updated slopes that are tried for each iteration with measured ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +221,8 @@ def fit(
     history = history.with_state(measured_deg=None)
     if start is not None and not any(term.slips for term in terms):
         history = history.with_state(elastic_nm=history.applied_nm, angle_deg=mean)
-    work = JointFit(problem, noise, terms, parameters, history, mean)
+    law = None if start is None else path_law(start.elastic_parts, start.history)
+    work = JointFit(problem, noise, terms, parameters, history, mean, law)
     values = np.array([each.to_scale(_value(terms[each.term], each.name)) for each in parameters])
     if len(parameters):
         lower = np.array([each.to_scale(each.quantity.lower) for each in parameters])
@@ -228,20 +232,13 @@ def fit(
         values = np.clip(values, lower + 1e-6 * width, upper - 1e-6 * width)
         scale = np.array([usual_change(p, v) for p, v in zip(parameters, values, strict=True)])
         work.expand_at(values)
+        slopes: Floats | None = None
         for _ in range(2):
-            result = least_squares(
-                work.residual,
-                values,
-                bounds=(lower, upper),
-                x_scale=scale,
-                diff_step=np.full(len(values), 1e-4),
-                max_nfev=rounds,
-                ftol=1e-5,
-                xtol=1e-5,
-                gtol=1e-8,
+            found_at, slopes = minimise(
+                work.residual, values, (lower, upper), scale, STEPS_A_ROUND * rounds, slopes
             )
-            moved = float(np.max(np.abs(result.x - values) / scale))
-            values = result.x
+            moved = float(np.max(np.abs(found_at - values) / scale))
+            values = found_at
             work.expand_at(values)
             if moved < 1e-2:
                 break

@@ -53,6 +53,7 @@ def fit_parameters_of(terms: Sequence[Term], problem: Problem) -> tuple[FitParam
     """
     found: list[FitParameter] = []
     sliding = False
+    grows = any(_limit_grows(term) for term in terms)
     for index, term in enumerate(terms):
         if term.effect is None:
             continue
@@ -63,8 +64,15 @@ def fit_parameters_of(terms: Sequence[Term], problem: Problem) -> tuple[FitParam
                 continue
             sliding = True
         for parameter in term.effect.shape_parameters:
-            if parameter.name not in term.shape:
+            if parameter.name not in term.shape or (parameter.name == "growth" and not grows):
                 continue
             bounded = term.effect.shape_bounds(parameter, problem.history)
             found.append(FitParameter(index, parameter.name, bounded))
     return tuple(found)
+
+
+def _limit_grows(term: Term) -> bool:
+    """Whether a term is friction whose limit grows with the load, and presliding with it."""
+    if term.effect is None or not term.slips:
+        return False
+    return term.effect.friction_limits(term.shape)[1] > 0.0

@@ -273,6 +273,15 @@ class FittedStructure(ABC):
             first += width
         raise IndexError(index)
 
+    @property
+    def elastic_parts(self) -> list[tuple[Term, Floats]]:
+        """Terms that belong to the elastic law, each with its amplitudes."""
+        return [
+            (term, self.beta[self.column_range(k)])
+            for k, term in enumerate(self.terms)
+            if term.elastic
+        ]
+
     def wrong_signs(self, index: int) -> Flags:
         """Amplitudes of a term that lie outside what physics allows."""
         term = self.terms[index]

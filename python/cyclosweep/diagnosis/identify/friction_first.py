@@ -32,7 +32,7 @@ CONVERGED = 20
 them."""
 
 
-def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
+def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     """Find friction, and what else loops usually show, where it explains most of a loop.
 
     Parameters
@@ -44,29 +44,34 @@ def friction_first(search: Search, noise: Noise) -> tuple[Term, ...]:
 
     Returns
     -------
-    tuple of Term
-        None of them where they take away too little, or where none of them slips.
+    FittedStructure or None
+        None where they take away too little, or where none of them slips.
     """
     baseline = search.baseline.fit
     best: FittedStructure | None = None
     for limit, slip in STARTS:
         begun = _freer_terms(search, limit, slip)
-        joint = _fitted(search, noise, begun)
+        joint = _fitted(noise, begun, baseline)
         if joint is not None and (best is None or joint.rmse_deg < best.rmse_deg):
             best = joint
     # One friction has few optima, two and their presliding many: where a joint fit ended in a bad
     # one, either friction alone is better.
     if best is None:
-        return ()
-    offered = [_prune(search, noise, best)]
+        return None
+    offered = [_prune(noise, best)]
     for term in _freer_terms(search, *STARTS[0]):
-        alone = _fitted(search, noise, [term]) if term.slips else None
+        alone = _fitted(noise, [term], baseline) if term.slips else None
         offered += [] if alone is None else [alone]
-    best = from_better_start(search, noise, min(offered, key=_cost), EFFECT_CHARGE)
+    best = from_better_start(noise, min(offered, key=_cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms):
-        return ()
+        return None
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
-    return _settled(best.terms) if removed > LEAST_REMOVED else ()
+    if removed <= LEAST_REMOVED:
+        return None
+    # What was fitted beside friction kept it in its place. What it really is the search decides:
+    # a stiffening and a difference of the directions together make the curve of any dial.
+    friction = [term for term in best.terms if term.slips]
+    return fit(search.problem, search.noise, _settled(friction), best, rounds=CONVERGED)
 
 
 def _settled(terms: Sequence[Term]) -> tuple[Term, ...]:
@@ -126,15 +131,16 @@ def usual_effects(
     return terms
 
 
-def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStructure | None:
+def _fitted(noise: Noise, terms: Sequence[Term], before: FittedStructure) -> FittedStructure | None:
     """Fit terms jointly, less those whose amplitude has the wrong sign; None where none is left.
 
     Parameters
     ----------
-    search : Search
     noise : Noise
         Noise and model error together.
     terms : sequence of Term
+    before : FittedStructure
+        The fit from which it goes on.
 
     Returns
     -------
@@ -142,20 +148,17 @@ def _fitted(search: Search, noise: Noise, terms: Sequence[Term]) -> FittedStruct
     """
     if not terms:
         return None
-    found = fit(search.problem, noise, tuple(terms), search.baseline.fit, rounds=CONVERGED)
+    found = fit(before.problem, noise, tuple(terms), before, rounds=CONVERGED)
     return with_right_signs(found, whole_effects=True)
 
 
-def from_better_start(
-    search: Search, noise: Noise, best: FittedStructure, charge: float
-) -> FittedStructure:
+def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> FittedStructure:
     """Start the runs with friction in its other state, where that explains clearly more.
 
     Runs begin with fresh friction on the first flank, or with friction that has slipped.
 
     Parameters
     ----------
-    search : Search
     noise : Noise
         Noise and model error together.
     best : FittedStructure
@@ -167,7 +170,7 @@ def from_better_start(
     -------
     FittedStructure
     """
-    if search.problem.history.free_play_deg <= 0.0:
+    if best.problem.history.free_play_deg <= 0.0:
         return best
     if not any("slack" in term.shape for term in best.terms):
         return best
@@ -177,16 +180,15 @@ def from_better_start(
         else term
         for term in best.terms
     ]
-    other = _fitted(search, noise, begun)
+    other = _fitted(noise, begun, best)
     return best if other is None or _cost(other) >= _cost(best) - charge else other
 
 
-def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructure:
+def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
     """Leave out what gains less than its parameters are charged, the least first.
 
     Parameters
     ----------
-    search : Search
     noise : Noise
         Noise and model error together.
     best : FittedStructure
@@ -198,7 +200,7 @@ def _prune(search: Search, noise: Noise, best: FittedStructure) -> FittedStructu
     """
     while len(best.terms) > 1:
         fits = [
-            _fitted(search, noise, [term for term in best.terms if term is not left_out])
+            _fitted(noise, [term for term in best.terms if term is not left_out], best)
             for left_out in best.terms
         ]
         least = min((each for each in fits if each is not None), key=_cost, default=None)

@@ -5,9 +5,12 @@ from collections.abc import Sequence
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip import Friction
+from cyclosweep.simulation.elastic_law import ElasticLaw
 
 
-def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> History:
+def friction_path(
+    terms: Sequence[Term], history: History, mean_deg: Floats, law: ElasticLaw | None
+) -> History:
     """Path of the shaft with these friction terms, everything else held.
 
     Parameters
@@ -19,6 +22,8 @@ def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> 
         All rows with the calibrated line and the elastic torque of the round before.
     mean_deg : ndarray, shape (n,)
         Modelled twist of all rows in the round before [deg].
+    law : ElasticLaw or None
+        Elastic law of the round before; None for the line.
 
     Returns
     -------
@@ -30,6 +35,9 @@ def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> 
         for term in terms
         if term.effect is not None and term.slips
     )
-    offset = mean_deg - history.compliance_deg_per_nm * history.elastic_nm
-    angle, torque = friction.solve(history, offset, 0.0)
+    if law is None:
+        twist, points = history.compliance_deg_per_nm * history.elastic_nm, None
+    else:
+        twist, points = law.twist_at(history.elastic_nm), (law.torque_nm, law.twist_deg)
+    angle, torque = friction.solve(history, mean_deg - twist, 0.0, points)
     return history.with_state(elastic_nm=history.applied_nm - torque, angle_deg=angle)

@@ -7,11 +7,13 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
 from cyclosweep.diagnosis.identify.friction_path import friction_path
+from cyclosweep.diagnosis.identify.path_law import elastic_parts, path_law
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip import on_shared_elements
+from cyclosweep.simulation.elastic_law import ElasticLaw
 
 INNER = 3
 """Rounds in which the path of the shaft and the linear parameters are solved in turn."""
@@ -76,6 +78,8 @@ class JointFit:
         All rows with the path from which the iteration starts.
     mean_deg : ndarray, shape (n,)
         Modelled twist of all rows from which it starts [deg].
+    law : ElasticLaw or None
+        Elastic law from which it starts; None for the line.
     """
 
     def __init__(
@@ -86,6 +90,7 @@ class JointFit:
         parameters: tuple[FitParameter, ...],
         history: History,
         mean_deg: Floats,
+        law: ElasticLaw | None = None,
     ) -> None:
         self.problem, self.noise, self.terms = problem, noise, terms
         self.fit_parameters = parameters
@@ -93,7 +98,7 @@ class JointFit:
         self.use = problem.fitted
         self.angle = problem.angle_deg[self.use]
         self.history = history
-        self.mean = mean_deg
+        self.mean, self.law = mean_deg, law
         self.beta = np.zeros(0)
         self._work_at(self.mean)
 
@@ -175,7 +180,9 @@ class JointFit:
         self._known_columns[index] = (history, shape, columns, white)
         return columns, white
 
-    def _path(self, terms: tuple[Term, ...], history: History, mean: Floats) -> History:
+    def _path(
+        self, terms: tuple[Term, ...], history: History, mean: Floats, law: ElasticLaw | None
+    ) -> History:
         """Path of the shaft, computed once for the same friction from the same state.
 
         Parameters
@@ -185,6 +192,8 @@ class JointFit:
             All rows in the state from which the path is solved.
         mean : ndarray, shape (n,)
             Modelled twist of all rows there [deg].
+        law : ElasticLaw or None
+            Elastic law there.
 
         Returns
         -------
@@ -194,12 +203,16 @@ class JointFit:
         known = self._known_path
         if known is not None and known[0] is history and known[1] is mean and known[2] == friction:
             return known[3]
-        path = friction_path(terms, history, mean)
+        path = friction_path(terms, history, mean, law)
         self._known_path = (history, mean, friction, path)
         return path
 
     def _solve_at(
-        self, terms: tuple[Term, ...], history: History, mean: Floats
+        self,
+        terms: tuple[Term, ...],
+        history: History,
+        mean: Floats,
+        law: ElasticLaw | None,
     ) -> tuple[History, list[Floats], Floats, Floats]:
         """Solve path and linear parameters once, from a path and a mean.
 
@@ -210,6 +223,8 @@ class JointFit:
             All rows in the state from which the path is solved.
         mean : ndarray, shape (n,)
             Modelled twist of all rows there [deg].
+        law : ElasticLaw or None
+            Elastic law there.
 
         Returns
         -------
@@ -218,11 +233,13 @@ class JointFit:
             parameters.
         """
         if self.slides:
-            history = self._path(terms, history, mean)
+            history = self._path(terms, history, mean, law)
         design, white, hold = self._design(terms, history)
         return history, design, white, _solve(white, self._shifted, hold)
 
-    def _evaluate(self, values: Floats, inner: int) -> tuple[History, Floats, Floats]:
+    def _evaluate(
+        self, values: Floats, inner: int
+    ) -> tuple[History, Floats, Floats, ElasticLaw | None]:
         """Solve path and linear parameters at these values of the nonlinear ones.
 
         Parameters
@@ -234,16 +251,18 @@ class JointFit:
 
         Returns
         -------
-        history, mean, beta
-            Path of the shaft, modelled twist [deg], linear parameters.
+        history, mean, beta, law
+            Path of the shaft, modelled twist [deg], linear parameters, elastic law.
         """
         terms = self._terms_at(values)
-        history, mean = self.history, self.mean
+        history, mean, law = self.history, self.mean, self.law
         for _ in range(inner if self.slides else 1):
-            history, design, _, beta = self._solve_at(terms, history, mean)
+            history, design, _, beta = self._solve_at(terms, history, mean, law)
             mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
-        return history, mean, beta
+            if self.slides:
+                law = path_law(elastic_parts(terms, design, beta), history)
+        return history, mean, beta, law
 
     def _calibrated(self, history: History, beta: Floats, mean: Floats) -> History:
         """Path of the shaft with the fitted line, and with the fitted twist where nothing slips.
@@ -279,7 +298,7 @@ class JointFit:
     def residual(self, values: Floats) -> Floats:
         """Working residual, path and linear parameters solved for these nonlinear ones."""
         terms = self._terms_at(values)
-        _, _, white, beta = self._solve_at(terms, self.history, self.mean)
+        _, _, white, beta = self._solve_at(terms, self.history, self.mean, self.law)
         self._last = (terms, white, beta)
         return self._shifted - white @ beta
 
@@ -290,9 +309,9 @@ class JointFit:
             self.noise = exact.with_sigma(level)
             self._work_at(self.mean)
             for _ in range(6):
-                history, mean, beta = self._evaluate(values, INNER)
+                history, mean, beta, law = self._evaluate(values, INNER)
                 moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
-                self.history, self.mean, self.beta = history, mean, beta
+                self.history, self.mean, self.beta, self.law = history, mean, beta, law
                 self._follow_amplitudes(history, beta)
                 self._work_at(mean)
                 if moved < 1e-3 * self.noise.sigma_deg:

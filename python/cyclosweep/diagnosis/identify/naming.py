@@ -72,7 +72,7 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
         names = {check.name for check in checks if check.holds}
         if gone:
             terms = tuple(term for term in part.fit.terms if term.name in names)
-            part = search.refit(terms) if terms else search.baseline
+            part = search.refit(terms, part.fit) if terms else search.baseline
         withdrawn += gone
         if judged:
             held = (check for check in checks if check.holds)

@@ -56,8 +56,8 @@ class Search:
         All hypotheses, as columns on the fitted rows.
     seed : int
         Seed of every random draw.
-    accepted : tuple of Term
-        Terms that every structure contains.
+    accepted : FittedStructure, optional
+        What every structure contains, as it was fitted before.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Search:
         noise: Noise,
         library: Library,
         seed: int,
-        accepted: tuple[Term, ...] = (),
+        accepted: FittedStructure | None = None,
     ) -> None:
         self.problem, self.noise, self.library = problem, noise, library
         self.seed = seed
@@ -102,8 +102,8 @@ class Search:
         self.baseline = self._candidate(base, 0.0, 0.0)
         self.start = self.baseline
         self.visited: dict[frozenset[str], Candidate] = {}
-        if accepted:
-            self.start = self.refit(accepted)
+        if accepted is not None and accepted.terms:
+            self.start = self.refit(accepted.terms, accepted)
             self.alarm = Alarm.calibrate(self.start.scan, np.random.default_rng([seed, 1]))
             self.threshold = self.alarm.threshold
             self.start = replace(self.start, alarm=self.alarm)
@@ -181,9 +181,9 @@ class Search:
         self.visited[candidate.names] = candidate
         return candidate
 
-    def refit(self, terms: tuple[Term, ...]) -> Candidate:
-        """Fit a structure that was not visited on its own."""
-        return self._candidate(fit(self.problem, self.noise, terms, self.baseline.fit), 0.0, 0.0)
+    def refit(self, terms: tuple[Term, ...], before: FittedStructure) -> Candidate:
+        """Fit a structure that was not visited on its own, from a fit with more terms."""
+        return self._candidate(fit(self.problem, self.noise, terms, before), 0.0, 0.0)
 
     def looked_through(self, fitted: FittedStructure) -> Candidate:
         """Look for hypotheses in the residual of a structure that was fitted elsewhere."""

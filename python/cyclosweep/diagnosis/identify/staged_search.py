@@ -22,6 +22,7 @@ from cyclosweep.diagnosis.identify.friction_first import (
     from_better_start,
 )
 from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, share_class
+from cyclosweep.diagnosis.identify.other_laws import with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -89,7 +90,7 @@ def search_in_stages(
     searched: Search,
     flexible: Floats,
     say: Callable[[str], None],
-    begun: tuple[Term, ...] = (),
+    begun: FittedStructure | None = None,
 ) -> Search:
     """Explain the largest mismatch first, then what is left of it, stage by stage.
 
@@ -101,8 +102,8 @@ def search_in_stages(
         Columns of a flexible model, see `visibility`.
     say : callable
         Called with a few words before each long step.
-    begun : tuple of Term
-        Terms accepted before; without them friction is looked for first.
+    begun : FittedStructure, optional
+        What was accepted before; without it friction is looked for first.
 
     Returns
     -------
@@ -110,32 +111,32 @@ def search_in_stages(
         The search of the last stage, which starts from everything that the stages before it
         accepted; the one given where they accepted nothing.
     """
-    accepted: tuple[Term, ...] = ()
     rivals: list[tuple[Candidate, float]] = []
     last = searched
     fitted: FittedStructure = searched.baseline.fit
     mismatch = fitted.rmse_deg
     factor = error_factor(visibility(fitted, flexible))
-    if not begun and factor > 1.0:
-        begun = friction_first(searched, searched.noise.with_model_error(factor))
-    if begun:
-        fitted = fit(searched.problem, searched.noise, begun, fitted, rounds=CONVERGED)
-        accepted = fitted.terms
+    if begun is not None:
+        fitted = fit(searched.problem, searched.noise, begun.terms, begun, rounds=CONVERGED)
+    elif factor > 1.0:
+        fitted = friction_first(searched, searched.noise.with_model_error(factor)) or fitted
+    accepted = fitted.terms
     restarted = False
     for _ in range(MOST_STAGES):
         factor = error_factor(visibility(fitted, flexible))
         if not accepted and factor == 1.0:
             break
-        search = _stage(searched, factor, accepted)
+        search = _stage(searched, factor, fitted)
         search.run(say)
         decision = decide(search, [], 0.0)
         if accepted:
             last = search
-        if decision.best is None:
-            break
         best = decision.best
+        if best is None or best.score < search.start.score:
+            # What leaves nothing more may still be less likely than what was accepted.
+            break
         if accepted and not restarted:
-            turned = from_better_start(searched, searched.noise, best.fit, PARAMETER_CHARGE)
+            turned = from_better_start(searched.noise, best.fit, PARAMETER_CHARGE)
             if turned is not best.fit:
                 # What was found beside friction in the wrong state may be the error of that state.
                 restarted = True
@@ -154,15 +155,19 @@ def search_in_stages(
             so_far = 1.0 - sum(share for _, share in rivals)
             others = [each for each in decision.explanations if each[0] is not best]
             rivals += [(candidate, so_far * share) for candidate, share in others]
-        fitted = fit(searched.problem, searched.noise, found, search.baseline.fit, rounds=CONVERGED)
+        fitted = fit(searched.problem, searched.noise, found, best.fit, rounds=CONVERGED)
         accepted = fitted.terms
     if len(last.start.fit.terms) < len(accepted):
-        last = _stage(searched, error_factor(visibility(fitted, flexible)), accepted)
-    last.rivals_of_start = rivals
+        last = _stage(searched, error_factor(visibility(fitted, flexible)), fitted)
+    if accepted:
+        other = with_better_laws(last)
+        if other is not last.start.fit:
+            last = _stage(searched, error_factor(visibility(other, flexible)), other)
+    last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
 
 
-def _stage(searched: Search, factor: float, accepted: tuple[Term, ...]) -> Search:
+def _stage(searched: Search, factor: float, accepted: FittedStructure) -> Search:
     """Search of one stage, with nothing visited.
 
     Parameters
@@ -171,8 +176,8 @@ def _stage(searched: Search, factor: float, accepted: tuple[Term, ...]) -> Searc
         The search against the noise alone.
     factor : float
         Noise and model error together over the noise.
-    accepted : tuple of Term
-        Terms accepted before.
+    accepted : FittedStructure
+        What was accepted before.
 
     Returns
     -------
@@ -208,7 +213,7 @@ def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[st
         others = tuple(each for each in fitted.terms if each is not term)
         clear = float(np.std(size_of(fitted, k))) >= TIMES_WHAT_IS_LEFT * left
         if not (recognised and clear) or (
-            0.5 * search.gain(search.refit(others).fit, fitted) < INDISPENSABLE
+            0.5 * search.gain(search.refit(others, fitted).fit, fitted) < INDISPENSABLE
         ):
             found.add(term.name)
     return frozenset(found)

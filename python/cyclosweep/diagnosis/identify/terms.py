@@ -49,6 +49,13 @@ class Term:
         """Whether it is friction on slip elements."""
         return self.effect is not None and self.effect.slips
 
+    @property
+    def elastic(self) -> bool:
+        """Whether it belongs to the elastic law: its twist follows from the elastic torque."""
+        if self.effect is not None:
+            return self.effect.elastic
+        return self.unnamed is not None and self.unnamed.elastic
+
     def columns(self, history: History) -> Floats:
         """Columns for unit amplitudes [deg]."""
         if self.effect is not None:

@@ -13,8 +13,6 @@ from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.effects.slip import on_shared_elements
 from cyclosweep.simulation.model import EffectValue, Model
 
-GROWTH = Parameter("growth", "", "power by which presliding distances grow with the limit")
-
 
 @dataclass(frozen=True, slots=True)
 class ModelParameter:
@@ -24,7 +22,7 @@ class ModelParameter:
     ----------
     kind : str
         ``"datum"``, ``"compliance"``, ``"play"`` or ``"zero"`` (torque read without load) of the
-        line; ``"growth"`` of the presliding distances; ``"nonlinear"``, a `FitParameter` of a term;
+        line; ``"nonlinear"``, a `FitParameter` of a term;
         ``"amplitude"``, a linear amplitude of a term.
     term : int
         Index of its term; -1 for the line.
@@ -65,7 +63,7 @@ def model_parameters_of(
     Returns
     -------
     tuple of ModelParameter
-        Line, growth, nonlinear parameters, linear amplitudes.
+        Line, nonlinear parameters, linear amplitudes.
     """
     top, twist = problem.history.largest_torque_nm, problem.history.largest_twist_deg
     span = float(np.ptp(problem.angle_deg))
@@ -84,9 +82,6 @@ def model_parameters_of(
         parameters.append(
             ModelParameter("zero", -1, "zero", -0.3 * top, 0.3 * top, 0.1 * top, nothing)
         )
-    first = next((k for k, term in enumerate(terms) if term.slips), None)
-    if first is not None and "growth" in terms[first].shape:
-        parameters.append(ModelParameter("growth", first, "growth", 0.0, 1.0, 1.0, GROWTH))
     for nonlinear in fit_parameters_of(terms, problem):
         quantity = nonlinear.quantity
         lower, upper = nonlinear.to_scale(quantity.lower), nonlinear.to_scale(quantity.upper)

@@ -8,6 +8,8 @@ import numpy as np
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
+LATEST_FIRST = 0.45
+"""Load of the first engagement at most, as a share of the largest load."""
 KINKS = 6
 """Most loads at which the slope drops."""
 FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
@@ -55,13 +57,17 @@ class ClearanceTakeup(Effect):
         ]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """First engagement in the lower half; a kink further out is what a sensor's limit shows."""
+        """Range of engagement from the lower half; kinks anywhere, as they may change places."""
         top = history.largest_torque_nm
-        if parameter.name in ("first_nm", "kink_1_nm"):
-            return replace(parameter, lower=0.0, upper=0.45 * top)
+        if parameter.name == "first_nm":
+            return replace(parameter, lower=0.0, upper=LATEST_FIRST * top)
         if parameter.name.startswith("kink"):
             return replace(parameter, lower=0.0, upper=0.9 * top)
         return replace(parameter, lower=1e-3 * top, upper=0.9 * top)
+
+    def is_recognised(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
+        """First engagement in the lower half; a kink further out is what a sensor's limit shows."""
+        return min(_kinks(shape)) <= LATEST_FIRST * history.largest_torque_nm
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist lost for a unit drop of compliance [deg]."""

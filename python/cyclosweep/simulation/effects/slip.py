@@ -38,6 +38,7 @@ SLIP_PARAMETERS = (
     Parameter("scatter", "", "spread of the presliding distances (sd of log)", 0.05, 3.0, True),
     Parameter("skew", "", "1: a power law up to a longest distance, 0: lognormal", -1.0, 1.0),
     Parameter("forgetting", "", "0: turning points are remembered, 1: Dahl's law", 0.0, 1.0),
+    Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
 )
 SLIP_FORMS = (
     ShapeForm(("slip_deg", "scatter"), ("skew", "slack", "forgetting")),

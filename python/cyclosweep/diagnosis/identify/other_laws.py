@@ -1,0 +1,92 @@
+"""Other laws in the place of those that stages accepted.
+
+A stage accepts a law while much is still unexplained, and its error of the model hides how two laws
+of one class of behaviour differ. Once everything else is known the difference shows.
+"""
+
+from collections.abc import Iterator
+
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.law_in_class import share_class
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
+
+CLEARLY = 3.0
+"""Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
+
+
+def with_better_laws(search: Search) -> FittedStructure:
+    """Put other laws in the place of accepted ones where the recording is likelier with them.
+
+    Parameters
+    ----------
+    search : Search
+        Of the last stage; its ``start`` holds what was accepted.
+
+    Returns
+    -------
+    FittedStructure
+        That structure, or one with other laws of the same classes.
+    """
+    fitted = search.start.fit
+    for name in fitted.names:
+        term = next(each for each in fitted.terms if each.name == name)
+        rivals = [] if term.effect is None or term.slips else list(_rivals(search, fitted, term))
+        if not rivals:
+            continue
+        others = tuple(each for each in fitted.terms if each is not term)
+        parent = search.refit(others, fitted) if others else search.baseline
+        own = _extended(search, parent, name)
+        tried = [child for each in rivals if (child := _extended(search, parent, each)) is not None]
+        best = max(tried, key=lambda child: child.score, default=None)
+        if best is not None and best.all_recognised and best.score > _score(own) + CLEARLY:
+            fitted = best.fit
+    return fitted
+
+
+def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:
+    """Add an effect to a structure; None where its residual shows nothing of it.
+
+    Parameters
+    ----------
+    search : Search
+    parent : Candidate
+    name : str
+        Name of the effect.
+
+    Returns
+    -------
+    Candidate or None
+    """
+    return search.extend(parent, name) if name in parent.scan.groups else None
+
+
+def _score(candidate: Candidate | None) -> float:
+    """Log odds of a candidate; none where nothing could be fitted."""
+    return float("-inf") if candidate is None else candidate.score
+
+
+def _rivals(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str]:
+    """Effects of the same class as a term that are not part of the structure.
+
+    Parameters
+    ----------
+    search : Search
+    fitted : FittedStructure
+        The structure.
+    term : Term
+        One of its terms.
+
+    Yields
+    ------
+    str
+    """
+    seen = set(fitted.names)
+    for signature in search.library.signatures:
+        effect = signature.effect
+        if effect is None or effect.slips or effect.name in seen:
+            continue
+        seen.add(effect.name)
+        if share_class(term, Term(effect, signature.shape)):
+            yield effect.name
