@@ -26,6 +26,12 @@ from cyclosweep.simulation.simulate import EffectValue, Model
 
 FEWEST_ROWS = 6
 """Fewer rows than this cannot even calibrate the baseline."""
+EXPANSIONS = 10
+"""Most times the likelihood is expanded about the point that a refinement has led to. A refinement
+holds the elastic law, and what else follows from the linear parameters, as it was there: it has to
+be repeated until both have settled."""
+LEAST_GAIN = 1.0
+"""Chi-squared that a further expansion has to be worth."""
 STEPS_A_ROUND = 2
 """Steps with updated slopes that are tried for each iteration with measured ones."""
 
@@ -233,15 +239,18 @@ def fit(
         scale = np.array([usual_change(p, v) for p, v in zip(parameters, values, strict=True)])
         work.expand_at(values)
         slopes: Floats | None = None
-        for _ in range(2):
+        before = np.inf
+        for _ in range(EXPANSIONS):
             found_at, slopes = minimise(
                 work.residual, values, (lower, upper), scale, STEPS_A_ROUND * rounds, slopes
             )
             moved = float(np.max(np.abs(found_at - values) / scale))
             values = found_at
             work.expand_at(values)
-            if moved < 1e-2:
+            chi2 = float(work.target @ work.target)
+            if moved < 1e-2 or abs(before - chi2) < LEAST_GAIN:
                 break
+            before = chi2
     else:
         work.expand_at(values)
     found = work.linearise(values)

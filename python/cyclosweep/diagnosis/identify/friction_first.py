@@ -27,6 +27,8 @@ LEAST_REMOVED = 0.5
 """Share of the mean square mismatch that these effects must take away together."""
 LEAST_FORGETTING = 0.05
 """Share of a friction that forgets its turning points from which it is fitted further."""
+SAME_OPTIMUM = 0.01
+"""Difference of the logarithms of two errors up to which two starts have led to the same fit."""
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
@@ -50,10 +52,12 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     baseline = search.baseline.fit
     best: FittedStructure | None = None
     for limit, slip in STARTS:
-        begun = _freer_terms(search, limit, slip)
-        joint = _fitted(noise, begun, baseline)
+        before = best
+        joint = _fitted(noise, _freer_terms(search, limit, slip), baseline)
         if joint is not None and (best is None or joint.rmse_deg < best.rmse_deg):
             best = joint
+        if before is not None and joint is not None and _ends_alike(joint, before):
+            break
     # One friction has few optima, two and their presliding many: where a joint fit ended in a bad
     # one, either friction alone is better.
     if best is None:
@@ -72,6 +76,11 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     # a stiffening and a difference of the directions together make the curve of any dial.
     friction = [term for term in best.terms if term.slips]
     return fit(search.problem, search.noise, _settled(friction), best, rounds=CONVERGED)
+
+
+def _ends_alike(one: FittedStructure, other: FittedStructure) -> bool:
+    """Whether two starts have led to fits of the same error."""
+    return bool(abs(np.log(one.rmse_deg / other.rmse_deg)) < SAME_OPTIMUM)
 
 
 def _settled(terms: Sequence[Term]) -> tuple[Term, ...]:
@@ -185,7 +194,7 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
 
 
 def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
-    """Leave out what gains less than its parameters are charged, the least first.
+    """Leave out one of two frictions, where it gains less than its parameters are charged.
 
     Parameters
     ----------
@@ -198,16 +207,14 @@ def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
     -------
     FittedStructure
     """
-    while len(best.terms) > 1:
-        fits = [
-            _fitted(noise, [term for term in best.terms if term is not left_out], best)
-            for left_out in best.terms
-        ]
-        least = min((each for each in fits if each is not None), key=_cost, default=None)
-        if least is None or _cost(least) >= _cost(best):
-            break
-        best = least
-    return best
+    slipping = [term for term in best.terms if term.slips]
+    if len(slipping) < 2:
+        return best
+    fits = [
+        _fitted(noise, [term for term in best.terms if term is not left_out], best)
+        for left_out in slipping
+    ]
+    return min((each for each in (best, *fits) if each is not None), key=_cost)
 
 
 def _cost(fitted: FittedStructure) -> float:
