@@ -42,7 +42,7 @@ def settled(search: Search, fitted: FittedStructure) -> float:
 
 
 def test_friction_beside_a_steep_stiffening_settles() -> None:
-    # With the line alone in the solver, and two expansions, the fit ended at 0.9 deg.
+    # With the line alone in the solver, and two expansions, the fit ended at 1 deg.
     stiffening = EffectValue("contact_stiffening", {"turn_nm": 1.0}, (1.0,))
     search = search_of(EffectValue("friction_hysteresis", SLIP, (2.0,)), stiffening)
     terms = (

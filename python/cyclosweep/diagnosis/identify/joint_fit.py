@@ -15,6 +15,8 @@ from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip import on_shared_elements
 from cyclosweep.simulation.elastic_law import ElasticLaw
 
+SETTLED = 0.01
+"""Change of the modelled twist, over the noise, below which path and linear parameters agree."""
 INNER = 3
 """Rounds in which the path of the shaft and the linear parameters are solved in turn."""
 
@@ -314,7 +316,7 @@ class JointFit:
                 self.history, self.mean, self.beta, self.law = history, mean, beta, law
                 self._follow_amplitudes(history, beta)
                 self._work_at(mean)
-                if moved < 1e-3 * self.noise.sigma_deg:
+                if moved < SETTLED * self.noise.sigma_deg:
                     break
 
     def _follow_amplitudes(self, history: History, beta: Floats) -> None:

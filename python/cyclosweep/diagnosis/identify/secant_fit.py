@@ -57,33 +57,32 @@ def minimise(
         Slopes there, by usual changes.
     """
     values, left = start, residual(start)
-    measured = slopes is None
+    fresh = slopes is None
     if slopes is None:
         slopes = _measured(residual, values, left, bounds, scale)
-    damping = FIRST_DAMPING
+    damping, measurable = FIRST_DAMPING, True
     for _ in range(most):
         step, damping = _bounded_step(slopes, left, values, bounds, scale, damping)
         moved = np.clip(values + scale * step, *bounds)
         change = slopes @ step
         promised = -float(change @ (2.0 * left + change))
-        if promised <= LEAST_GAIN * float(left @ left) or np.abs(step).max() < LEAST_STEP:
-            if measured:
-                break
-            slopes, measured = _measured(residual, values, left, bounds, scale), True
-            continue
-        there = residual(moved)
-        slopes = slopes + np.outer(there - left - change, step) / float(step @ step)
-        gain = float(left @ left) - float(there @ there)
+        gain = 0.0
+        if promised > LEAST_GAIN * float(left @ left) and np.abs(step).max() >= LEAST_STEP:
+            there = residual(moved)
+            slopes = slopes + np.outer(there - left - change, step) / float(step @ step)
+            gain = float(left @ left) - float(there @ there)
+        elif fresh or not measurable:
+            break
         if gain > 0.0:
-            values, left, measured = moved, there, False
+            values, left, fresh = moved, there, False
             damping *= 0.2 if gain > 0.5 * promised else 1.0
-        elif measured:
+        elif fresh or not measurable:
             damping = 10.0 * max(damping, FIRST_DAMPING)
             if damping > MOST_DAMPING:
                 break
-            measured = False
         else:
-            slopes, measured = _measured(residual, values, left, bounds, scale), True
+            slopes = _measured(residual, values, left, bounds, scale)
+            fresh, measurable = True, False
     return values, slopes
 
 
