@@ -27,6 +27,8 @@ LEAST_REMOVED = 0.5
 """Share of the mean square mismatch that these effects must take away together."""
 LEAST_FORGETTING = 0.05
 """Share of a friction that forgets its turning points from which it is fitted further."""
+FEW_RUNS = 4
+"""Fitted runs up to which the flanks alone may not tell effects apart."""
 SAME_OPTIMUM = 0.01
 """Difference of the logarithms of two errors up to which two starts have led to the same fit."""
 CONVERGED = 20
@@ -72,14 +74,21 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
     if removed <= LEAST_REMOVED:
         return None
-    # What was fitted beside friction kept it in its place. What it really is the search decides:
-    # a stiffening and a difference of the directions together make the curve of any dial.
-    friction = [term for term in best.terms if term.slips]
-    return fit(search.problem, search.noise, _settled(friction), best, rounds=CONVERGED)
+    # What was fitted beside friction kept it in its place. What it really is the search decides: a
+    # stiffening and a difference of the directions together make the curve of any dial. A few runs
+    # alone do not tell them from friction.
+    runs = len(np.unique(search.problem.history.run[search.problem.fitted]))
+    kept = [term for term in best.terms if term.slips or runs <= FEW_RUNS]
+    return fit(search.problem, search.noise, _settled(kept), best, rounds=CONVERGED)
 
 
 def _ends_alike(one: FittedStructure, other: FittedStructure) -> bool:
-    """Whether two starts have led to fits of the same error."""
+    """Whether two starts have led to fits of the same error.
+
+    Parameters
+    ----------
+    one, other : FittedStructure
+    """
     return bool(abs(np.log(one.rmse_deg / other.rmse_deg)) < SAME_OPTIMUM)
 
 

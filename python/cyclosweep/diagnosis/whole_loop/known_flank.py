@@ -272,7 +272,10 @@ def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeL
         chi2=float(target @ target),
         tangent=tangent,
         sensitivity=sensitivity,
-        fit_parameters=fit_parameters_of(forecast.terms, problem),
+        # How presliding grows with the load is no part of what a law is judged by.
+        fit_parameters=tuple(
+            each for each in fit_parameters_of(forecast.terms, problem) if each.name != "growth"
+        ),
         forecast=forecast,
         before=before,
     )

@@ -22,7 +22,7 @@ class ModelParameter:
     ----------
     kind : str
         ``"datum"``, ``"compliance"``, ``"play"`` or ``"zero"`` (torque read without load) of the
-        line; ``"nonlinear"``, a `FitParameter` of a term;
+        line; ``"growth"`` of the presliding distances; ``"nonlinear"``, a `FitParameter` of a term;
         ``"amplitude"``, a linear amplitude of a term.
     term : int
         Index of its term; -1 for the line.
@@ -92,8 +92,8 @@ def model_parameters_of(
             size = 1.0 if quantity.logarithmic else 0.5 * min(upper - lower, 2.0 * top)
         parameters.append(
             ModelParameter(
-                "nonlinear", nonlinear.term, nonlinear.name, lower, upper, size, quantity,
-                quantity.logarithmic,
+                "growth" if nonlinear.name == "growth" else "nonlinear", nonlinear.term,
+                nonlinear.name, lower, upper, size, quantity, quantity.logarithmic,
             )
         )  # fmt: skip
     for index, term in enumerate(terms):

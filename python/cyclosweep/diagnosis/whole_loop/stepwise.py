@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.friction_first import FEW_RUNS
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.split import whole_stretches
@@ -21,7 +22,7 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     refit,
     starting_model,
 )
-from cyclosweep.diagnosis.whole_loop.known_flank import whole_loop_fit
+from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, whole_loop_fit
 from cyclosweep.diagnosis.whole_loop.usual_loop import (
     DECIDED,
     better,
@@ -32,8 +33,6 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import (
 
 LEAST_GAIN = 0.15
 """Share of the error on left-out stretches that a structure must take away."""
-FEW_RUNS = 4
-"""Fitted runs up to which the flanks alone may not tell effects apart."""
 MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
 all rows is taken instead; and error of that structure, simulated on all rows, over that of the
@@ -64,7 +63,7 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     if len(np.unique(problem.history.run[problem.fitted])) <= FEW_RUNS:
         fits.append(usual_structure(search, base))
     offered = [
-        (each, whole_loop_fit(each, base, search.noise))
+        (each, _judged_by_what_it_leaves(whole_loop_fit(each, base, search.noise)))
         for each in fits
         if each is not None and each.terms
     ]
@@ -89,6 +88,17 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     best, fitted = close[first]
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
     return search.add(fitted, gain)
+
+
+def _judged_by_what_it_leaves(fitted: WholeLoopFit) -> WholeLoopFit:
+    """Simulation with noise and model error no smaller than what it leaves of the flanks.
+
+    A structure fitted to the flanks alone may leave less there than any simulation of the loop.
+    """
+    factor = fitted.rmse_deg / fitted.noise.spread_deg
+    if factor <= 1.0:
+        return fitted
+    return whole_loop_fit(fitted.forecast, fitted.before, fitted.noise.with_model_error(factor))
 
 
 def _found(search: Search, simulated_deg: float) -> Forecast | None:
