@@ -87,7 +87,14 @@ def _ends_alike(one: FittedStructure, other: FittedStructure) -> bool:
 
     Parameters
     ----------
-    one, other : FittedStructure
+    one : FittedStructure
+        Fit from one start.
+    other : FittedStructure
+        Fit from another.
+
+    Returns
+    -------
+    bool
     """
     return bool(abs(np.log(one.rmse_deg / other.rmse_deg)) < SAME_OPTIMUM)
 
