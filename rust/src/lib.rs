@@ -99,5 +99,6 @@ pub mod model;
 #[cfg(feature = "python")]
 mod py;
 pub mod sampling;
+mod wide;
 
 pub use kernel::{Columns, Kind, Limit, Limited, Output, Source, Study, StudyError, Target, check};

@@ -1,8 +1,8 @@
 //! The motion of a linear branch in closed form: modes side by side, and sums of them.
 
 use crate::dynamics::peaks::Nearby;
-use crate::kernel::lanes::{Wide, with_widest};
 use crate::model::elementary::{LARGEST_ANGLE, sin_cos};
+use crate::wide::{Wide, with_widest};
 
 /// Angle (rad) over which a mode is no longer taken for a parabola.
 const TURNS: f64 = 1.5;

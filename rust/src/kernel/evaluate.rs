@@ -6,12 +6,13 @@ use rayon::prelude::*;
 
 use crate::kernel::blocks::{Scratch, Stages, Wanted};
 use crate::kernel::columns::{Source, Target, Task, check_shape, part, reals, tasks};
-use crate::kernel::lanes::{BLOCK, Wide, with_widest};
+use crate::kernel::lanes::BLOCK;
 use crate::kernel::outputs::Output;
 use crate::kernel::study::{Limited, Study, StudyError};
 use crate::model::error::Status;
 use crate::model::inputs::factor;
 use crate::sampling::{Rows, Space};
+use crate::wide::{Wide, with_widest};
 
 /// The columns of a stretch of variants. Refused variants have NaN in every one.
 #[derive(Debug, Clone, Default)]

@@ -1,10 +1,7 @@
-//! Blocks of variants, one array a quantity, and the widest instructions that the machine has.
+//! Blocks of variants, one array a quantity.
 //!
 //! Formulas over lanes are plain loops without branches. The compiler turns them into vector
-//! instructions twice, for every machine and for those with AVX2; neither fuses a product with a
-//! sum, so the bits are the same.
-
-use pulp::{Arch, Simd, WithSimd};
+//! instructions twice, see [`crate::wide`].
 
 use crate::kernel::packed::Inputs;
 use crate::model::inputs::{Input, SCALARS, SEGMENT_FIELDS};
@@ -17,29 +14,6 @@ pub(crate) type Lanes = [f64; BLOCK];
 
 /// For each variant of a block, whether its formulas hold (one) or it has to be looked at alone.
 pub(crate) type Mask = [u64; BLOCK];
-
-/// Work to run with the widest instructions there are. Its `run` and all it calls must be
-/// `inline(always)`.
-pub(crate) trait Wide {
-    /// What comes of it.
-    type Output;
-    /// Does the work.
-    fn run(self) -> Self::Output;
-}
-
-/// Runs `work` with the widest instructions that this machine has.
-#[inline]
-pub(crate) fn with_widest<W: Wide>(work: W) -> W::Output {
-    struct Dispatched<W>(W);
-    impl<W: Wide> WithSimd for Dispatched<W> {
-        type Output = W::Output;
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, _: S) -> W::Output {
-            self.0.run()
-        }
-    }
-    Arch::new().dispatch(Dispatched(work))
-}
 
 /// The inputs of one variant, whether it stands alone or in a block.
 pub(crate) trait Variant {
