@@ -31,7 +31,9 @@ EXPANSIONS = 10
 holds the elastic law, and what else follows from the linear parameters, as it was there: it has to
 be repeated until both have settled."""
 LEAST_GAIN = 1.0
-"""Chi-squared that a further expansion has to be worth."""
+"""Chi-squared that a further expansion has to be worth,"""
+LEAST_SHARE = 1e-4
+"""and the share of all chi-squared, which a structure leaves that lacks an effect."""
 STEPS_A_ROUND = 2
 """Steps with updated slopes that are tried for each iteration with measured ones."""
 
@@ -248,7 +250,7 @@ def fit(
             values = found_at
             work.expand_at(values)
             chi2 = float(work.target @ work.target)
-            if moved < 1e-2 or abs(before - chi2) < LEAST_GAIN:
+            if moved < 1e-2 or abs(before - chi2) < max(LEAST_GAIN, LEAST_SHARE * chi2):
                 break
             before = chi2
     else:

@@ -18,7 +18,7 @@ from cyclosweep.simulation.elastic_law import ElasticLaw
 SETTLED = 0.01
 """Change of the modelled twist, over the noise, below which path and linear parameters agree."""
 INNER = 3
-"""Rounds in which the path of the shaft and the linear parameters are solved in turn."""
+"""Most rounds in which path and linear parameters are solved in turn with one set of weights."""
 
 
 def usual_change(parameter: FitParameter, value: float) -> float:
@@ -239,17 +239,13 @@ class JointFit:
         design, white, hold = self._design(terms, history)
         return history, design, white, _solve(white, self._shifted, hold)
 
-    def _evaluate(
-        self, values: Floats, inner: int
-    ) -> tuple[History, Floats, Floats, ElasticLaw | None]:
-        """Solve path and linear parameters at these values of the nonlinear ones.
+    def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats, ElasticLaw | None]:
+        """Solve path and linear parameters in turn at these values of the nonlinear ones.
 
         Parameters
         ----------
         values : ndarray
             Nonlinear parameters, in the fit's own scale.
-        inner : int
-            Rounds in which path and linear parameters are solved in turn.
 
         Returns
         -------
@@ -258,13 +254,21 @@ class JointFit:
         """
         terms = self._terms_at(values)
         history, mean, law = self.history, self.mean, self.law
-        for _ in range(inner if self.slides else 1):
+        for _ in range(INNER if self.slides else 1):
+            before = mean
             history, design, _, beta = self._solve_at(terms, history, mean, law)
             mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
             if self.slides:
                 law = path_law(elastic_parts(terms, design, beta), history)
+            if self._is_settled(before, mean):
+                break
         return history, mean, beta, law
+
+    def _is_settled(self, before: Floats, mean: Floats) -> bool:
+        """Whether a round hardly changes the modelled twist of the fitted rows."""
+        moved = np.sqrt(np.mean((mean - before)[self.use] ** 2))
+        return bool(moved < SETTLED * self.noise.sigma_deg)
 
     def _calibrated(self, history: History, beta: Floats, mean: Floats) -> History:
         """Path of the shaft with the fitted line, and with the fitted twist where nothing slips.
@@ -311,12 +315,12 @@ class JointFit:
             self.noise = exact.with_sigma(level)
             self._work_at(self.mean)
             for _ in range(6):
-                history, mean, beta, law = self._evaluate(values, INNER)
-                moved = float(np.sqrt(np.mean((mean - self.mean)[self.use] ** 2)))
+                history, mean, beta, law = self._evaluate(values)
+                settled = self._is_settled(self.mean, mean)
                 self.history, self.mean, self.beta, self.law = history, mean, beta, law
                 self._follow_amplitudes(history, beta)
                 self._work_at(mean)
-                if moved < SETTLED * self.noise.sigma_deg:
+                if settled:
                     break
 
     def _follow_amplitudes(self, history: History, beta: Floats) -> None:

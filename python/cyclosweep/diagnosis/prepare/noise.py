@@ -186,7 +186,8 @@ class Noise:
         Parameters
         ----------
         factor : float
-            Standard deviation of noise and model error together over that of the noise.
+            Standard deviation of noise and model error together over that of this noise, which may
+            hold model error already.
 
         Returns
         -------
@@ -206,7 +207,7 @@ class Noise:
             step_deg=step,
             tail=self.tail * factor**2,
             marginal_deg=self.spread_deg,
-            model_error_factor=factor,
+            model_error_factor=factor * self.model_error_factor,
             score_moments=(1.0 + (slope - 1.0) / factor**2, 1.0 + (square - 1.0) / factor**2),
         )
 

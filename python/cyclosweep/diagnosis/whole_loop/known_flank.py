@@ -225,6 +225,32 @@ def known_flank_path(problem: Problem, model: Model) -> History:
     return settle(model, at_start(problem.history, model, side), known_side=side)
 
 
+def noise_beside(forecast: Forecast, noise: Noise) -> Noise:
+    """Noise, with model error that accounts for what a simulation leaves on the flanks.
+
+    A structure fitted to the flanks alone may leave less there than any simulation of the loop, so
+    that the model error of its search is too small for the simulation.
+
+    Parameters
+    ----------
+    forecast : Forecast
+        The simulation.
+    noise : Noise
+        Noise of the search; it may hold model error already.
+
+    Returns
+    -------
+    Noise
+    """
+    problem = forecast.problem
+    use = problem.fitted
+    path = known_flank_path(problem, forecast.model)
+    left = noise.residual(problem.angle_deg[use], path.angle_deg[use])[0]
+    # Where model error was added, noise alone is a small part of the unit variance.
+    beyond = float(left @ left) - len(left) / noise.model_error_factor**2
+    return noise.with_model_error(float(np.sqrt(max(beyond, 0.0) / INDEPENDENT_PIECES)))
+
+
 def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeLoopFit:
     """Offer a fitted simulation as a fitted structure.
 

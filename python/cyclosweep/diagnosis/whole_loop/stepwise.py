@@ -22,7 +22,7 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     refit,
     starting_model,
 )
-from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, whole_loop_fit
+from cyclosweep.diagnosis.whole_loop.known_flank import noise_beside, whole_loop_fit
 from cyclosweep.diagnosis.whole_loop.usual_loop import (
     DECIDED,
     better,
@@ -63,7 +63,7 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     if len(np.unique(problem.history.run[problem.fitted])) <= FEW_RUNS:
         fits.append(usual_structure(search, base))
     offered = [
-        (each, _judged_by_what_it_leaves(whole_loop_fit(each, base, search.noise)))
+        (each, whole_loop_fit(each, base, noise_beside(each, search.noise)))
         for each in fits
         if each is not None and each.terms
     ]
@@ -88,17 +88,6 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     best, fitted = close[first]
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
     return search.add(fitted, gain)
-
-
-def _judged_by_what_it_leaves(fitted: WholeLoopFit) -> WholeLoopFit:
-    """Simulation with noise and model error no smaller than what it leaves of the flanks.
-
-    A structure fitted to the flanks alone may leave less there than any simulation of the loop.
-    """
-    factor = fitted.rmse_deg / fitted.noise.spread_deg
-    if factor <= 1.0:
-        return fitted
-    return whole_loop_fit(fitted.forecast, fitted.before, fitted.noise.with_model_error(factor))
 
 
 def _found(search: Search, simulated_deg: float) -> Forecast | None:
