@@ -130,3 +130,34 @@ def test_an_interruption_leaves_nothing_half_written(
         assert "Traceback" not in error or process.returncode < 0
         (tmp_path / name).unlink(missing_ok=True)
     assert interrupted, codes
+
+
+IGNORED_INTERRUPTION = """
+import os, signal, sys, time, weakref
+import typer
+from cyclosweep.cli import app, main
+
+class Watched:
+    pass
+
+@app.command()
+def dawdle() -> None:
+    watched = Watched()
+    kept = weakref.ref(watched, lambda _: os.kill(os.getpid(), signal.SIGINT))
+    del watched
+    time.sleep(20.0)
+    print("went on")
+
+main()
+"""
+
+
+def test_an_interruption_that_python_ignores_ends_the_command() -> None:
+    """Python prints and forgets exceptions in callbacks of weak references."""
+    began = time.monotonic()
+    command = [sys.executable, "-c", IGNORED_INTERRUPTION, "dawdle"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert time.monotonic() - began < 15.0
+    assert ended.returncode == 130
+    assert "went on" not in ended.stdout
+    assert ended.stderr == ""

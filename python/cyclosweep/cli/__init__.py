@@ -32,7 +32,7 @@ from cyclosweep.cli import (
     torque_twist,
     validate,
 )
-from cyclosweep.cli.output import fail, survive_encoding
+from cyclosweep.cli.output import fail, keep_interruptions, survive_encoding
 from cyclosweep.errors import DesignError, InputError, SweepError
 
 __all__ = ["main"]
@@ -124,6 +124,7 @@ def _end_without_reader() -> NoReturn:
 def main() -> None:
     """Run the command line; every error is one line and an exit status."""
     survive_encoding()
+    keep_interruptions()
     try:
         arguments = _with_plugins(sys.argv[1:])
         status = app(args=arguments or ["--help"], standalone_mode=False)

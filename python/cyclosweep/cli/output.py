@@ -6,7 +6,10 @@ import codecs
 import contextlib
 import io
 import json
+import os
+import signal
 import sys
+import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -20,6 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["AsJson", "fail", "interruptible", "print_json", "print_tables", "refuse_file"]
 
+MOMENT_S = 0.02
+"""Time after which an interruption that Python ignored is made once more [s]."""
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
@@ -81,3 +86,20 @@ def interruptible(left: str) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         fail(f"interrupted; {left}", 1)
+
+
+def keep_interruptions() -> None:
+    """Let Ctrl-C end the command even where Python ignores it.
+
+    An exception in a callback of the garbage collector or of a weak reference, as imports have
+    them, is printed and forgotten; the interruption is then made once more a moment later.
+    """
+    others = sys.unraisablehook
+
+    def again(ignored: sys.UnraisableHookArgs) -> None:
+        if issubclass(ignored.exc_type, KeyboardInterrupt):
+            threading.Timer(MOMENT_S, os.kill, (os.getpid(), signal.SIGINT)).start()
+        else:
+            others(ignored)
+
+    sys.unraisablehook = again
