@@ -70,7 +70,8 @@ def test_friction_keeps_its_name_where_the_curve_beside_it_loses_its_own(
         return (*held, *(() if stand_ins else (WITHDRAWN,)))
 
     monkeypatch.setattr(naming, "check_laws", without_curve)
-    found = naming.names_that_hold(searched, searched.looked_through(whole))
+    candidate = searched.looked_through(whole)
+    found = naming.names_that_hold(searched, candidate, candidate)
     assert found.names == {"friction_hysteresis"}
     assert [each.name for each in found.withdrawn] == ["contact_stiffening"]
     # What is named alone is fitted to whole loops, too.

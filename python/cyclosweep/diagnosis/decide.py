@@ -121,7 +121,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     else:
         decision = decide(search, beyond_baseline, tolerance)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
-    naming = names_that_hold(search, accepted)
+    naming = names_that_hold(search, accepted, decision.best or accepted)
     if staged is not None and staged[0] is naming.part:
         explained = staged[1]
     else:

@@ -129,7 +129,11 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
     taken = {each.behaviour for each in stand_ins if each.behaviour}
     for term in fitted.terms:
         taken |= set(own_classes(term)) if term.name in withdrawn else set()
-    found = [_check(fitted, classes, indices, own, taken - own) for indices, own in groups]
+    sizes = [size_of(fitted, index) for index in range(len(fitted.terms))]
+    found = [
+        _check(fitted, classes, indices, own, taken - own, _size_over(sizes, indices))
+        for indices, own in groups
+    ]
     checks = [check for group in found for check in group]
     return without_leftovers(fitted, classes, checks)
 
@@ -193,7 +197,8 @@ def _check(
     classes: ClassColumns,
     indices: Sequence[int],
     own: Collection[str],
-    taken: Collection[str] = (),
+    taken: Collection[str],
+    size_of_others: float,
 ) -> list[LawCheck]:
     """Compare laws of the same class, together, with the flexible groups of all classes.
 
@@ -209,6 +214,8 @@ def _check(
         Their classes.
     taken : collection of str
         Classes that are fitted whole beside them.
+    size_of_others : float
+        Size of the largest other law over theirs, see `_size_over`.
 
     Returns
     -------
@@ -257,7 +264,7 @@ def _check(
     if rival is not None and every[rival].evidence > beaten + close:
         replaced = LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
     # A law is judged by its class no closer than to the error that much larger ones leave there.
-    error = ERROR_OF_OTHERS * _size_over(fitted, indices)
+    error = ERROR_OF_OTHERS * size_of_others
     little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))
     most = float(np.clip(np.hypot(MOST_MISSED, error), 0.0, MOST_MISSED_LOOP))
     stands = deficit <= close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
@@ -276,24 +283,24 @@ def _check(
     return [LawCheck(name, behaviour, share, float(deficit), holds) for name in names]
 
 
-def _size_over(fitted: FittedStructure, indices: Sequence[int]) -> float:
+def _size_over(sizes: Sequence[Floats], indices: Sequence[int]) -> float:
     """Size of the largest other law over that of some laws together, as root mean squares.
 
     Parameters
     ----------
-    fitted : FittedStructure
-        The structure.
+    sizes : sequence of ndarray, shape (n,)
+        Twist by each law of a structure, calibration taken out [deg].
     indices : sequence of int
-        Which of the structure's terms.
+        Which of them.
 
     Returns
     -------
     float
         Zero where there is no other law.
     """
-    own = np.sum([size_of(fitted, index) for index in indices], axis=0)
-    others = [k for k in range(len(fitted.terms)) if k not in indices]
-    largest = max((float(np.std(size_of(fitted, k))) for k in others), default=0.0)
+    own = np.sum([sizes[index] for index in indices], axis=0)
+    others = [each for k, each in enumerate(sizes) if k not in indices]
+    largest = max((float(np.std(each)) for each in others), default=0.0)
     return largest / max(float(np.std(own)), 1e-300)
 
 

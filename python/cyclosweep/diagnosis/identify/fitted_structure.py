@@ -23,6 +23,10 @@ from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.simulate import Model
 
+LEAST_OF_SLOPE = 0.1
+"""Compliance of a structure's line over that of the recorded flanks, below which its effects have
+taken the place of the drive's elasticity."""
+
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
@@ -295,6 +299,12 @@ class FittedStructure(ABC):
         lower = np.array([p.lower for p in bounds]) - 1e-12
         upper = np.array([p.upper for p in bounds])
         return (values[: len(bounds)] < lower) | (values[: len(bounds)] > upper)
+
+    @property
+    def keeps_line(self) -> bool:
+        """Whether the line, and not its effects, is the elasticity of the drive."""
+        slope = self.problem.history.compliance_deg_per_nm
+        return bool(self.beta[1] >= LEAST_OF_SLOPE * slope)
 
     @property
     def valid(self) -> bool:

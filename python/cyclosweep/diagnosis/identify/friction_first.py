@@ -77,8 +77,8 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
     # stiffening and a difference of the directions together make the curve of any dial. A few runs
     # alone do not tell them from friction.
-    runs = len(np.unique(search.problem.history.run[search.problem.fitted]))
-    kept = [term for term in best.terms if term.slips or runs <= FEW_RUNS]
+    few = search.problem.run_count <= FEW_RUNS
+    kept = [term for term in best.terms if term.slips or few]
     return fit(search.problem, search.noise, _settled(kept), best, rounds=CONVERGED)
 
 

@@ -1,6 +1,7 @@
 """Which effects of an accepted structure may be named, and what is left beside these."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import (
@@ -8,9 +9,12 @@ from cyclosweep.diagnosis.identify.class_check import (
     check_laws,
     shown_classes,
 )
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck
+from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
+from cyclosweep.diagnosis.prepare.noise import orthonormal
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +46,7 @@ class Naming:
         return tuple(check for check in self.checks if not check.holds)
 
 
-def names_that_hold(search: Search, accepted: Candidate) -> Naming:
+def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Naming:
     """Withdraw laws that do not stand for their class, until those that are left do.
 
     Fitted to rows in contact, the laws that are left are fitted again alone. A simulation of whole
@@ -54,6 +58,8 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
         Search of the recording.
     accepted : Candidate
         Structure of effects.
+    best : Candidate
+        The same with what has no name.
 
     Returns
     -------
@@ -67,7 +73,10 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
         judged = all(check.holds for check in checks)
         if judged:
             # Those that are left stood for their class together with the small ones.
-            checks = without_small_laws(part.fit, checks)
+            larger = without_small_laws(part.fit, checks)
+            checks = without_laws_of_one_class(part.fit, larger)
+            checks = _without_lesser_laws(part.fit, checks, best.fit)
+            judged = checks == larger
         gone = [check for check in checks if not check.holds]
         names = {check.name for check in checks if check.holds}
         if gone:
@@ -77,6 +86,36 @@ def names_that_hold(search: Search, accepted: Candidate) -> Naming:
         if judged:
             held = (check for check in checks if check.holds)
             return Naming(part, (*held, *withdrawn), shown_classes(part.fit))
+
+
+def _without_lesser_laws(
+    fitted: FittedStructure, checks: Sequence[LawCheck], best: FittedStructure
+) -> tuple[LawCheck, ...]:
+    """Withdraw laws that explain less than what has no name, of which they may be a part.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        Structure of effects.
+    checks : sequence of LawCheck
+        Of its laws.
+    best : FittedStructure
+        The same with what has no name.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    unnamed = fitted.chi2 - best.chi2
+    place = {term.name: index for index, term in enumerate(fitted.terms)}
+    line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)
+
+    def explains_less(name: str) -> bool:
+        law = fitted.whitened_contribution(place[name], fitted.noise)
+        law -= line @ (line.T @ law)
+        return float(law @ law) < unnamed
+
+    return tuple(replace(c, holds=c.holds and not explains_less(c.name)) for c in checks)
 
 
 def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:

@@ -1,4 +1,4 @@
-"""Signs of amplitudes: parts of an effect that came out against physics are left out."""
+"""Fits against physics: parts of an effect of the wrong sign, effects in the place of the line."""
 
 from dataclasses import replace
 
@@ -21,11 +21,12 @@ def with_right_signs(joint: ContactFit, *, whole_effects: bool = False) -> Conta
     Returns
     -------
     ContactFit or None
-        The fit of what is left; None where there is no such.
+        The fit of what is left; None where there is no such, or where effects have taken the place
+        of the drive's elasticity.
     """
     for _ in range(MOST_PRUNED):
-        if joint.valid:
-            return joint
+        if joint.valid or not joint.keeps_line:
+            break
         terms = []
         for k, term in enumerate(joint.terms):
             wrong = joint.wrong_signs(k)
@@ -40,4 +41,4 @@ def with_right_signs(joint: ContactFit, *, whole_effects: bool = False) -> Conta
         if not terms:
             return None
         joint = fit(joint.problem, joint.noise, terms, joint)
-    return joint if joint.valid else None
+    return joint if joint.valid and joint.keeps_line else None

@@ -62,6 +62,11 @@ class Problem:
         return int(self.fitted.sum())
 
     @property
+    def run_count(self) -> int:
+        """Number of runs with fitted rows."""
+        return len(np.unique(self.history.run[self.fitted]))
+
+    @property
     def line_columns(self) -> int:
         """Number of linear parameters of the baseline: datum, compliance, maybe free play."""
         return 2 if self.one_sided else 3

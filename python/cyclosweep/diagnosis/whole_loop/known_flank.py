@@ -275,6 +275,7 @@ def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeL
     parts += [term.columns(history) for term in forecast.terms if not term.slips]
     design = noise.design(np.column_stack(parts)[use], weight)
     kept = [k for k, each in enumerate(forecast.parameters) if each.kind == "nonlinear"]
+    judged = {(forecast.parameters[k].term, forecast.parameters[k].name) for k in kept}
     slopes = [noise.design(forecast.slope(k, known_flank_path)[use], weight)[:, None] for k in kept]
     sensitivity = np.hstack([design, *slopes]) if slopes else design
     tangent = orthonormal(sensitivity, 1e-6)
@@ -298,9 +299,10 @@ def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeL
         chi2=float(target @ target),
         tangent=tangent,
         sensitivity=sensitivity,
-        # How presliding grows with the load is no part of what a law is judged by.
         fit_parameters=tuple(
-            each for each in fit_parameters_of(forecast.terms, problem) if each.name != "growth"
+            each
+            for each in fit_parameters_of(forecast.terms, problem)
+            if (each.term, each.name) in judged
         ),
         forecast=forecast,
         before=before,

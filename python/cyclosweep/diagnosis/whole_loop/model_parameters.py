@@ -22,8 +22,8 @@ class ModelParameter:
     ----------
     kind : str
         ``"datum"``, ``"compliance"``, ``"play"`` or ``"zero"`` (torque read without load) of the
-        line; ``"growth"`` of the presliding distances; ``"nonlinear"``, a `FitParameter` of a term;
-        ``"amplitude"``, a linear amplitude of a term.
+        line; ``"growth"`` of the presliding distances, by which no law is judged; ``"nonlinear"``,
+        another `FitParameter` of a term; ``"amplitude"``, a linear amplitude of a term.
     term : int
         Index of its term; -1 for the line.
     name : str

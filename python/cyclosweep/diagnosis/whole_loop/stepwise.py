@@ -60,7 +60,7 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     base = fit_forecast(problem, starting_model(problem), (), zero=False, most=10)
     simulated_deg = _simulation_error(search)
     fits = [_found(search, simulated_deg)]
-    if len(np.unique(problem.history.run[problem.fitted])) <= FEW_RUNS:
+    if problem.run_count <= FEW_RUNS:
         fits.append(usual_structure(search, base))
     offered = [
         (each, whole_loop_fit(each, base, noise_beside(each, search.noise)))
