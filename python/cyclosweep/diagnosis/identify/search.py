@@ -201,13 +201,14 @@ class Search:
         Returns
         -------
         Candidate or None
-            None where no fit has amplitudes of the sign that physics asks for.
+            None where no fit is better and has amplitudes of the sign that physics asks for.
         """
         best: Candidate | None = None
         for term, rank, penalty in starting_terms(parent, hypothesis):
             terms = (*parent.fit.terms, term)
             joint = with_right_signs(fit(self.problem, self.noise, terms, parent.fit))
-            if joint is None:
+            if joint is None or joint.chi2 > parent.fit.chi2:
+                # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue
             added = self._added(parent, joint, rank, penalty)
             prior = parent.prior - (EXTRA_TERM_PENALTY if parent.fit.terms else 0.0)
