@@ -1,0 +1,110 @@
+"""Which laws keep their names where one class, or what has no name, explains more than they do."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.calibrate import calibrate
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import LOOP
+from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.class_check import check_laws
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck
+from cyclosweep.diagnosis.identify.naming import names_that_hold
+from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.signs import with_right_signs
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.simulation.effects import effects, find
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import COMPLIANCE, friction, long_recording
+
+DRIVE = cs.Drive.reference_87()
+LOADED = {"slip_deg": 0.8, "scatter": 0.6, "skew": 0.0, "slack": 0.0}
+ASYMMETRY = 0.1
+"""Amplitude of a difference of the sides at 10 N m [deg]."""
+CREEP = EffectValue("creep", {"lag_s": 20.0}, (0.1,))
+
+
+def search_of(*values: EffectValue) -> Search:
+    """Calibrated search of a recording made with these effects."""
+    recording = long_recording(3_000, values)
+    problem = prepare(recording, DRIVE.nominal_line("input"), int(DRIVE.output_pin_count))
+    library = build_library(problem.history, problem.fitted, tuple(effects()))
+    return calibrate(problem, library, 0)
+
+
+def fitted(search: Search, terms: Sequence[Term]) -> Candidate:
+    """Candidate of terms fitted jointly."""
+    found = fit(search.problem, search.noise, tuple(terms), search.baseline.fit, rounds=20)
+    return search.looked_through(found)
+
+
+def held(checks: Sequence[LawCheck]) -> set[str]:
+    """Names of the laws that hold."""
+    return {check.name for check in checks if check.holds}
+
+
+def all_hold(candidate: Candidate) -> tuple[LawCheck, ...]:
+    """Checks of all laws of a structure, as if each alone stood for its class."""
+    return tuple(LawCheck(name, "", 0.0, 0.0, holds=True) for name in candidate.fit.names)
+
+
+def test_two_laws_that_make_the_loop_of_another_are_withdrawn() -> None:
+    # Friction that opens with the load and a drag that depends on the rate make its loop.
+    search = search_of(friction(0.15))
+    shape = find("viscous_drag").shapes(search.problem.history)[0]
+    both = fitted(
+        search,
+        [
+            Term(find("load_dependent_friction"), LOADED, None, 0.02),
+            Term(find("viscous_drag"), dict(shape)),
+        ],
+    )
+    assert held(without_laws_of_one_class(both.fit, all_hold(both))) == set()
+    withdrawn = without_laws_of_one_class(both.fit, all_hold(both))
+    assert {check.behaviour for check in withdrawn} == {LOOP}
+
+
+def test_two_effects_at_work_keep_their_names() -> None:
+    search = search_of(friction(0.3), CREEP)
+    both = fitted(
+        search,
+        [
+            Term(find("friction_hysteresis"), friction().shape, None, 0.1),
+            Term(find("creep"), dict(CREEP.shape)),
+        ],
+    )
+    names = {"friction_hysteresis", "creep"}
+    assert held(check_laws(both.fit)) == names
+    assert held(without_laws_of_one_class(both.fit, all_hold(both))) == names
+    assert names_that_hold(search, both, both).names == names
+
+
+@pytest.mark.parametrize(("friction_deg", "named"), [(0.3, False), (0.03, True)])
+def test_a_law_smaller_than_what_has_no_name_is_not_named(friction_deg: float, named: bool) -> None:
+    # Friction stands here for something without a name, beside a small difference of the sides.
+    shape = {"power": 1.0}
+    search = search_of(friction(friction_deg), EffectValue("load_asymmetry", shape, (ASYMMETRY,)))
+    small = Term(find("load_asymmetry"), shape)
+    alone = fitted(search, [small])
+    slipping = Term(find("friction_hysteresis"), friction().shape, None, friction_deg / COMPLIANCE)
+    both = fitted(search, [small, slipping])
+    assert ("load_asymmetry" in names_that_hold(search, alone, both).names) == named
+    assert names_that_hold(search, alone, alone).names == {"load_asymmetry"}
+
+
+@pytest.mark.parametrize("share", [0.02, 0.5])
+def test_effects_do_not_take_the_place_of_the_line(share: float) -> None:
+    search = search_of(friction(0.3))
+    found = fitted(search, [Term(find("friction_hysteresis"), friction().shape, None, 0.1)]).fit
+    assert found.keeps_line
+    slope = search.problem.history.compliance_deg_per_nm
+    moved = found.moved(1, (share - 1.0) * slope)
+    assert moved.keeps_line == (share > 0.1)
+    assert (with_right_signs(moved) is None) == (share < 0.1)
+    assert np.isfinite(moved.beta).all()
