@@ -24,7 +24,8 @@ PARAMETER_CHARGE = 2.0
 EFFECT_CHARGE = 8.0
 """What an effect must gain beside its parameters, in the same unit: the odds against one more."""
 LEAST_REMOVED = 0.5
-"""Share of the mean square mismatch that these effects must take away together."""
+"""Share of the mean square mismatch that these effects must take away together, and the friction
+that is kept of them."""
 LEAST_FORGETTING = 0.05
 """Share of a friction that forgets its turning points from which it is fitted further."""
 FEW_RUNS = 4
@@ -69,17 +70,20 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
         alone = _fitted(noise, [term], baseline) if term.slips else None
         offered += [] if alone is None else [alone]
     best = from_better_start(noise, min(offered, key=_cost), EFFECT_CHARGE)
-    if not any(term.slips for term in best.terms):
-        return None
-    removed = 1.0 - (best.rmse_deg / baseline.rmse_deg) ** 2
-    if removed <= LEAST_REMOVED:
+    if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
     # stiffening and a difference of the directions together make the curve of any dial. A few runs
     # alone do not tell them from friction.
     few = search.problem.run_count <= FEW_RUNS
     kept = [term for term in best.terms if term.slips or few]
-    return fit(search.problem, search.noise, _settled(kept), best, rounds=CONVERGED)
+    found = fit(search.problem, search.noise, _settled(kept), best, rounds=CONVERGED)
+    return found if _explains_most(found, baseline) else None
+
+
+def _explains_most(fitted: FittedStructure, baseline: FittedStructure) -> bool:
+    """Whether a fit takes most of the mean square mismatch away."""
+    return bool(1.0 - (fitted.rmse_deg / baseline.rmse_deg) ** 2 > LEAST_REMOVED)
 
 
 def _ends_alike(one: FittedStructure, other: FittedStructure) -> bool:

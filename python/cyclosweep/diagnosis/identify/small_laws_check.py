@@ -17,10 +17,13 @@ from cyclosweep.simulation.effects.history import Floats
 
 LOUD = 100.0
 """Signal-to-noise ratio of the larger one from which its law's error counts."""
+ALIKE = 0.8
+"""Correlation of the twist by two laws of a class from which both together make one curve, whatever
+their sizes; loops of friction are told apart by how they open."""
 
 
 def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tuple[LawCheck, ...]:
-    """Withdraw laws that are small beside a loud one of the same class.
+    """Withdraw laws that are small beside a loud one of the same class, or look like it.
 
     Parameters
     ----------
@@ -37,10 +40,15 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
     terms = {term.name: term for term in fitted.terms if term.name in judged}
     size = {t.name: size_of(fitted, k) for k, t in enumerate(fitted.terms) if t.name in judged}
 
+    def least_beside(name: str, other: str) -> float:
+        curves = not (terms[name].slips or terms[other].slips)
+        alike = curves and np.corrcoef(size[name], size[other])[0, 1] > ALIKE
+        return 1.0 if alike else LEAST_OF_CLASS
+
     def is_small(name: str) -> bool:
         return any(
             share_class(terms[name], terms[other])
-            and np.std(size[name]) < LEAST_OF_CLASS * np.std(size[other])
+            and np.std(size[name]) < least_beside(name, other) * np.std(size[other])
             and _visibility(fitted, size[other]) > LOUD
             for other in size
             if other != name
