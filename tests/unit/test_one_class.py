@@ -9,15 +9,20 @@ import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import LOOP
 from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify import testability as bounds_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
-from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fit import ContactFit, fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.friction_first import friction_first
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.naming import names_that_hold
 from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
+from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
@@ -102,9 +107,43 @@ def test_a_law_smaller_than_what_has_no_name_is_not_named(friction_deg: float, n
 def test_effects_do_not_take_the_place_of_the_line(share: float) -> None:
     search = search_of(friction(0.3))
     found = fitted(search, [Term(find("friction_hysteresis"), friction().shape, None, 0.1)]).fit
+    assert isinstance(found, ContactFit)
     assert found.keeps_line
     slope = search.problem.history.compliance_deg_per_nm
     moved = found.moved(1, (share - 1.0) * slope)
     assert moved.keeps_line == (share > 0.1)
     assert (with_right_signs(moved) is None) == (share < 0.1)
     assert np.isfinite(moved.beta).all()
+
+
+def test_no_friction_is_fitted_first_where_there_is_none() -> None:
+    stiffening = EffectValue("contact_stiffening", {"turn_nm": 3.0}, (1.5,))
+    search = search_of(stiffening)
+    assert friction_first(search, search.noise) is None
+    slipping = search_of(stiffening, friction(3.0))
+    found = friction_first(slipping, slipping.noise)
+    assert found is not None
+    assert all(term.slips for term in found.terms)
+
+
+def test_bounds_of_a_structure_are_counted_by_its_own_noise() -> None:
+    search = search_of(EffectValue("contact_stiffening", {"turn_nm": 3.0}, (0.4,)))
+    wider = fit(search.problem, search.noise.with_model_error(5.0), ())
+
+    def estimate(fitted: FittedStructure) -> float:
+        bounds = bounds_of.testability(search, search.looked_through(fitted), {})
+        return next(each.estimate_deg for each in bounds if each.name == "contact_stiffening")
+
+    assert estimate(wider) == pytest.approx(estimate(search.baseline.fit), rel=0.2)
+
+
+def test_two_look_alikes_of_one_class_are_one_curve() -> None:
+    kinks = {"kink_1_nm": 4.0, "kink_2_nm": 8.0}
+    search = search_of(EffectValue("clearance_takeup", kinks, (0.4, 0.4)))
+    both = fitted(
+        search,
+        [Term(find("clearance_takeup"), kinks), Term(find("contact_stiffening"), {"turn_nm": 5.0})],
+    )
+    size = [size_of(both.fit, k) for k in range(2)]
+    assert np.corrcoef(size[0], size[1])[0, 1] > 0.8
+    assert len(held(without_small_laws(both.fit, all_hold(both)))) == 1

@@ -50,7 +50,7 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     Returns
     -------
     FittedStructure or None
-        None where they take away too little, or where none of them slips.
+        None where they take away too little, or do as well without friction.
     """
     baseline = search.baseline.fit
     best: FittedStructure | None = None
@@ -71,6 +71,9 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
         offered += [] if alone is None else [alone]
     best = from_better_start(noise, min(offered, key=_cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
+        return None
+    others = _fitted(noise, [term for term in best.terms if not term.slips], baseline)
+    if others is not None and _cost(others) <= _cost(best):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
     # stiffening and a difference of the directions together make the curve of any dial. A few runs

@@ -106,6 +106,9 @@ def _without_lesser_laws(
     -------
     tuple of LawCheck
     """
+    if best.noise.model_error_factor != fitted.noise.model_error_factor:
+        # Chi-squared is counted against another noise.
+        return tuple(checks)
     unnamed = fitted.chi2 - best.chi2
     place = {term.name: index for index, term in enumerate(fitted.terms)}
     line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)

@@ -40,7 +40,9 @@ def with_better_laws(search: Search) -> FittedStructure:
         own = _extended(search, parent, name)
         tried = [child for each in rivals if (child := _extended(search, parent, each)) is not None]
         best = max(tried, key=lambda child: child.score, default=None)
-        if best is not None and best.all_recognised and best.score > _score(own) + CLEARLY:
+        if best is None or not best.all_recognised or best.fit.chi2 >= fitted.chi2:
+            continue
+        if best.score > _score(own) + CLEARLY:
             fitted = best.fit
     return fitted
 

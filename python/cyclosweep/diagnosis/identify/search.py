@@ -92,9 +92,7 @@ class Search:
         self.problem, self.noise, self.library = problem, noise, library
         self.seed = seed
         base = fit(problem, noise, ())
-        use = problem.fitted
-        _, weight = noise.residual(problem.angle_deg[use], base.mean_deg[use])
-        self.whitened = noise.design(library.columns, weight)
+        self.whitened = _whitened(library, base)
         self.gram = self.whitened.T @ self.whitened
         rng = np.random.default_rng([seed, 1])
         self.alarm = Alarm.calibrate(self._scan(base), rng)
@@ -227,11 +225,15 @@ class Search:
         return best
 
     def _scan(self, fitted: FittedStructure) -> Scan:
-        """Evidence for every hypothesis in the residual of a structure."""
+        """Evidence for every hypothesis in the residual of a structure, by that one's noise."""
+        whitened, gram = self.whitened, self.gram
+        if fitted.noise.model_error_factor != self.noise.model_error_factor:
+            whitened = _whitened(self.library, fitted)
+            gram = whitened.T @ whitened
         return scan(
             self.library,
-            self.whitened,
-            self.gram,
+            whitened,
+            gram,
             fitted.tangent,
             fitted.residual,
             self.noise.freedom,
@@ -394,3 +396,11 @@ class Search:
             if not children:
                 return
             best = max(children, key=lambda n: n.score)
+
+
+def _whitened(library: Library, fitted: FittedStructure) -> Floats:
+    """Columns of a library, whitened by the noise of a structure, shape (fitted, k)."""
+    problem, noise = fitted.problem, fitted.noise
+    use = problem.fitted
+    _, weight = noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
+    return noise.design(library.columns, weight)

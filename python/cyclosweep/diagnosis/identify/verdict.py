@@ -108,7 +108,7 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
     probability = 1.0 - sum(share for _, share in search.rivals_of_start)
     explanations = [(best, probability), *search.rivals_of_start]
     explanations.sort(key=lambda each: -each[1])
-    if search.suffices(best) and search.noise.model_error_factor == 1.0:
+    if search.suffices(best) and best.fit.noise.model_error_factor == 1.0:
         sure = probability >= SURE
         return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
     mostly = explained_share >= MOSTLY

@@ -245,10 +245,12 @@ def noise_beside(forecast: Forecast, noise: Noise) -> Noise:
     problem = forecast.problem
     use = problem.fitted
     path = known_flank_path(problem, forecast.model)
-    left = noise.residual(problem.angle_deg[use], path.angle_deg[use])[0]
+    plain = replace(noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
+    left = plain.residual(problem.angle_deg[use], path.angle_deg[use])[0]
     # Where model error was added, noise alone is a small part of the unit variance.
-    beyond = float(left @ left) - len(left) / noise.model_error_factor**2
-    return noise.with_model_error(float(np.sqrt(max(beyond, 0.0) / INDEPENDENT_PIECES)))
+    share = 1.0 / noise.model_error_factor**2
+    beyond = max(float(left @ left) - share * len(left), 0.0)
+    return noise.with_model_error(float(np.sqrt(share + beyond / INDEPENDENT_PIECES)))
 
 
 def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeLoopFit:

@@ -51,6 +51,7 @@ pub fn solve_slip(
     numbers_at_starts("start_angle", start_angle, restart)?;
     spring.check()?;
     elements.check()?;
+    positive("slip_angle", elements.slip_angle)?;
     with_widest(SlipWork {
         torque,
         offset,
