@@ -90,19 +90,6 @@ def test_kinks_may_change_places_but_the_first_lies_in_the_lower_half() -> None:
     assert not effect.is_recognised(history, late, np.ones(2))
 
 
-def test_a_shape_without_a_name_beside_friction_settles() -> None:
-    # Its columns hold play and line as well: with them the elastic law jumped at zero and the fit
-    # did not settle, and the line that is left says nothing of the drive.
-    stiffening = EffectValue("contact_stiffening", {"turn_nm": 3.0}, (1.0,))
-    search = search_of(EffectValue("friction_hysteresis", SLIP, (2.0,)), stiffening)
-    slipping = Term(find("friction_hysteresis"), SLIP, None, 2.0)
-    alone = fit(search.problem, search.noise, (slipping,), search.baseline.fit, rounds=20)
-    found = search.extend(search.looked_through(alone), "smooth odd curve")
-    assert found is not None
-    assert found.fit.chi2 < 1.05 * search.problem.count
-    assert settled(search, found.fit) < 0.05
-
-
 def test_another_law_never_takes_the_place_of_one_that_fits_better() -> None:
     kinks = {f"kink_{k}_nm": 1.5 * k for k in range(1, 6)}
     takeup = EffectValue("clearance_takeup", kinks, (0.2,) * 5)

@@ -56,15 +56,14 @@ def test_a_parameter_without_effect_does_not_stop_the_others() -> None:
     assert found[0] == pytest.approx(3.0, abs=1e-3)
 
 
-@pytest.mark.parametrize("bound", [10.0, 1e3])
-def test_a_step_is_never_larger_than_slopes_are_worth(bound: float) -> None:
+def test_a_step_is_never_larger_than_slopes_are_worth() -> None:
     asked: list[float] = []
 
     def residual(values: Floats) -> Floats:
         asked.append(float(values[0]))
         return np.array([np.arctan(values[0] - 20.0), 0.1])
 
-    minimise(residual, np.array([0.0]), (np.array([-bound]), np.array([bound])), np.ones(1), 1)
+    minimise(residual, np.array([0.0]), (np.array([-1e3]), np.array([1e3])), np.ones(1), 1)
     assert max(asked) <= LARGEST_STEP
 
 

@@ -302,12 +302,7 @@ class FittedStructure(ABC):
 
     @property
     def keeps_line(self) -> bool:
-        """Whether the line, and not its effects, is the elasticity of the drive.
-
-        Beside shapes without a name, which hold lines as well, the line's slope says nothing.
-        """
-        if any(term.effect is None for term in self.terms):
-            return True
+        """Whether the line, and not its effects, is the elasticity of the drive."""
         slope = self.problem.history.compliance_deg_per_nm
         return bool(self.beta[1] >= LEAST_OF_SLOPE * slope)
 

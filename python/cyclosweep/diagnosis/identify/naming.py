@@ -69,7 +69,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
         return _beside_stand_ins(search, accepted)
     part, withdrawn = accepted, list[LawCheck]()
     while True:
-        checks = check_laws(part.fit)
+        checks = _beside_the_line(part.fit, check_laws(part.fit))
         judged = all(check.holds for check in checks)
         if judged:
             # Those that are left stood for their class together with the small ones.
@@ -86,6 +86,26 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
         if judged:
             held = (check for check in checks if check.holds)
             return Naming(part, (*held, *withdrawn), shown_classes(part.fit))
+
+
+def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tuple[LawCheck, ...]:
+    """Withdraw elastic laws that have taken the place of the drive's own elasticity.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        Structure of effects.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    if fitted.keeps_line:
+        return tuple(checks)
+    elastic = {term.name for term in fitted.terms if term.elastic}
+    return tuple(replace(c, holds=c.holds and c.name not in elastic) for c in checks)
 
 
 def _without_lesser_laws(

@@ -17,9 +17,8 @@ from cyclosweep.simulation.elastic_law import ElasticLaw, history_through, law_o
 def path_law(elastic: Sequence[tuple[Term, Floats]], history: History) -> ElasticLaw | None:
     """Elastic law of a structure: the line and every term that follows from the elastic torque.
 
-    Where a term differs between rising and falling torque the law has the mean of both, and it
-    passes through zero: a shape without a name may hold a part of datum and play. What is left
-    moves the datum of the path, as everything does that is no part of the law.
+    Where a term differs between rising and falling torque the law has the mean of both; what is
+    left of it moves the datum of the path, as everything does that is no part of the law.
 
     Parameters
     ----------
@@ -43,10 +42,7 @@ def path_law(elastic: Sequence[tuple[Term, Floats]], history: History) -> Elasti
         return np.asarray(sum(term.columns(rows) @ own for term, own in elastic))
 
     def twist(torque: Floats) -> Floats:
-        both = 0.5 * (added(torque) + added(torque[::-1])[::-1])
-        first = len(torque) // 2
-        at_zero = np.where(torque < 0.0, both[first - 1], both[first])
-        return np.asarray(compliance * torque + both - at_zero)
+        return compliance * torque + 0.5 * (added(torque) + added(torque[::-1])[::-1])
 
     return law_of_twist(twist, history.largest_torque_nm, compliance)
 

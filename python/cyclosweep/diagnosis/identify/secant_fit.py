@@ -19,7 +19,8 @@ LEAST_GAIN = 1e-5
 LEAST_STEP = 1e-5
 """The same for the step itself, over the usual change of a parameter."""
 LARGEST_STEP = 3.0
-"""Largest step of a parameter, in usual changes: further off the slopes say nothing."""
+"""Largest step of a parameter that stays within its bounds, in usual changes: further off the
+slopes say nothing."""
 FIRST_DAMPING, MOST_DAMPING = 1e-3, 1e6
 """Damping of the first step over the curvature, and from which no step is left to try."""
 
@@ -131,8 +132,8 @@ def _bounded_step(
 ) -> tuple[Floats, float]:
     """Damped step of no more than a few usual changes that stays within the bounds.
 
-    Parameters that the step would take out of their bounds, or further than slopes are worth, are
-    moved as far as they may be, and the others find their step once more.
+    Parameters that the step would take out of their bounds are moved to them, and the others find
+    their step once more.
 
     Parameters
     ----------
@@ -146,7 +147,8 @@ def _bounded_step(
     scale : ndarray, shape (p,)
         Usual change of each parameter.
     damping : float
-        Over the curvature along each parameter; raised until the step promises to gain.
+        Over the curvature along each parameter; raised until the step is small enough and promises
+        to gain.
 
     Returns
     -------
@@ -155,9 +157,7 @@ def _bounded_step(
     damping : float
         With which it was found.
     """
-    lowest, highest = (
-        np.clip((bound - values) / scale, -LARGEST_STEP, LARGEST_STEP) for bound in bounds
-    )
+    lowest, highest = ((bound - values) / scale for bound in bounds)
     curvature, gradient = slopes.T @ slopes, slopes.T @ left
     while True:
         step, free = np.zeros(len(values)), np.ones(len(values), dtype=bool)
@@ -169,8 +169,9 @@ def _bounded_step(
             step[out] = np.clip(step, lowest, highest)[out]
             free &= ~out
         step = np.clip(step, lowest, highest)
+        small = np.abs(step[free]).max(initial=0.0) <= LARGEST_STEP
         falls = float(step @ (2.0 * gradient + curvature @ step)) <= 0.0
-        if falls or damping > MOST_DAMPING:
+        if (small and falls) or damping > MOST_DAMPING:
             return step, damping
         damping *= 10.0
 

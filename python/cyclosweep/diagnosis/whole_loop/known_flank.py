@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import (
     TorqueZero,
 )
 from cyclosweep.diagnosis.identify.repetition import Repetition
+from cyclosweep.diagnosis.identify.staged_search import FAINT
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
@@ -249,7 +250,7 @@ def noise_beside(forecast: Forecast, noise: Noise) -> Noise:
     left = plain.residual(problem.angle_deg[use], path.angle_deg[use])[0]
     # Where model error was added, noise alone is a small part of the unit variance.
     share = 1.0 / noise.model_error_factor**2
-    beyond = max(float(left @ left) - share * len(left), 0.0)
+    beyond = max(float(left @ left) - share * (len(left) + FAINT**2), 0.0)
     return noise.with_model_error(float(np.sqrt(share + beyond / INDEPENDENT_PIECES)))
 
 
