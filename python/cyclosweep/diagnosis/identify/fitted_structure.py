@@ -320,6 +320,12 @@ class FittedStructure(ABC):
         part = self.column_range(index)
         return term.columns(self.history) @ self.beta[part]
 
+    def whitened(self, columns: Floats) -> Floats:
+        """Columns on the fitted rows, whitened by the structure's own noise, shape (fitted, k)."""
+        use = self.problem.fitted
+        _, weight = self.noise.residual(self.problem.angle_deg[use], self.mean_deg[use])
+        return self.noise.design(columns, weight)
+
     def whitened_contribution(self, index: int, noise: Noise) -> Floats:
         """Twist that a term adds on the fitted rows, whitened.
 

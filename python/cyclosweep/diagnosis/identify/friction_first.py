@@ -85,7 +85,19 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
 
 
 def _explains_most(fitted: FittedStructure, baseline: FittedStructure) -> bool:
-    """Whether a fit takes most of the mean square mismatch away."""
+    """Whether a fit takes most of the mean square mismatch away.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The fit.
+    baseline : FittedStructure
+        The calibrated model without effects.
+
+    Returns
+    -------
+    bool
+    """
     return bool(1.0 - (fitted.rmse_deg / baseline.rmse_deg) ** 2 > LEAST_REMOVED)
 
 

@@ -92,7 +92,7 @@ class Search:
         self.problem, self.noise, self.library = problem, noise, library
         self.seed = seed
         base = fit(problem, noise, ())
-        self.whitened = _whitened(library, base)
+        self.whitened = base.whitened(library.columns)
         self.gram = self.whitened.T @ self.whitened
         rng = np.random.default_rng([seed, 1])
         self.alarm = Alarm.calibrate(self._scan(base), rng)
@@ -228,7 +228,7 @@ class Search:
         """Evidence for every hypothesis in the residual of a structure, by that one's noise."""
         whitened, gram = self.whitened, self.gram
         if fitted.noise.model_error_factor != self.noise.model_error_factor:
-            whitened = _whitened(self.library, fitted)
+            whitened = fitted.whitened(self.library.columns)
             gram = whitened.T @ whitened
         return scan(
             self.library,
@@ -396,11 +396,3 @@ class Search:
             if not children:
                 return
             best = max(children, key=lambda n: n.score)
-
-
-def _whitened(library: Library, fitted: FittedStructure) -> Floats:
-    """Columns of a library, whitened by the noise of a structure, shape (fitted, k)."""
-    problem, noise = fitted.problem, fitted.noise
-    use = problem.fitted
-    _, weight = noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
-    return noise.design(library.columns, weight)
