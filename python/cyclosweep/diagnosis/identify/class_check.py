@@ -23,6 +23,7 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvidence
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    FURTHER_LAW,
     LawBeside,
     LawCheck,
     amplitude_count,
@@ -40,8 +41,6 @@ from cyclosweep.simulation.effects.history import Floats
 LEAST_EVIDENCE = 0.5
 """Log evidence of its own that a law must have to be named [nat]. That something is missing was
 decided before; a faint law, whose shape the recording leaves open, is charged too much for it."""
-FURTHER_LAW = 6.0
-"""Log prior odds against each further law in the same class [nat], as in the search."""
 CLOSE = 1.6
 """Log evidence by which a class may be ahead of a law that is named [nat]: odds of five to one."""
 CLOSE_OTHER = 4.0

@@ -24,8 +24,7 @@ from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.simulate import Model
 
 LEAST_OF_SLOPE = 0.1
-"""Compliance of a structure's line over that of the recorded flanks, below which its effects have
-taken the place of the drive's elasticity."""
+"""Least compliance of the line over that of the flanks, with which it is still the drive's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,8 +302,7 @@ class FittedStructure(ABC):
     @property
     def keeps_line(self) -> bool:
         """Whether the line, and not its effects, is the elasticity of the drive."""
-        slope = self.problem.history.compliance_deg_per_nm
-        return bool(self.beta[1] >= LEAST_OF_SLOPE * slope)
+        return bool(self.beta[1] >= LEAST_OF_SLOPE * self.problem.history.compliance_deg_per_nm)
 
     @property
     def valid(self) -> bool:
@@ -320,11 +318,23 @@ class FittedStructure(ABC):
         part = self.column_range(index)
         return term.columns(self.history) @ self.beta[part]
 
-    def whitened(self, columns: Floats) -> Floats:
-        """Columns on the fitted rows, whitened by the structure's own noise, shape (fitted, k)."""
+    def whitened(self, columns: Floats, noise: Noise) -> Floats:
+        """Whiten columns on the fitted rows.
+
+        Parameters
+        ----------
+        columns : ndarray, shape (fitted,) or (fitted, k)
+            Twist for unit parameters [deg].
+        noise : Noise
+            Noise by which they are whitened.
+
+        Returns
+        -------
+        ndarray, shape (fitted,) or (fitted, k)
+        """
         use = self.problem.fitted
-        _, weight = self.noise.residual(self.problem.angle_deg[use], self.mean_deg[use])
-        return self.noise.design(columns, weight)
+        _, weight = noise.residual(self.problem.angle_deg[use], self.mean_deg[use])
+        return noise.design(columns, weight)
 
     def whitened_contribution(self, index: int, noise: Noise) -> Floats:
         """Twist that a term adds on the fitted rows, whitened.
@@ -334,16 +344,13 @@ class FittedStructure(ABC):
         index : int
             Which of the terms.
         noise : Noise
-            Noise by which it is whitened.
+            As of `whitened`.
 
         Returns
         -------
         ndarray, shape (fitted,)
-            In units of the noise.
         """
-        use = self.problem.fitted
-        _, weight = noise.residual(self.problem.angle_deg[use], self.mean_deg[use])
-        return noise.design(self.contribution(index)[use], weight)
+        return self.whitened(self.contribution(index)[self.problem.fitted], noise)
 
     def information(self, places: Sequence[int]) -> Floats:
         """Information on some parameters, all others known only by this recording.

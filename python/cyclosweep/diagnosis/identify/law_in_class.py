@@ -18,6 +18,8 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
+FURTHER_LAW = 6.0
+"""Log prior odds against each further law [nat], as in the search."""
 LEAST_OF_CLASS = 0.25
 """Size of an effect over that of a larger one of its class from which it is its own: a smaller
 law takes up what the larger one's law misses, and leaves nothing of it."""
@@ -172,7 +174,7 @@ def basis_of_others(fitted: FittedStructure, places: Collection[int]) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class LawBeside:
-    """What a law explains beside everything else that is fitted.
+    """What a law, or several together, explains beside everything else that is fitted.
 
     Attributes
     ----------
@@ -193,6 +195,36 @@ class LawBeside:
     residual: Floats
     charged: tuple[int, int]
     evidence: float
+
+    @classmethod
+    def of(
+        cls, fitted: FittedStructure, classes: ClassColumns, indices: Collection[int]
+    ) -> "LawBeside":
+        """Take laws of a structure together.
+
+        Parameters
+        ----------
+        fitted : FittedStructure
+            The structure.
+        classes : ClassColumns
+            Columns of every class.
+        indices : collection of int
+            Which of the structure's terms.
+
+        Returns
+        -------
+        LawBeside
+        """
+        places = [place for index in indices for place in law_places(fitted, index)]
+        known = basis_of_others(fitted, places)
+        single = [fitted.whitened_contribution(index, fitted.noise) for index in indices]
+        law = classes.scale * np.sum(single, axis=0)
+        residual = classes.scale * fitted.residual + law
+        law, residual = (each - known @ (known.T @ each) for each in (law, residual))
+        amplitudes = sum(amplitude_count(fitted, index) for index in indices)
+        charged = (amplitudes, len(places) - amplitudes)
+        value = law_evidence(residual, law, charged, classes.freedom)
+        return cls(known, law, residual, charged, value)
 
     def is_replaced(self, classes: ClassColumns, name: str) -> bool:
         """Whether little is left of the law beside all columns of a class."""

@@ -7,21 +7,14 @@ between them. The flexible group of the one class then explains as much with few
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    FURTHER_LAW,
+    LawBeside,
     LawCheck,
-    amplitude_count,
-    basis_of_others,
-    law_evidence,
-    law_places,
     own_classes,
 )
-
-FURTHER_EFFECT = 6.0
-"""Log prior odds against each further effect [nat], as in the search."""
 
 
 def without_laws_of_one_class(
@@ -45,20 +38,12 @@ def without_laws_of_one_class(
     if len(indices) < 2:
         return tuple(checks)
     classes = ClassColumns.of(fitted)
-    places = [place for index in indices for place in law_places(fitted, index)]
-    known = basis_of_others(fitted, places)
-    law = classes.scale * np.sum(
-        [fitted.whitened_contribution(index, fitted.noise) for index in indices], axis=0
-    )
-    residual = classes.scale * fitted.residual + law
-    law, residual = (each - known @ (known.T @ each) for each in (law, residual))
-    amplitudes = sum(amplitude_count(fitted, index) for index in indices)
-    charged = (amplitudes, len(places) - amplitudes)
-    by_laws = law_evidence(residual, law, charged, classes.freedom)
-    by_laws -= FURTHER_EFFECT * (len(indices) - 1)
-    found = {name: classes.evidence(name, known, residual).evidence for name in classes.columns}
+    laws = LawBeside.of(fitted, classes, indices)
+    found = {
+        name: classes.evidence(name, laws.known, laws.residual).evidence for name in classes.columns
+    }
     best = max(found, key=lambda name: found[name])
-    if found[best] <= by_laws:
+    if found[best] <= laws.evidence - FURTHER_LAW * (len(indices) - 1):
         return tuple(checks)
     own = {fitted.terms[index].name: own_classes(fitted.terms[index]) for index in indices}
     return tuple(

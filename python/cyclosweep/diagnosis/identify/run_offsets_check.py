@@ -12,15 +12,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import (
-    LawBeside,
-    LawCheck,
-    amplitude_count,
-    basis_of_others,
-    law_evidence,
-    law_places,
-    own_classes,
-)
+from cyclosweep.diagnosis.identify.law_in_class import LawBeside, LawCheck, own_classes
 
 
 def without_leftovers(
@@ -83,12 +75,4 @@ def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole:
     -------
     bool
     """
-    places = law_places(fitted, index)
-    known = basis_of_others(fitted, places)
-    law = classes.scale * fitted.whitened_contribution(index, fitted.noise)
-    residual = classes.scale * fitted.residual + law
-    law, residual = (each - known @ (known.T @ each) for each in (law, residual))
-    amplitudes = amplitude_count(fitted, index)
-    charged = (amplitudes, len(places) - amplitudes)
-    alone = law_evidence(residual, law, charged, classes.freedom)
-    return LawBeside(known, law, residual, charged, alone).is_replaced(classes, whole)
+    return LawBeside.of(fitted, classes, [index]).is_replaced(classes, whole)

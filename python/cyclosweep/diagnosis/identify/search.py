@@ -92,7 +92,7 @@ class Search:
         self.problem, self.noise, self.library = problem, noise, library
         self.seed = seed
         base = fit(problem, noise, ())
-        self.whitened = base.whitened(library.columns)
+        self.whitened = base.whitened(library.columns, noise)
         self.gram = self.whitened.T @ self.whitened
         rng = np.random.default_rng([seed, 1])
         self.alarm = Alarm.calibrate(self._scan(base), rng)
@@ -228,7 +228,7 @@ class Search:
         """Evidence for every hypothesis in the residual of a structure, by that one's noise."""
         whitened, gram = self.whitened, self.gram
         if fitted.noise.model_error_factor != self.noise.model_error_factor:
-            whitened = fitted.whitened(self.library.columns)
+            whitened = fitted.whitened(self.library.columns, fitted.noise)
             gram = whitened.T @ whitened
         return scan(
             self.library,

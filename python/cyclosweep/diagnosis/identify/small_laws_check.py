@@ -71,7 +71,4 @@ def _visibility(fitted: FittedStructure, size_deg: Floats) -> float:
     -------
     float
     """
-    noise = replace(fitted.noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
-    use = fitted.problem.fitted
-    _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
-    return float(np.linalg.norm(noise.design(size_deg, weight)))
+    return float(np.linalg.norm(fitted.whitened(size_deg, fitted.noise.plain)))

@@ -8,7 +8,6 @@ noise, so that what is faint is judged against the noise alone.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -63,7 +62,7 @@ def visibility(fitted: FittedStructure, flexible: Floats) -> float:
     -------
     float
     """
-    noise = replace(fitted.noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
+    noise = fitted.noise.plain
     use = fitted.problem.fitted
     left, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
     basis = orthonormal(noise.design(flexible, weight))

@@ -87,9 +87,8 @@ def _sinusoid_gain(parent: Candidate, term: Term) -> float:
         In nat.
     """
     fitted = parent.fit
-    use, noise = fitted.problem.fitted, fitted.noise
-    _, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
-    basis = orthonormal(noise.design(term.columns(fitted.history)[use], weight))
+    columns = term.columns(fitted.history)[fitted.problem.fitted]
+    basis = orthonormal(fitted.whitened(columns, fitted.noise))
     return float(evidence(np.sum((basis.T @ fitted.residual) ** 2), 2.0))
 
 

@@ -70,6 +70,11 @@ class Noise:
     white_share: float = 0.0
 
     @property
+    def plain(self) -> "Noise":
+        """The same noise as if Gaussian and read finely: nothing that is far off counts less."""
+        return replace(self, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
+
+    @property
     def spread_deg(self) -> float:
         """Standard deviation of one row about the mean [deg]."""
         return self.sigma_deg if self.marginal_deg is None else self.marginal_deg

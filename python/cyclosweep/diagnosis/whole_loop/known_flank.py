@@ -246,8 +246,7 @@ def noise_beside(forecast: Forecast, noise: Noise) -> Noise:
     problem = forecast.problem
     use = problem.fitted
     path = known_flank_path(problem, forecast.model)
-    plain = replace(noise, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
-    left = plain.residual(problem.angle_deg[use], path.angle_deg[use])[0]
+    left = noise.plain.residual(problem.angle_deg[use], path.angle_deg[use])[0]
     # Where model error was added, noise alone is a small part of the unit variance.
     share = 1.0 / noise.model_error_factor**2
     beyond = max(float(left @ left) - share * (len(left) + FAINT**2), 0.0)

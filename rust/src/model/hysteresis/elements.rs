@@ -1,7 +1,7 @@
 //! Slip elements: their numbers, and their states along a history of angles.
 
 use crate::model::hysteresis::checks::{
-    HistoryError, finite, not_negative, numbers, same_length, within,
+    HistoryError, finite, not_negative, numbers, positive, same_length, within,
 };
 use crate::model::hysteresis::exponential::{LANES, decay};
 
@@ -28,7 +28,7 @@ impl SlipElements<'_> {
     /// Requires what the elements' own numbers must be.
     pub(super) fn check(&self) -> Result<(), HistoryError> {
         same_length(self.slip_angle.len(), &[self.share.len()])?;
-        not_negative("slip_angle", self.slip_angle)?;
+        positive("slip_angle", self.slip_angle)?;
         finite("share", self.share)?;
         numbers("limit", &[self.limit])?;
         numbers("load_factor", &[self.load_factor])?;

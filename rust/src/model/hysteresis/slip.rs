@@ -27,8 +27,8 @@ use crate::wide::{Wide, with_widest};
 /// which the elements are fresh, anchored at `start_angle[i]`.
 ///
 /// # Errors
-/// [`HistoryError`] when columns differ in length or hold what is not a number, or a torque, offset
-/// or share is infinite.
+/// [`HistoryError`] when columns differ in length or hold what is not a number, a torque, offset or
+/// share is infinite, or a slip distance is not above zero.
 #[expect(
     clippy::too_many_arguments,
     reason = "one slice per column of the history, two of them to fill"
@@ -51,7 +51,6 @@ pub fn solve_slip(
     numbers_at_starts("start_angle", start_angle, restart)?;
     spring.check()?;
     elements.check()?;
-    positive("slip_angle", elements.slip_angle)?;
     with_widest(SlipWork {
         torque,
         offset,
@@ -228,7 +227,6 @@ pub fn slip_state(
     finite("angle", angle)?;
     numbers_at_starts("start_angle", start_angle, restart)?;
     positive("stretch", stretch)?;
-    positive("slip_angle", elements.slip_angle)?;
     elements.check()?;
     let mut states = ElementStates::new(elements);
     for i in 0..angle.len() {
