@@ -95,9 +95,20 @@ def test_position_is_where_it_was_locked_and_the_travel_since() -> None:
     assert measured.mesh_deg(13.0) == pytest.approx(at_output + 13.0)
 
 
-def test_travel_is_looked_for_only_where_positions_do_not_tell() -> None:
+def test_orders_go_with_the_locking_position_and_with_the_travel_where_it_is_far() -> None:
     effect = find("transmission_error")
-    assert all("travel_ratio" not in shape for shape in effect.shapes(history()))
+    stayed = history(angle_deg=np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610))
+    locked = effect.shapes(stayed)
+    assert all("travel_ratio" not in shape for shape in locked)
+    travelled = effect.shapes(history())
+    assert travelled[: len(locked)] == locked
+    assert [list(shape.values()) for shape in travelled[len(locked) :]] == [
+        [1.0, *shape.values()] for shape in locked
+    ]
+
+
+def test_a_travelling_mesh_is_looked_for_where_no_position_was_recorded() -> None:
+    effect = find("transmission_error")
     fixed = history(crank_deg=None)
     assert all("travel_ratio" in shape for shape in effect.shapes(fixed))
     short = history(crank_deg=None, angle_deg=np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610))

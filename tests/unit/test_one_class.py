@@ -1,6 +1,7 @@
 """Which laws keep their names where one class, or what has no name, explains more than they do."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,8 +22,11 @@ from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_cl
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
+from cyclosweep.diagnosis.identify.staged_search import named_if_close
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
@@ -103,6 +107,21 @@ def test_a_law_smaller_than_what_has_no_name_is_not_named(friction_deg: float, n
     assert names_that_hold(search, alone, alone).names == {"load_asymmetry"}
 
 
+@pytest.mark.parametrize(("unnamed", "named"), [("even curve", False), ("compliance by run", True)])
+def test_a_law_that_is_worth_little_beside_what_has_no_name_is_not_named(
+    unnamed: str, named: bool
+) -> None:
+    shape = {"power": 1.0}
+    search = search_of(EffectValue("load_asymmetry", shape, (ASYMMETRY,)))
+    law = fitted(search, [Term(find("load_asymmetry"), shape)])
+    assert worth(search, "load_asymmetry", law) > INDISPENSABLE
+    both = search.extend(law, unnamed)
+    assert both is not None
+    assert ("load_asymmetry" in names_that_hold(search, law, both).names) == named
+    assert still_needed(search, both, law.fit.terms) == both.fit.terms[: int(named)]
+    assert still_needed(search, law, law.fit.terms) == law.fit.terms
+
+
 @pytest.mark.parametrize("share", [0.02, 0.5])
 def test_effects_do_not_take_the_place_of_the_line(share: float) -> None:
     search = search_of(friction(0.3))
@@ -124,6 +143,30 @@ def test_no_friction_is_fitted_first_where_there_is_none() -> None:
     found = friction_first(slipping, slipping.noise)
     assert found is not None
     assert all(term.slips for term in found.terms)
+
+
+def test_no_friction_is_fitted_first_where_a_drag_explains_more() -> None:
+    drag = EffectValue("viscous_drag", {"power": 1.0, "lag_s": 1e-3}, (0.5,))
+    search = search_of(drag)
+    assert friction_first(search, search.noise) is None
+
+
+@pytest.mark.parametrize(("ahead", "taken"), [(4.0, True), (6.0, False)])
+def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
+    ahead: float, taken: bool
+) -> None:
+    search = search_of(EffectValue("load_asymmetry", {"power": 1.0}, (ASYMMETRY,)))
+    named = search.extend(search.start, "load_asymmetry")
+    other = search.extend(search.start, "even curve")
+    assert named is not None
+    assert other is not None
+    assert search.suffices(named)
+    assert search.suffices(other)
+    other = replace(other, prior=other.prior + named.score + ahead - other.score)
+    search.visited = {each.names: each for each in (named, other)}
+    decision = decide(search, [], 0.0)
+    assert decision.best is other
+    assert (named_if_close(search, decision).best is named) == taken
 
 
 def test_bounds_of_a_structure_are_counted_by_its_own_noise() -> None:

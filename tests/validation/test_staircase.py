@@ -59,3 +59,30 @@ def test_friction_alone_has_no_staircase() -> None:
     measured = recording(TRAINED, [], 1.0, noise_deg=NOISE)
     alone = cs.diagnose(measured, cs.Drive.reference_87(), full=False)
     assert [e["name"] for e in alone.effects] == ["friction_hysteresis"]
+
+
+def test_a_low_order_is_found_on_a_mesh_that_travels_from_several_positions() -> None:
+    """Each run is locked elsewhere, so that its crest stands elsewhere along the twist."""
+    order, size, crest = 1.0, 0.4, 20.0
+    positions = [0.0, 70.0, 160.0, 250.0]
+    runs = [
+        recording(TRAINED[:1], [(order, size, crest - at)], 0.0, noise_deg=NOISE, seed=k)
+        for k, at in enumerate(positions)
+    ]
+    torque = [np.asarray(each.torque_nm) for each in runs]
+    measured = cs.Recording.from_arrays(
+        np.concatenate(torque),
+        np.concatenate([np.asarray(each.angle_deg) for each in runs]),
+        run=np.repeat(np.arange(len(runs)), [len(each) for each in torque]),
+        crank_deg=np.repeat(positions, [len(each) for each in torque]),
+    )
+    found = cs.diagnose(measured, cs.Drive.reference_87(), full=False)
+    assert found.verdict == "IDENTIFIED"
+    assert [effect["name"] for effect in found.effects] == ["transmission_error"]
+    assert "how far it has travelled since" in found.effects[0]["physics"]
+    assert found.model is not None
+    value = found.model.effects[0]
+    assert value.shape["travel_order_1"] == pytest.approx(order, abs=0.03)
+    cosine, sine = value.amplitudes
+    assert np.hypot(cosine, sine) == pytest.approx(size, rel=0.05)
+    assert np.degrees(np.arctan2(sine, cosine)) == pytest.approx(crest, abs=4.0)

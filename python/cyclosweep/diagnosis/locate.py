@@ -91,9 +91,8 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     cells = _cells(problem)
     if not cells:
         return []
-    _, weight = search.noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
     columns = np.column_stack([cell.rows[use].astype(np.float64) for cell in cells])
-    white = search.noise.design(columns, weight)
+    white = fitted.whitened(columns, fitted.noise)
     white = white - fitted.tangent @ (fitted.tangent.T @ white)
     gram = white.T @ white
     size = np.sqrt(np.diag(gram))

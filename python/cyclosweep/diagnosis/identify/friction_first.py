@@ -32,6 +32,8 @@ FEW_RUNS = 4
 """Fitted runs up to which the flanks alone may not tell effects apart."""
 SAME_OPTIMUM = 0.01
 """Difference of the logarithms of two errors up to which two starts have led to the same fit."""
+LOOP_FAMILY = "hysteresis"
+"""Family of effects to which friction belongs."""
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
@@ -72,8 +74,9 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     best = from_better_start(noise, min(offered, key=_cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
-    others = _fitted(noise, [term for term in best.terms if not term.slips], baseline)
-    if others is not None and _cost(others) <= _cost(best):
+    others = [term for term in best.terms if not term.slips]
+    instead = [_fitted(noise, [*drag, *others], baseline) for drag in ([], *_drags(search))]
+    if any(each is not None and _cost(each) <= _cost(best) for each in instead):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
     # stiffening and a difference of the directions together make the curve of any dial. A few runs
@@ -82,6 +85,25 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     kept = [term for term in best.terms if term.slips or few]
     found = fit(search.problem, search.noise, _settled(kept), best, rounds=CONVERGED)
     return found if _explains_most(found, baseline) else None
+
+
+def _drags(search: Search) -> list[list[Term]]:
+    """Loops that are no friction, each as the one term of a structure.
+
+    Parameters
+    ----------
+    search : Search
+
+    Returns
+    -------
+    list of list of Term
+    """
+    first: dict[str, Term] = {}
+    for signature in search.library.signatures:
+        effect = signature.effect
+        if effect is not None and effect.family == LOOP_FAMILY and not effect.slips:
+            first.setdefault(effect.name, Term(effect, signature.shape))
+    return [[term] for term in first.values()]
 
 
 def _explains_most(fitted: FittedStructure, baseline: FittedStructure) -> bool:

@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
+from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, worth
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 
 
@@ -76,6 +77,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             larger = without_small_laws(part.fit, checks)
             checks = without_laws_of_one_class(part.fit, larger)
             checks = _without_lesser_laws(part.fit, checks, best.fit)
+            checks = _without_needless_laws(search, checks, best)
             judged = checks == larger
         gone = [check for check in checks if not check.holds]
         names = {check.name for check in checks if check.holds}
@@ -139,6 +141,33 @@ def _without_lesser_laws(
         return float(law @ law) < unnamed
 
     return tuple(replace(c, holds=c.holds and not explains_less(c.name)) for c in checks)
+
+
+def _without_needless_laws(
+    search: Search, checks: Sequence[LawCheck], best: Candidate
+) -> tuple[LawCheck, ...]:
+    """Withdraw laws that explain next to nothing beside what has no name.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    checks : sequence of LawCheck
+        Of the laws of a structure.
+    best : Candidate
+        The structure with what has no name.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    if best.all_recognised:
+        return tuple(checks)
+
+    def is_needless(name: str) -> bool:
+        return name in best.names and worth(search, name, best) < INDISPENSABLE
+
+    return tuple(replace(c, holds=c.holds and not is_needless(c.name)) for c in checks)
 
 
 def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:

@@ -25,7 +25,8 @@ from cyclosweep.diagnosis.identify.other_laws import with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
-from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify.verdict import Decision, decide
+from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
@@ -41,11 +42,12 @@ of the calibrated model."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
-TIMES_WHAT_IS_LEFT = 3.0
+TIMES_WHAT_IS_LEFT = 2.0
 """Size of an effect over what the whole structure leaves beyond the noise, from which it is no
 model error in any case: laws that err by as much as the effect would leave more."""
-INDISPENSABLE = 10.0
-"""Log likelihood that a named effect must be worth beside an unnamed shape to be accepted [nat]."""
+CLOSE_TO_UNNAMED = 5.0
+"""Log evidence by which a structure with a shape without a name may be ahead of one of named
+effects that leaves no more: against the error of models such odds decide nothing."""
 
 
 def visibility(fitted: FittedStructure, flexible: Floats) -> float:
@@ -120,14 +122,14 @@ def search_in_stages(
     elif factor > 1.0:
         fitted = friction_first(searched, searched.noise.with_model_error(factor)) or fitted
     accepted = fitted.terms
-    restarted = False
+    restarted = shed = False
     for _ in range(MOST_STAGES):
         factor = error_factor(visibility(fitted, flexible))
         if not accepted and factor == 1.0:
             break
         search = _stage(searched, factor, fitted)
         search.run(say)
-        decision = decide(search, [], 0.0)
+        decision = named_if_close(search, decide(search, [], 0.0))
         if accepted:
             last = search
         best = decision.best
@@ -144,6 +146,14 @@ def search_in_stages(
                 fitted = fit(searched.problem, searched.noise, kept, turned, rounds=CONVERGED)
                 accepted = fitted.terms
                 continue
+        needed = accepted if shed else still_needed(search, best, accepted)
+        if len(needed) < len(accepted):
+            # What was taken first may have stood in for what was found since.
+            shed, last, fitted = True, searched, searched.baseline.fit
+            if needed:
+                fitted = fit(searched.problem, searched.noise, needed, best.fit, rounds=CONVERGED)
+            accepted = fitted.terms
+            continue
         found = _without_model_error(best.fit, accepted, mismatch, searched.noise.spread_deg)
         if decision.unexplained:
             doubtful = _doubtful(search, best, searched.noise.spread_deg)
@@ -164,6 +174,30 @@ def search_in_stages(
             last = _stage(searched, error_factor(visibility(other, flexible)), other)
     last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
+
+
+def named_if_close(search: Search, decision: Decision) -> Decision:
+    """Take the best structure of named effects alone where it is hardly less likely.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the stage.
+    decision : Decision
+        Which structure it is by the evidence.
+
+    Returns
+    -------
+    Decision
+    """
+    if not decision.unexplained or decision.best is None:
+        return decision
+    least = decision.best.score - CLOSE_TO_UNNAMED
+    for candidate in search.explanations():
+        if candidate.all_recognised and candidate.score >= least and search.suffices(candidate):
+            others = [each for each in decision.explanations if each[0].all_recognised]
+            return Decision("AMBIGUOUS", candidate, others, False)
+    return decision
 
 
 def _stage(searched: Search, factor: float, accepted: FittedStructure) -> Search:
@@ -209,11 +243,8 @@ def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[st
     for k, (term, recognised) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
         if term.name in search.start.names:
             continue
-        others = tuple(each for each in fitted.terms if each is not term)
         clear = float(np.std(size_of(fitted, k))) >= TIMES_WHAT_IS_LEFT * left
-        if not (recognised and clear) or (
-            0.5 * search.gain(search.refit(others, fitted).fit, fitted) < INDISPENSABLE
-        ):
+        if not (recognised and clear) or worth(search, term.name, best) < INDISPENSABLE:
             found.add(term.name)
     return frozenset(found)
 

@@ -7,6 +7,7 @@ of any value, because a part of a turn does not tell neighbouring integers apart
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +24,11 @@ MOST_ORDERS = 2
 LEAST_TRAVEL_DEG = 60.0
 """Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
 cycles within the travel are of order 18 and more, beyond most pins of a drive."""
+LEAST_POSITIONS = 3
+"""Recorded positions of the mesh from which orders of the position are looked for."""
+HIGHEST_LOW_ORDER = 3
+"""Orders of the position up to which they are looked for on a mesh that travels from several
+recorded positions."""
 FEWEST_CYCLES = 3.0
 """Cycles within the travel from which a wave is looked for. Slower ones look like a curve."""
 MOST_CYCLES = 20.0
@@ -151,6 +157,27 @@ def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...
     )
 
 
+def _travelling(locked: Sequence[Shape], ratio: float) -> list[Shape]:
+    """Shapes of low orders of a locking position, as they are where the mesh travels from it.
+
+    Parameters
+    ----------
+    locked : sequence of mapping
+        Shapes of the locking position.
+    ratio : float
+        Turns of the mesh zone a turn of the measured shaft.
+
+    Returns
+    -------
+    list of mapping
+    """
+    low = [orders_of(shape) for shape in locked if max(orders_of(shape)) <= HIGHEST_LOW_ORDER]
+    return [
+        {RATIO: ratio, **{ORDER.format(k): order for k, order in enumerate(orders, 1)}}
+        for orders in low
+    ]
+
+
 class MeshPeriodic(Effect):
     """An effect that is periodic in the position of the mesh zone."""
 
@@ -170,10 +197,17 @@ class MeshPeriodic(Effect):
         raise NotImplementedError
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Orders of the locking position, or of the travel where that hardly varied."""
-        if distinct_positions(history) >= 3:
-            return self.locked_shapes(history)
-        return travel_shapes(history)
+        """Orders of the locking position, or of the travel where that hardly varied.
+
+        Where the mesh was locked at several positions and travelled far from them, low orders may
+        go with either: an error of the frame stays where it was locked, one of the gear travels.
+        """
+        if distinct_positions(history) < LEAST_POSITIONS:
+            return travel_shapes(history)
+        locked = self.locked_shapes(history)
+        if history.mesh_ratio * spread(history.travelled_deg) < LEAST_TRAVEL_DEG:
+            return locked
+        return [*locked, *_travelling(locked, history.mesh_ratio)]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Orders that are looked for.
@@ -190,6 +224,8 @@ class MeshPeriodic(Effect):
         Parameter
             The same with other bounds.
         """
+        if distinct_positions(history) >= LEAST_POSITIONS:
+            return replace(parameter, lower=0.5, upper=HIGHEST_LOW_ORDER + 0.5)
         turns = max(travel_deg(history), 1e-9) / 360.0
         lower, upper = FEWEST_CYCLES / turns, MOST_CYCLES / turns
         return Parameter(parameter.name, parameter.unit, parameter.meaning, lower, upper)
@@ -222,20 +258,25 @@ class MeshPeriodic(Effect):
 
     def untestable(self, history: History) -> str | None:
         """Need at least three positions, or a travel over a good part of a turn."""
-        if distinct_positions(history) >= 3 or travel_deg(history) >= LEAST_TRAVEL_DEG:
+        if (
+            distinct_positions(history) >= LEAST_POSITIONS
+            or travel_deg(history) >= LEAST_TRAVEL_DEG
+        ):
             return None
         reason = super().untestable(history) or "the mesh zone stood at fewer than three positions"
         return f"{reason}, and it travelled by {travel_deg(history):.3g} deg only"
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
-        """Orders of both."""
+        """Orders of both; none where one goes with the travel and the other does not."""
+        if travels(shape) != travels(found):
+            return None
         if not travels(shape):
             return listed("order_{}", [*orders_of(shape), *orders_of(found)])
         known, new = orders_of(shape), orders_of(found)[0]
         multiple = max(round(new / known[0]), 1) * known[0]
         if abs(multiple - new) < HARMONIC * new:
             new = multiple
-        if len(known) == MOST_ORDERS or any(abs(new - old) < SAME_ORDER * old for old in known):
+        if len(known) >= MOST_ORDERS or any(abs(new - old) < SAME_ORDER * old for old in known):
             return None
         return {
             RATIO: shape[RATIO],
@@ -257,7 +298,7 @@ class MeshPeriodic(Effect):
         Returns
         -------
         str
-            Empty where the mesh was locked at positions.
+            Empty where it goes with the locking position alone.
         """
         if not travels(shape):
             return ""
@@ -268,6 +309,11 @@ class MeshPeriodic(Effect):
             phase = float(np.degrees(np.arctan2(sine, cosine)))
             parts.append(f"order {order:.3g} (crest at {phase / order:.3g} deg)")
         unit = "itself" if shape[RATIO] == 1 else f"of which one output turn has {shape[RATIO]:g}"
+        if distinct_positions(history) >= LEAST_POSITIONS:
+            return (
+                "Here it goes with where the mesh was locked and how far it has travelled since, "
+                f"in cycles a turn of the input {unit}: {', '.join(parts)}."
+            )
         return (
             f"Here it goes with the travel of the mesh, in cycles a turn of the input {unit}: "
             f"{', '.join(parts)}; the travel tells orders apart that differ by {apart:.2g}. "
