@@ -118,8 +118,22 @@ def test_a_law_that_is_worth_little_beside_what_has_no_name_is_not_named(
     both = search.extend(law, unnamed)
     assert both is not None
     assert ("load_asymmetry" in names_that_hold(search, law, both).names) == named
-    assert still_needed(search, both, law.fit.terms) == both.fit.terms[: int(named)]
-    assert still_needed(search, law, law.fit.terms) == law.fit.terms
+    # A curve that was accepted is not asked again beside what was found since, friction is.
+    assert still_needed(search, both, law.fit.terms) == both.fit.terms[:1]
+
+
+def test_a_friction_that_stood_in_for_another_cause_is_given_up_again() -> None:
+    search = search_of(CREEP)
+    slipping = Term(find("friction_hysteresis"), friction().shape, None, 0.02)
+    relaxing = Term(find("creep"), dict(CREEP.shape))
+    both = fitted(search, [slipping, relaxing])
+    assert still_needed(search, both, both.fit.terms[:1]) == ()
+    assert still_needed(search, both, both.fit.terms) == both.fit.terms
+    alone = fitted(search, [slipping])
+    assert still_needed(search, alone, alone.fit.terms) == alone.fit.terms
+    rubbing = search_of(CREEP, friction(0.3))
+    both = fitted(rubbing, [slipping, relaxing])
+    assert still_needed(rubbing, both, both.fit.terms[:1]) == both.fit.terms[:1]
 
 
 @pytest.mark.parametrize("share", [0.02, 0.5])

@@ -32,7 +32,10 @@ def worth(search: Search, name: str, candidate: Candidate) -> float:
 
 
 def still_needed(search: Search, best: Candidate, accepted: tuple[Term, ...]) -> tuple[Term, ...]:
-    """Terms accepted before that are indispensable beside what a stage has found.
+    """Terms accepted before, but frictions that are dispensable beside what a stage has found.
+
+    A friction taken first may have stood in for another cause; curves and offsets are not asked
+    again, because shapes without a name that wander hold any of them.
 
     Parameters
     ----------
@@ -52,4 +55,6 @@ def still_needed(search: Search, best: Candidate, accepted: tuple[Term, ...]) ->
     kept = tuple(term for term in best.fit.terms if term.name in before)
     if len(kept) == len(best.fit.terms):
         return kept
-    return tuple(term for term in kept if worth(search, term.name, best) >= INDISPENSABLE)
+    return tuple(
+        term for term in kept if not term.slips or worth(search, term.name, best) >= INDISPENSABLE
+    )

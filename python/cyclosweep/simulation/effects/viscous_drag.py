@@ -13,7 +13,7 @@ SHORTEST_LAG = 0.1
 
 
 class ViscousDrag(Effect):
-    """Drag torque ``D (rate)^n`` against the motion, with n between 0.25 and 1.
+    """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
 
     The rate is that of the twist itself, which lags behind the torque:
     ``T = theta/C + D dtheta/dt`` has the time constant ``lag_s = D C``, which shows at reversals.
@@ -29,13 +29,13 @@ class ViscousDrag(Effect):
     shown_by = "a clock, and runs at different rates"
     family = "hysteresis"
     needs = ("time_s",)
-    shape_parameters = (Parameter("power", "", "power of the rate", 0.25, 1.0),)
+    shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
     forms = (ShapeForm(("power", "lag_s")),)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Newtonian and thinning drag, too small yet to lag."""
         lag = SHORTEST_LAG * history.rate_step_s
-        return [{"power": power, "lag_s": lag} for power in (1.0, 0.7, 0.4)] if lag > 0 else []
+        return [{"power": power, "lag_s": lag} for power in (1.0, 0.7)] if lag > 0 else []
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
