@@ -42,7 +42,7 @@ of the calibrated model."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
-TIMES_WHAT_IS_LEFT = 2.0
+TIMES_WHAT_IS_LEFT = 3.0
 """Size of an effect over what the whole structure leaves beyond the noise, from which it is no
 model error in any case: laws that err by as much as the effect would leave more."""
 CLOSE_TO_UNNAMED = 5.0
