@@ -107,6 +107,18 @@ def test_orders_go_with_the_locking_position_and_with_the_travel_where_it_is_far
     ]
 
 
+def test_a_law_of_several_positions_is_described_whatever_the_number_of_loads() -> None:
+    few = history(applied_nm=np.where(history().side > 0, 10.0, -10.0))
+    assert travel_deg(few) == 0.0
+    shape = {"travel_ratio": 1.0, "travel_order_1": 2.0}
+    words = find("transmission_error").found_law(few, shape, np.array([0.0, 1.0]))
+    assert "order 2 (crest at 45 deg)" in words
+    assert "since" in words
+    other = {"order_1": 1.0}
+    assert find("transmission_error").combined(shape, other) is None
+    assert find("transmission_error").combined(other, shape) is None
+
+
 def test_a_travelling_mesh_is_looked_for_where_no_position_was_recorded() -> None:
     effect = find("transmission_error")
     fixed = history(crank_deg=None)

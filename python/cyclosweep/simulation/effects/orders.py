@@ -302,7 +302,6 @@ class MeshPeriodic(Effect):
         """
         if not travels(shape):
             return ""
-        apart = 360.0 / travel_deg(history)
         pairs = np.reshape(amplitudes, (-1, 2))
         parts = []
         for order, (cosine, sine) in zip(orders_of(shape), pairs, strict=True):
@@ -314,6 +313,7 @@ class MeshPeriodic(Effect):
                 "Here it goes with where the mesh was locked and how far it has travelled since, "
                 f"in cycles a turn of the input {unit}: {', '.join(parts)}."
             )
+        apart = 360.0 / travel_deg(history)
         return (
             f"Here it goes with the travel of the mesh, in cycles a turn of the input {unit}: "
             f"{', '.join(parts)}; the travel tells orders apart that differ by {apart:.2g}. "
