@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -64,6 +65,15 @@ class Library:
     signatures: tuple[Signature, ...]
     columns: Floats
     untestable: dict[str, str]
+
+    @cached_property
+    def effects(self) -> dict[str, Signature]:
+        """First signature of every effect that the recording can show, by name."""
+        found: dict[str, Signature] = {}
+        for signature in self.signatures:
+            if signature.named:
+                found.setdefault(signature.hypothesis, signature)
+        return found
 
 
 def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) -> Library:

@@ -16,6 +16,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+from cyclosweep.simulation.effects.slip import FrictionEffect
 
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
 """Friction limits and presliding distances to start from, as shares of torque and twist."""
@@ -32,8 +33,6 @@ FEW_RUNS = 4
 """Fitted runs up to which the flanks alone may not tell effects apart."""
 SAME_OPTIMUM = 0.01
 """Difference of the logarithms of two errors up to which two starts have led to the same fit."""
-LOOP_FAMILY = "hysteresis"
-"""Family of effects to which friction belongs."""
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
@@ -75,7 +74,7 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
     others = [term for term in best.terms if not term.slips]
-    instead = [_fitted(noise, [*drag, *others], baseline) for drag in ([], *_drags(search))]
+    instead = (_fitted(noise, [*drag, *others], baseline) for drag in ([], *_drags(search)))
     if any(each is not None and _cost(each) <= _cost(best) for each in instead):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
@@ -98,12 +97,13 @@ def _drags(search: Search) -> list[list[Term]]:
     -------
     list of list of Term
     """
-    first: dict[str, Term] = {}
-    for signature in search.library.signatures:
-        effect = signature.effect
-        if effect is not None and effect.family == LOOP_FAMILY and not effect.slips:
-            first.setdefault(effect.name, Term(effect, signature.shape))
-    return [[term] for term in first.values()]
+    return [
+        [Term(signature.effect, signature.shape)]
+        for signature in search.library.effects.values()
+        if signature.effect is not None
+        and signature.effect.family == FrictionEffect.family
+        and not signature.effect.slips
+    ]
 
 
 def _explains_most(fitted: FittedStructure, baseline: FittedStructure) -> bool:
@@ -186,9 +186,10 @@ def usual_effects(
         None where the library has none of them.
     """
     history = search.problem.history
-    known = {b.hypothesis: b.effect for b in search.library.signatures if b.effect is not None}
     terms = []
-    for effect in known.values():
+    for signature in search.library.effects.values():
+        effect = signature.effect
+        assert effect is not None
         begun = effect.usual_start(history, limit_share, slip_share)
         if begun is not None:
             shape, amplitude = begun

@@ -1,7 +1,8 @@
 """Which effects of an accepted structure may be named, and what is left beside these."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import (
@@ -68,6 +69,13 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
     """
     if accepted.fit.independent_share < 1.0:
         return _beside_stand_ins(search, accepted)
+
+    @cache
+    def is_needless(name: str) -> bool:
+        """Whether a law explains next to nothing beside what has no name."""
+        beside_unnamed = name in best.names and not best.all_recognised
+        return beside_unnamed and worth(search, name, best) < INDISPENSABLE
+
     part, withdrawn = accepted, list[LawCheck]()
     while True:
         checks = _beside_the_line(part.fit, check_laws(part.fit))
@@ -77,7 +85,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             larger = without_small_laws(part.fit, checks)
             checks = without_laws_of_one_class(part.fit, larger)
             checks = _without_lesser_laws(part.fit, checks, best.fit)
-            checks = _without_needless_laws(search, checks, best)
+            checks = _withdrawn_where(is_needless, checks)
             judged = checks == larger
         gone = [check for check in checks if not check.holds]
         names = {check.name for check in checks if check.holds}
@@ -88,6 +96,25 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
         if judged:
             held = (check for check in checks if check.holds)
             return Naming(part, (*held, *withdrawn), shown_classes(part.fit))
+
+
+def _withdrawn_where(
+    withdraw: Callable[[str], bool], checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw the laws of some names; those withdrawn before are not asked about.
+
+    Parameters
+    ----------
+    withdraw : callable
+        Whether the law of a name is to be withdrawn.
+    checks : sequence of LawCheck
+        Of the laws of a structure.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    return tuple(replace(c, holds=c.holds and not withdraw(c.name)) for c in checks)
 
 
 def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tuple[LawCheck, ...]:
@@ -107,7 +134,7 @@ def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tup
     if fitted.keeps_line:
         return tuple(checks)
     elastic = {term.name for term in fitted.terms if term.elastic}
-    return tuple(replace(c, holds=c.holds and c.name not in elastic) for c in checks)
+    return _withdrawn_where(elastic.__contains__, checks)
 
 
 def _without_lesser_laws(
@@ -140,34 +167,7 @@ def _without_lesser_laws(
         law -= line @ (line.T @ law)
         return float(law @ law) < unnamed
 
-    return tuple(replace(c, holds=c.holds and not explains_less(c.name)) for c in checks)
-
-
-def _without_needless_laws(
-    search: Search, checks: Sequence[LawCheck], best: Candidate
-) -> tuple[LawCheck, ...]:
-    """Withdraw laws that explain next to nothing beside what has no name.
-
-    Parameters
-    ----------
-    search : Search
-        Search of the recording.
-    checks : sequence of LawCheck
-        Of the laws of a structure.
-    best : Candidate
-        The structure with what has no name.
-
-    Returns
-    -------
-    tuple of LawCheck
-    """
-    if best.all_recognised:
-        return tuple(checks)
-
-    def is_needless(name: str) -> bool:
-        return name in best.names and worth(search, name, best) < INDISPENSABLE
-
-    return tuple(replace(c, holds=c.holds and not is_needless(c.name)) for c in checks)
+    return _withdrawn_where(explains_less, checks)
 
 
 def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:

@@ -84,11 +84,9 @@ def _rivals(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str
     ------
     str
     """
-    seen = set(fitted.names)
-    for signature in search.library.signatures:
+    for name, signature in search.library.effects.items():
         effect = signature.effect
-        if effect is None or effect.slips or effect.name in seen:
+        if effect is None or effect.slips or name in fitted.names:
             continue
-        seen.add(effect.name)
         if share_class(term, Term(effect, signature.shape)):
-            yield effect.name
+            yield name

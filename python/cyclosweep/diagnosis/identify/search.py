@@ -353,7 +353,7 @@ class Search:
             key=lambda name: -excesses[name],
         )
         good = [name for name in good if name not in candidate.names]
-        named = {signature.hypothesis for signature in self.library.signatures if signature.named}
+        named = self.library.effects
         first = good[:most]
         others = [name for name in good if name in named and name not in first]
         return first + others[: max(0, least_named - sum(name in named for name in first))]

@@ -179,9 +179,9 @@ def hidden_effects(search: Search) -> list[Untestable]:
     """Effects that this recording cannot show, with reason and remedy."""
     hidden = dict(search.library.untestable)
     shown = set(search.baseline.scan.groups)
-    named = {b.hypothesis for b in search.library.signatures if b.named}
     hidden |= dict.fromkeys(
-        sorted(named - shown), "the calibration of stiffness, play and datum hides all of it"
+        sorted(search.library.effects.keys() - shown),
+        "the calibration of stiffness, play and datum hides all of it",
     )
     return [
         *(Untestable(name=n, reason=r, needs=w) for n, r, w in ALWAYS_HIDDEN),

@@ -20,7 +20,7 @@ on the locking position alone."""
 ORDER = "travel_order_{}"
 """Name of each order of the position of a travelling mesh."""
 MOST_ORDERS = 2
-"""Most orders of one effect on a travelling mesh. More of them, free to move, make any curve."""
+"""Orders up to which those found along a travel are joined. More, free to move, make any curve."""
 LEAST_TRAVEL_DEG = 60.0
 """Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
 cycles within the travel are of order 18 and more, beyond most pins of a drive."""
@@ -81,7 +81,29 @@ def travel_deg(history: History) -> float:
     """Range over which the mesh travelled [deg]; zero where it stood at few places."""
     if len(np.unique(np.round(history.applied_nm, 6))) < FEWEST_STATES:
         return 0.0
+    return _travel_deg(history)
+
+
+def _travel_deg(history: History) -> float:
+    """Range over which the mesh travelled [deg], at however many places it stood."""
     return history.mesh_ratio * spread(history.travelled_deg)
+
+
+def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
+    """Shape that goes with the travel of the mesh.
+
+    Parameters
+    ----------
+    ratio : float
+        Turns of the mesh zone a turn of the measured shaft.
+    orders : sequence of float
+        Orders of the position.
+
+    Returns
+    -------
+    mapping
+    """
+    return {RATIO: ratio, **{ORDER.format(k): order for k, order in enumerate(orders, 1)}}
 
 
 def travel_shapes(history: History) -> list[Shape]:
@@ -93,7 +115,7 @@ def travel_shapes(history: History) -> list[Shape]:
     cycles = np.arange(FEWEST_CYCLES, MOST_CYCLES + 0.5 * CYCLE_STEP, CYCLE_STEP)
     dial = turns / history.mesh_ratio
     return [
-        {RATIO: history.mesh_ratio, ORDER.format(1): float(each / turns)}
+        travelling_shape(history.mesh_ratio, [float(each / turns)])
         for each in cycles
         if abs(each - dial) > CYCLE_STEP
     ]
@@ -172,10 +194,7 @@ def _travelling(locked: Sequence[Shape], ratio: float) -> list[Shape]:
     list of mapping
     """
     low = [orders_of(shape) for shape in locked if max(orders_of(shape)) <= HIGHEST_LOW_ORDER]
-    return [
-        {RATIO: ratio, **{ORDER.format(k): order for k, order in enumerate(orders, 1)}}
-        for orders in low
-    ]
+    return [travelling_shape(ratio, orders) for orders in low]
 
 
 class MeshPeriodic(Effect):
@@ -205,7 +224,7 @@ class MeshPeriodic(Effect):
         if distinct_positions(history) < LEAST_POSITIONS:
             return travel_shapes(history)
         locked = self.locked_shapes(history)
-        if history.mesh_ratio * spread(history.travelled_deg) < LEAST_TRAVEL_DEG:
+        if _travel_deg(history) < LEAST_TRAVEL_DEG:
             return locked
         return [*locked, *_travelling(locked, history.mesh_ratio)]
 
@@ -278,10 +297,7 @@ class MeshPeriodic(Effect):
             new = multiple
         if len(known) >= MOST_ORDERS or any(abs(new - old) < SAME_ORDER * old for old in known):
             return None
-        return {
-            RATIO: shape[RATIO],
-            **dict(zip(map(ORDER.format, (1, 2)), (*known, new), strict=True)),
-        }
+        return travelling_shape(shape[RATIO], (*known, new))
 
     def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
         """Orders that were found, with the phase of each.
