@@ -7,12 +7,8 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.simulation.effects import find
-from cyclosweep.simulation.effects.orders import (
-    CYCLE_STEP,
-    LEAST_TRAVEL_DEG,
-    travel_deg,
-    travel_shapes,
-)
+from cyclosweep.simulation.effects.mesh_range import LEAST_TRAVEL_DEG
+from cyclosweep.simulation.effects.orders import CYCLE_STEP, travel_deg, travel_shapes
 from cyclosweep.simulation.model import EffectValue, linear_twist
 from cyclosweep.simulation.simulate import history_of
 from tests.support.travelling_mesh import COMPLIANCE, PLAY, ramp, recording, staircase, twist
@@ -110,13 +106,48 @@ def test_orders_go_with_the_locking_position_and_with_the_travel_where_it_is_far
 def test_a_law_of_several_positions_is_described_whatever_the_number_of_loads() -> None:
     few = history(applied_nm=np.where(history().side > 0, 10.0, -10.0))
     assert travel_deg(few) == 0.0
-    shape = {"travel_ratio": 1.0, "travel_order_1": 2.0}
+    shape = {"travel_ratio": 1.0, "order_1": 2.0}
     words = find("transmission_error").found_law(few, shape, np.array([0.0, 1.0]))
     assert "order 2 (crest at 45 deg)" in words
     assert "since" in words
-    other = {"order_1": 1.0}
-    assert find("transmission_error").combined(shape, other) is None
-    assert find("transmission_error").combined(other, shape) is None
+    for other in ({"order_1": 1.0}, {"travel_ratio": 1.0, "travel_order_1": 7.0}):
+        assert find("transmission_error").combined(shape, other) is None
+        assert find("transmission_error").combined(other, shape) is None
+    joined = {"travel_ratio": 1.0, "order_1": 1.0, "order_2": 2.0, "order_3": 3.0}
+    low = {"travel_ratio": 1.0, "order_1": 1.0, "order_2": 3.0}
+    assert find("transmission_error").combined(shape, low) == joined
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        {"angle_deg": np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610)},
+        {"crank_deg": np.tile([0.0, 0.5, 59.0, 359.5], 153)[:610]},
+        {"applied_nm": np.tile([-20.0, -10.0, 10.0, 15.0, 20.0], 122)},
+    ],
+    ids=["little travel", "neighbouring positions", "few loads"],
+)
+def test_low_orders_of_a_travel_are_not_looked_for_where_another_cause_is_the_same(
+    hidden: dict[str, np.ndarray],
+) -> None:
+    assert all(
+        "travel_ratio" not in shape
+        for shape in find("transmission_error").shapes(history(**hidden))
+    )
+
+
+def test_whole_orders_are_not_fitted_and_have_a_usual_size() -> None:
+    effect = find("transmission_error")
+    travelling = {"travel_ratio": 1.0, "order_1": 1.0, "order_2": 2.0}
+    known = history()
+    size = effect.expected(known, travelling)
+    assert size == pytest.approx(effect.expected(known, {"order_1": 1.0, "order_2": 2.0}))
+    assert not {p.name for p in effect.shape_parameters} & set(travelling)
+    assert effect.expected(known, {"travel_ratio": 1.0, "travel_order_1": 2.0}) is None
+    # A turn of the locking position is the same position.
+    assert known.crank_deg is not None
+    turned = known.with_state(crank_deg=known.crank_deg + 360.0)
+    assert effect.columns(turned, travelling) == pytest.approx(effect.columns(known, travelling))
 
 
 def test_a_travelling_mesh_is_looked_for_where_no_position_was_recorded() -> None:
@@ -144,11 +175,12 @@ def test_a_staircase_goes_through_a_model_file(tmp_path: Path) -> None:
 def test_a_programme_for_a_travelling_mesh_needs_no_locking_position() -> None:
     load = cs.Recording.from_arrays([1.0, 5.0])
     assert len(cs.simulate(model(), load)) == 2
-    locked = cs.Model(
-        1.0, 2.0, effects=(EffectValue("transmission_error", {"order_1": 1.0}, (0.1, 0.2)),)
-    )
-    with pytest.raises(cs.InputError, match="crank_deg"):
-        cs.simulate(locked, load)
+    for shape in ({"order_1": 1.0}, {"travel_ratio": 1.0, "order_1": 1.0}):
+        recorded = cs.Model(
+            1.0, 2.0, effects=(EffectValue("transmission_error", shape, (0.1, 0.2)),)
+        )
+        with pytest.raises(cs.InputError, match="crank_deg"):
+            cs.simulate(recorded, load)
 
 
 def test_a_staircase_steeper_than_the_travel_is_said() -> None:

@@ -22,10 +22,9 @@ from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_cl
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
-from cyclosweep.diagnosis.identify.staged_search import named_if_close
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
-from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.simulation.effects import effects, find
@@ -36,6 +35,7 @@ DRIVE = cs.Drive.reference_87()
 LOADED = {"slip_deg": 0.8, "scatter": 0.6, "skew": 0.0, "slack": 0.0}
 ASYMMETRY = 0.1
 """Amplitude of a difference of the sides at 10 N m [deg]."""
+KINKS = {"kink_1_nm": 4.0, "kink_2_nm": 8.0}
 CREEP = EffectValue("creep", {"lag_s": 20.0}, (0.1,))
 
 
@@ -177,10 +177,19 @@ def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
     assert search.suffices(named)
     assert search.suffices(other)
     other = replace(other, prior=other.prior + named.score + ahead - other.score)
-    search.visited = {each.names: each for each in (named, other)}
+    rival = replace(named, prior=named.prior - 1.0)
+    search.visited = {
+        frozenset(name): each for name, each in zip("nor", (named, other, rival), strict=True)
+    }
     decision = decide(search, [], 0.0)
     assert decision.best is other
-    assert (named_if_close(search, decision).best is named) == taken
+    closer = named_if_close(search, decision)
+    assert (closer.best is named) == taken
+    if taken:
+        # What it may be else is weighed among the named structures, however unlikely beside.
+        share = 1.0 / (1.0 + np.exp(-1.0))
+        assert [each for each, _ in closer.explanations] == [named, rival]
+        assert [p for _, p in closer.explanations] == pytest.approx([share, 1.0 - share])
 
 
 def test_bounds_of_a_structure_are_counted_by_its_own_noise() -> None:
@@ -195,11 +204,10 @@ def test_bounds_of_a_structure_are_counted_by_its_own_noise() -> None:
 
 
 def test_two_look_alikes_of_one_class_are_one_curve() -> None:
-    kinks = {"kink_1_nm": 4.0, "kink_2_nm": 8.0}
-    search = search_of(EffectValue("clearance_takeup", kinks, (0.4, 0.4)))
+    search = search_of(EffectValue("clearance_takeup", KINKS, (0.4, 0.4)))
     both = fitted(
         search,
-        [Term(find("clearance_takeup"), kinks), Term(find("contact_stiffening"), {"turn_nm": 5.0})],
+        [Term(find("clearance_takeup"), KINKS), Term(find("contact_stiffening"), {"turn_nm": 5.0})],
     )
     size = [size_of(both.fit, k) for k in range(2)]
     assert np.corrcoef(size[0], size[1])[0, 1] > 0.8

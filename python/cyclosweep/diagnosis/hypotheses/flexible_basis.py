@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.library import Library
+from cyclosweep.diagnosis.hypotheses.library import Library, Signature
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.effects.orders import travels
+from cyclosweep.simulation.effects.orders import from_recorded_position, travels
 
 SMOOTH = (
     "torque and direction",
@@ -97,12 +97,35 @@ def _with_clear_waves(problem: Problem, library: Library, basis: Floats) -> Floa
         place = int(np.argmax(share))
         if share[place] < CLEAR_WAVE:
             break
-        # With its neighbours, as its order may lie between those that are looked for.
-        wave = np.column_stack(found[max(place - 1, 0) : place + 2])
+        wave = np.column_stack([found[k] for k in _with_neighbours(waves, place)])
         new = orthonormal(wave - basis @ (basis.T @ wave), 1e-3)
         basis = np.column_stack([basis, new])
         left = left - new @ (new.T @ left)
     return basis
+
+
+def _with_neighbours(waves: list[Signature], place: int) -> list[int]:
+    """A wave and those next to it, between which its order may lie unless it is a whole number.
+
+    Parameters
+    ----------
+    waves : list of Signature
+        All waves along a travel.
+    place : int
+        Index of the wave.
+
+    Returns
+    -------
+    list of int
+    """
+    wave = waves[place]
+    if from_recorded_position(wave.shape):
+        return [place]
+    return [
+        k
+        for k in range(max(place - 1, 0), min(place + 2, len(waves)))
+        if waves[k].hypothesis == wave.hypothesis and not from_recorded_position(waves[k].shape)
+    ]
 
 
 def _repeated_share(wave: Floats, left: Floats, branch: np.ndarray) -> float:

@@ -70,10 +70,16 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
     if accepted.fit.independent_share < 1.0:
         return _beside_stand_ins(search, accepted)
 
+    # Otherwise chi-squared is counted against another noise.
+    same_noise = best.fit.noise.model_error_factor == search.noise.model_error_factor
+
     @cache
     def is_needless(name: str) -> bool:
-        """Whether a law explains next to nothing beside what has no name."""
-        beside_unnamed = name in best.names and not best.all_recognised
+        """Whether a law explains next to nothing beside what has no name and the other laws.
+
+        Of two laws that stand for each other beside it neither is named: nothing tells which.
+        """
+        beside_unnamed = same_noise and name in best.names and not best.all_recognised
         return beside_unnamed and worth(search, name, best) < INDISPENSABLE
 
     part, withdrawn = accepted, list[LawCheck]()

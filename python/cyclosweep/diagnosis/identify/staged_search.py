@@ -25,7 +25,7 @@ from cyclosweep.diagnosis.identify.other_laws import with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
-from cyclosweep.diagnosis.identify.verdict import Decision, decide
+from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
 from cyclosweep.simulation.effects.history import Floats
@@ -45,9 +45,6 @@ accepted before, as a share of the other's size."""
 TIMES_WHAT_IS_LEFT = 3.0
 """Size of an effect over what the whole structure leaves beyond the noise, from which it is no
 model error in any case: laws that err by as much as the effect would leave more."""
-CLOSE_TO_UNNAMED = 5.0
-"""Log evidence by which a structure with a shape without a name may be ahead of one of named
-effects that leaves no more: against the error of models such odds decide nothing."""
 
 
 def visibility(fitted: FittedStructure, flexible: Floats) -> float:
@@ -150,6 +147,7 @@ def search_in_stages(
         if len(needed) < len(accepted):
             # What was taken first may have stood in for what was found since.
             shed, last, fitted = True, searched, searched.baseline.fit
+            rivals.clear()
             if needed:
                 fitted = fit(searched.problem, searched.noise, needed, best.fit, rounds=CONVERGED)
             accepted = fitted.terms
@@ -174,30 +172,6 @@ def search_in_stages(
             last = _stage(searched, error_factor(visibility(other, flexible)), other)
     last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
-
-
-def named_if_close(search: Search, decision: Decision) -> Decision:
-    """Take the best structure of named effects alone where it is hardly less likely.
-
-    Parameters
-    ----------
-    search : Search
-        Search of the stage.
-    decision : Decision
-        Which structure it is by the evidence.
-
-    Returns
-    -------
-    Decision
-    """
-    if not decision.unexplained or decision.best is None:
-        return decision
-    least = decision.best.score - CLOSE_TO_UNNAMED
-    for candidate in search.explanations():
-        if candidate.all_recognised and candidate.score >= least and search.suffices(candidate):
-            others = [each for each in decision.explanations if each[0].all_recognised]
-            return Decision("AMBIGUOUS", candidate, others, False)
-    return decision
 
 
 def _stage(searched: Search, factor: float, accepted: FittedStructure) -> Search:

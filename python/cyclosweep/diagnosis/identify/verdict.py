@@ -22,6 +22,9 @@ MOSTLY = 0.9
 """Share of the mismatch from which named effects are said to explain most of it."""
 COVERAGE = 0.95
 """Probability that the explanation set holds together."""
+CLOSE_TO_UNNAMED = 5.0
+"""Log evidence by which a structure with a shape without a name may be ahead of one of named
+effects that leaves no more: against the error of models such odds decide nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,19 +76,71 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     if not enough:
         best = structures[0]
         return Decision("UNKNOWN_PHYSICS", best, [(best, 1.0)], True)
-    score = np.array([candidate.score for candidate in enough])
+    probable = _probabilities(enough)
+    unnamed = [(n, p) for n, p in probable if not n.all_recognised]
+    if sum(p for _, p in unnamed) > 0.5:
+        return Decision("UNKNOWN_PHYSICS", unnamed[0][0], _likely(probable), True)
+    best, probability = next((n, p) for n, p in probable if n.all_recognised)
+    verdict: Verdict = "IDENTIFIED" if probability >= SURE else "AMBIGUOUS"
+    return Decision(verdict, best, _likely(probable), False)
+
+
+def named_if_close(search: Search, decision: Decision) -> Decision:
+    """Take the best structure of named effects alone where it is hardly less likely.
+
+    Parameters
+    ----------
+    search : Search
+        Search of a stage, judged against the error of its models.
+    decision : Decision
+        Which structure it is by the evidence.
+
+    Returns
+    -------
+    Decision
+        The same, or AMBIGUOUS with the named structures as explanations.
+    """
+    if not decision.unexplained or decision.best is None:
+        return decision
+    enough = [each for each in search.explanations() if search.suffices(each)]
+    named = [each for each in enough if each.all_recognised]
+    if not named or named[0].score < decision.best.score - CLOSE_TO_UNNAMED:
+        return decision
+    return Decision("AMBIGUOUS", named[0], _likely(_probabilities(named)), False)
+
+
+def _probabilities(candidates: list[Candidate]) -> list[tuple[Candidate, float]]:
+    """Posterior probability of each of some structures, of which one is taken to be right.
+
+    Parameters
+    ----------
+    candidates : list of Candidate
+        Most probable first, at least one.
+
+    Returns
+    -------
+    list of (Candidate, probability)
+    """
+    score = np.array([candidate.score for candidate in candidates])
     probability = np.exp(score - score.max())
     probability /= probability.sum()
-    held = int(np.searchsorted(np.cumsum(probability), COVERAGE)) + 1
-    explained = [(n, float(p)) for n, p in zip(enough[:held], probability[:held], strict=True)]
-    unnamed = [n for n in enough if not n.all_recognised]
-    of_unnamed = float(sum(p for n, p in zip(enough, probability, strict=True) if n in unnamed))
-    if of_unnamed > 0.5:
-        best = unnamed[0]
-        return Decision("UNKNOWN_PHYSICS", best, explained, True)
-    best = next(n for n in enough if n.all_recognised)
-    sure = probability[enough.index(best)] >= SURE
-    return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explained, False)
+    return list(zip(candidates, map(float, probability), strict=True))
+
+
+def _likely(probable: list[tuple[Candidate, float]]) -> list[tuple[Candidate, float]]:
+    """The most probable structures that together have a probability of `COVERAGE`.
+
+    Parameters
+    ----------
+    probable : list of (Candidate, probability)
+        Most probable first.
+
+    Returns
+    -------
+    list of (Candidate, probability)
+    """
+    sums = np.cumsum([probability for _, probability in probable])
+    return probable[: int(np.searchsorted(sums, COVERAGE)) + 1]
 
 
 def decide_in_stages(search: Search, explained_share: float) -> Decision:

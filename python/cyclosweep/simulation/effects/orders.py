@@ -1,31 +1,36 @@
 """Harmonics of the mesh position, shared by the effects that are periodic in it.
 
-The position is known in one of two ways. Where the output was locked at several recorded positions,
-a shape states integer orders of the locking position. Where it was not, the mesh still travels
-while the shaft twists: a shape then states the ratio by which it travels and orders of position,
-of any value, because a part of a turn does not tell neighbouring integers apart.
+The position is known in one of three ways. Where the output was locked at several recorded
+positions, a shape states whole orders of the locking position. An error of the gear itself travels
+from there while the shaft twists: a shape then states the ratio by which it travels as well. Where
+no position was recorded, the mesh still travels: a shape then states the ratio and orders of any
+value, because a part of a turn does not tell neighbouring whole numbers apart.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed, spread
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.mesh_range import (
+    LEAST_POSITIONS,
+    LEAST_TRAVEL_DEG,
+    load_count,
+    position_count,
+    travels_far_from_positions,
+    whole_travel_deg,
+)
 
 RATIO = "travel_ratio"
 """Shape parameter: turns of the mesh zone a turn of the measured shaft. A shape without it depends
 on the locking position alone."""
+WHOLE_ORDER = "order_{}"
+"""Name of each order of a position that is counted from a recorded one: a whole number."""
 ORDER = "travel_order_{}"
-"""Name of each order of the position of a travelling mesh."""
+"""Name of each order of the position of a travelling mesh that was not recorded."""
 MOST_ORDERS = 2
 """Orders up to which those found along a travel are joined. More, free to move, make any curve."""
-LEAST_TRAVEL_DEG = 60.0
-"""Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
-cycles within the travel are of order 18 and more, beyond most pins of a drive."""
-LEAST_POSITIONS = 3
-"""Recorded positions of the mesh from which orders of the position are looked for."""
 HIGHEST_LOW_ORDER = 3
 """Orders of the position up to which they are looked for on a mesh that travels from several
 recorded positions."""
@@ -45,11 +50,9 @@ HARMONIC = 0.08
 """Share of an order within which a multiple of the first one is taken for its harmonic."""
 
 
-def distinct_positions(history: History) -> int:
-    """Count the positions of the mesh zone in a recording, to a tenth of a degree."""
-    if history.crank_deg is None:
-        return 0
-    return len(np.unique(np.round(history.crank_deg % 360.0, 1)))
+def from_recorded_position(shape: Shape) -> bool:
+    """Whether a shape counts the position from recorded ones, so that its orders are whole."""
+    return WHOLE_ORDER.format(1) in shape
 
 
 def travels(shape: Shape) -> bool:
@@ -74,23 +77,17 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return () if isinstance(effect, MeshPeriodic) and travels(shape) else effect.needs
+    unrecorded = isinstance(effect, MeshPeriodic) and not from_recorded_position(shape)
+    return () if unrecorded else effect.needs
 
 
 def travel_deg(history: History) -> float:
     """Range over which the mesh travelled [deg]; zero where it stood at few places."""
-    if len(np.unique(np.round(history.applied_nm, 6))) < FEWEST_STATES:
-        return 0.0
-    return _travel_deg(history)
-
-
-def _travel_deg(history: History) -> float:
-    """Range over which the mesh travelled [deg], at however many places it stood."""
-    return history.mesh_ratio * spread(history.travelled_deg)
+    return whole_travel_deg(history) if load_count(history) >= FEWEST_STATES else 0.0
 
 
 def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
-    """Shape that goes with the travel of the mesh.
+    """Shape that goes with the travel of a mesh of which no position was recorded.
 
     Parameters
     ----------
@@ -103,7 +100,12 @@ def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
     -------
     mapping
     """
-    return {RATIO: ratio, **{ORDER.format(k): order for k, order in enumerate(orders, 1)}}
+    return {RATIO: ratio, **_numbered(ORDER, orders)}
+
+
+def _numbered(name: str, orders: Sequence[float]) -> dict[str, float]:
+    """Orders by name."""
+    return {name.format(k): float(order) for k, order in enumerate(orders, 1)}
 
 
 def travel_shapes(history: History) -> list[Shape]:
@@ -147,7 +149,7 @@ def harmonics(history: History, shape: Shape) -> Floats:
 
 def order_shapes(sets: list[tuple[int, ...]]) -> list[Shape]:
     """Shapes that name their orders."""
-    return [{f"order_{k}": float(m) for k, m in enumerate(orders, 1)} for orders in sets]
+    return [_numbered(WHOLE_ORDER, orders) for orders in sets]
 
 
 def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...]:
@@ -166,7 +168,7 @@ def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...
     -------
     tuple of Parameter
     """
-    if travels(shape):
+    if not from_recorded_position(shape):
         return tuple(
             Parameter(f"{wave}_{place}", unit, f"{what}, {wave} of travel order {place}")
             for place in range(1, len(shape))
@@ -174,7 +176,7 @@ def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...
         )
     return tuple(
         Parameter(f"{wave}_{int(order)}", unit, f"{what}, {wave} of order {int(order)}")
-        for order in shape.values()
+        for order in orders_of(shape)
         for wave in ("cos", "sin")
     )
 
@@ -193,8 +195,9 @@ def _travelling(locked: Sequence[Shape], ratio: float) -> list[Shape]:
     -------
     list of mapping
     """
-    low = [orders_of(shape) for shape in locked if max(orders_of(shape)) <= HIGHEST_LOW_ORDER]
-    return [travelling_shape(ratio, orders) for orders in low]
+    return [
+        {RATIO: ratio, **shape} for shape in locked if max(orders_of(shape)) <= HIGHEST_LOW_ORDER
+    ]
 
 
 class MeshPeriodic(Effect):
@@ -202,7 +205,11 @@ class MeshPeriodic(Effect):
 
     needs = ("crank_deg",)
     shown_by = "runs at three or more recorded mesh positions, or a travel of a sixth of a turn"
-    forms = (ShapeForm(numbered="order_{}"), ShapeForm((RATIO,), numbered=ORDER))
+    forms = (
+        ShapeForm(numbered=WHOLE_ORDER),
+        ShapeForm((RATIO,), numbered=WHOLE_ORDER),
+        ShapeForm((RATIO,), numbered=ORDER),
+    )
     shape_parameters = (
         Parameter(ORDER.format(1), "", "cycles a turn of the mesh zone", 1e-3, 1e4),
     )
@@ -221,10 +228,10 @@ class MeshPeriodic(Effect):
         Where the mesh was locked at several positions and travelled far from them, low orders may
         go with either: an error of the frame stays where it was locked, one of the gear travels.
         """
-        if distinct_positions(history) < LEAST_POSITIONS:
+        if position_count(history) < LEAST_POSITIONS:
             return travel_shapes(history)
         locked = self.locked_shapes(history)
-        if _travel_deg(history) < LEAST_TRAVEL_DEG:
+        if not travels_far_from_positions(history):
             return locked
         return [*locked, *_travelling(locked, history.mesh_ratio)]
 
@@ -243,8 +250,6 @@ class MeshPeriodic(Effect):
         Parameter
             The same with other bounds.
         """
-        if distinct_positions(history) >= LEAST_POSITIONS:
-            return replace(parameter, lower=0.5, upper=HIGHEST_LOW_ORDER + 0.5)
         turns = max(travel_deg(history), 1e-9) / 360.0
         lower, upper = FEWEST_CYCLES / turns, MOST_CYCLES / turns
         return Parameter(parameter.name, parameter.unit, parameter.meaning, lower, upper)
@@ -252,8 +257,8 @@ class MeshPeriodic(Effect):
     def expected(self, history: History, shape: Shape) -> Floats | None:
         """Amplitudes that fall with the square of the order, as those of smooth shapes do.
 
-        A few positions leave combinations of orders open, which would swing between them. A travel
-        leaves nothing open.
+        A few positions leave combinations of orders open, which would swing between them. A wave
+        along an unrecorded travel leaves nothing open.
 
         Parameters
         ----------
@@ -265,11 +270,11 @@ class MeshPeriodic(Effect):
         Returns
         -------
         ndarray, shape (k,), or None
-            None for a travelling mesh.
+            None for a mesh of which no position was recorded.
         """
-        if travels(shape):
+        if not from_recorded_position(shape):
             return None
-        orders = np.array([order for order in shape.values() for _ in range(2)])
+        orders = np.array([order for order in orders_of(shape) for _ in range(2)])
         # The orders of the pins are no harmonics of a turn but first orders of their own.
         pins = history.output_pin_count
         own = np.where(orders % pins == 0, orders / pins, orders)
@@ -277,20 +282,19 @@ class MeshPeriodic(Effect):
 
     def untestable(self, history: History) -> str | None:
         """Need at least three positions, or a travel over a good part of a turn."""
-        if (
-            distinct_positions(history) >= LEAST_POSITIONS
-            or travel_deg(history) >= LEAST_TRAVEL_DEG
-        ):
+        if position_count(history) >= LEAST_POSITIONS or travel_deg(history) >= LEAST_TRAVEL_DEG:
             return None
         reason = super().untestable(history) or "the mesh zone stood at fewer than three positions"
         return f"{reason}, and it travelled by {travel_deg(history):.3g} deg only"
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
-        """Orders of both; none where one goes with the travel and the other does not."""
-        if travels(shape) != travels(found):
+        """Orders of both; none where the position is known in different ways."""
+        recorded = from_recorded_position(shape)
+        if travels(shape) != travels(found) or recorded != from_recorded_position(found):
             return None
-        if not travels(shape):
-            return listed("order_{}", [*orders_of(shape), *orders_of(found)])
+        if recorded:
+            both = listed(WHOLE_ORDER, [*orders_of(shape), *orders_of(found)])
+            return both if both is None or not travels(shape) else {RATIO: shape[RATIO], **both}
         known, new = orders_of(shape), orders_of(found)[0]
         multiple = max(round(new / known[0]), 1) * known[0]
         if abs(multiple - new) < HARMONIC * new:
@@ -324,7 +328,7 @@ class MeshPeriodic(Effect):
             phase = float(np.degrees(np.arctan2(sine, cosine)))
             parts.append(f"order {order:.3g} (crest at {phase / order:.3g} deg)")
         unit = "itself" if shape[RATIO] == 1 else f"of which one output turn has {shape[RATIO]:g}"
-        if distinct_positions(history) >= LEAST_POSITIONS:
+        if from_recorded_position(shape):
             return (
                 "Here it goes with where the mesh was locked and how far it has travelled since, "
                 f"in cycles a turn of the input {unit}: {', '.join(parts)}."

@@ -1,0 +1,52 @@
+"""Where the mesh stood in a recording: at how many positions, how far apart, and its travel."""
+
+import numpy as np
+
+from cyclosweep.simulation.effects.base import spread
+from cyclosweep.simulation.effects.history import History
+
+LEAST_TRAVEL_DEG = 60.0
+"""Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
+cycles within the travel are of order 18 and more, beyond most pins of a drive."""
+LEAST_POSITIONS = 3
+"""Recorded positions of the mesh from which orders of the position are looked for."""
+LEAST_SPREAD_DEG = 60.0
+"""Part of a turn that the recorded positions have to span for low orders of a travel: from
+neighbouring ones a low order is the same as an eccentric dial."""
+LEAST_LOADS = 6
+"""Different torques that are needed for these orders: with fewer, a wave along the travel is the
+same as one of the locking position and a pulsating compliance."""
+
+
+def position_count(history: History) -> int:
+    """Count the positions of the mesh zone in a recording, to a tenth of a degree."""
+    if history.crank_deg is None:
+        return 0
+    return len(np.unique(np.round(history.crank_deg % 360.0, 1)))
+
+
+def _positions_span_deg(history: History) -> float:
+    """Part of a turn that holds all recorded positions of the mesh zone [deg]."""
+    if history.crank_deg is None:
+        return 0.0
+    places = np.unique(history.crank_deg % 360.0)
+    return 360.0 - float(np.max(np.diff(places, append=places[0] + 360.0)))
+
+
+def load_count(history: History) -> int:
+    """Number of different torques."""
+    return len(np.unique(np.round(history.applied_nm, 6)))
+
+
+def whole_travel_deg(history: History) -> float:
+    """Range over which the mesh travelled [deg], at however many places it stood."""
+    return history.mesh_ratio * spread(history.travelled_deg)
+
+
+def travels_far_from_positions(history: History) -> bool:
+    """Whether low orders may go with the travel of the mesh from several recorded positions."""
+    return (
+        whole_travel_deg(history) >= LEAST_TRAVEL_DEG
+        and _positions_span_deg(history) >= LEAST_SPREAD_DEG
+        and load_count(history) >= LEAST_LOADS
+    )
