@@ -10,6 +10,7 @@ import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import LOOP
 from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify import naming
 from cyclosweep.diagnosis.identify import testability as bounds_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
@@ -147,6 +148,31 @@ def test_effects_do_not_take_the_place_of_the_line(share: float) -> None:
     assert moved.keeps_line == (share > 0.1)
     assert (with_right_signs(moved) is None) == (share < 0.1)
     assert np.isfinite(moved.beta).all()
+
+
+def test_friction_is_judged_without_a_curve_that_has_taken_the_place_of_the_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search = search_of(friction(0.3))
+    slipping = Term(find("friction_hysteresis"), friction().shape, None, 0.1)
+    both = fitted(search, [slipping, Term(find("contact_stiffening"), {"turn_nm": 3.0})]).fit
+    slope = search.problem.history.compliance_deg_per_nm
+    moved = both.moved(1, 0.02 * slope - float(both.beta[1]))
+    assert not moved.keeps_line
+
+    def without_friction(fitted: FittedStructure) -> tuple[LawCheck, ...]:
+        checks = check_laws(fitted)
+        return (
+            checks
+            if fitted is not moved
+            else tuple(replace(each, holds=each.name != "friction_hysteresis") for each in checks)
+        )
+
+    monkeypatch.setattr(naming, "check_laws", without_friction)
+    candidate = search.looked_through(moved)
+    found = names_that_hold(search, candidate, candidate)
+    assert found.names == {"friction_hysteresis"}
+    assert [each.name for each in found.withdrawn] == ["contact_stiffening"]
 
 
 def test_no_friction_is_fitted_first_where_there_is_none() -> None:

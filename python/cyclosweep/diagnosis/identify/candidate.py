@@ -1,5 +1,6 @@
 """A candidate explanation: a fitted structure, its evidence and what its residual still shows."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -157,3 +158,33 @@ class Candidate:
     def largest_excess(self) -> float:
         """Largest excess of anything that remains in the residual [nat]."""
         return max(max(self.excesses.values(), default=0.0), 0.0)
+
+    def hypotheses_to_add(
+        self, threshold: float, named: Collection[str], most: int, least_named: int
+    ) -> list[str]:
+        """Hypotheses worth adding, strongest first, with so many named effects.
+
+        Parameters
+        ----------
+        threshold : float
+            Excess from which something is worth adding [nat].
+        named : collection of str
+            Names of all effects.
+        most : int
+            Most hypotheses, whatever they are.
+        least_named : int
+            Named effects that are taken even beyond that.
+
+        Returns
+        -------
+        list of str
+        """
+        excesses = self.excesses
+        good = sorted(
+            (name for name, value in excesses.items() if value > threshold),
+            key=lambda name: -excesses[name],
+        )
+        good = [name for name in good if name not in self.names]
+        first = good[:most]
+        others = [name for name in good if name in named and name not in first]
+        return first + others[: max(0, least_named - sum(name in named for name in first))]

@@ -12,10 +12,10 @@ from cyclosweep.diagnosis.identify.fitted_structure import (
     Prediction,
     TorqueZero,
 )
-from cyclosweep.diagnosis.identify.joint_fit import JointFit, usual_change
+from cyclosweep.diagnosis.identify.joint_fit import JointFit
 from cyclosweep.diagnosis.identify.path_law import path_law
+from cyclosweep.diagnosis.identify.refine import refine
 from cyclosweep.diagnosis.identify.repetition import Repetition
-from cyclosweep.diagnosis.identify.secant_fit import minimise
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
@@ -26,16 +26,6 @@ from cyclosweep.simulation.simulate import EffectValue, Model
 
 FEWEST_ROWS = 6
 """Fewer rows than this cannot even calibrate the baseline."""
-EXPANSIONS = 10
-"""Most times the likelihood is expanded about the point that a refinement has led to. A refinement
-holds the elastic law, and what else follows from the linear parameters, as it was there: it has to
-be repeated until both have settled."""
-LEAST_GAIN = 1.0
-"""Chi-squared that a further expansion has to be worth,"""
-LEAST_SHARE = 1e-4
-"""and the share of all chi-squared, which a structure leaves that lacks an effect."""
-STEPS_A_ROUND = 2
-"""Steps with updated slopes that are tried for each iteration with measured ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,21 +228,7 @@ def fit(
         lower = np.where(np.isneginf(lower), -1e6, lower)
         width = np.minimum(upper - lower, 1e6)
         values = np.clip(values, lower + 1e-6 * width, upper - 1e-6 * width)
-        scale = np.array([usual_change(p, v) for p, v in zip(parameters, values, strict=True)])
-        work.expand_at(values)
-        slopes: Floats | None = None
-        before = np.inf
-        for _ in range(EXPANSIONS):
-            found_at, slopes = minimise(
-                work.residual, values, (lower, upper), scale, STEPS_A_ROUND * rounds, slopes
-            )
-            moved = float(np.max(np.abs(found_at - values) / scale))
-            values = found_at
-            work.expand_at(values)
-            chi2 = float(work.target @ work.target)
-            if moved < 1e-2 or abs(before - chi2) < max(LEAST_GAIN, LEAST_SHARE * chi2):
-                break
-            before = chi2
+        values = refine(work, values, (lower, upper), rounds)
     else:
         work.expand_at(values)
     found = work.linearise(values)

@@ -37,6 +37,29 @@ class FitParameter:
         return float(np.exp(value)) if self.quantity.logarithmic else value
 
 
+def usual_change(parameter: FitParameter, value: float) -> float:
+    """Size of a usual change of a nonlinear parameter, in the fit's own scale.
+
+    Parameters
+    ----------
+    parameter : FitParameter
+    value : float
+        Its value in the fit's own scale.
+
+    Returns
+    -------
+    float
+        In the fit's own scale.
+    """
+    quantity = parameter.quantity
+    if quantity.logarithmic:
+        return 0.5
+    room = quantity.upper - quantity.lower
+    if parameter.name == "amplitude":
+        return max(abs(value), 1e-3 * room, 1e-6)
+    return max(0.2 * abs(value), 0.02 * min(room, 1e3))
+
+
 def fit_parameters_of(terms: Sequence[Term], problem: Problem) -> tuple[FitParameter, ...]:
     """Nonlinear parameters of a structure; all friction terms share one set of slip elements.
 

@@ -1,11 +1,12 @@
 """One joint fit in progress: path of the shaft, linear parameters, residual and its slopes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
-from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.fit_parameters import FitParameter, usual_change
+from cyclosweep.diagnosis.identify.fit_state import Expansion, Linearisation
 from cyclosweep.diagnosis.identify.friction_path import friction_path
 from cyclosweep.diagnosis.identify.path_law import elastic_parts, path_law
 from cyclosweep.diagnosis.identify.terms import Term
@@ -19,51 +20,6 @@ SETTLED = 0.01
 """Change of the modelled twist, over the noise, below which path and linear parameters agree."""
 INNER = 3
 """Most rounds in which path and linear parameters are solved in turn with one set of weights."""
-
-
-def usual_change(parameter: FitParameter, value: float) -> float:
-    """Size of a usual change of a nonlinear parameter, in the fit's own scale.
-
-    Parameters
-    ----------
-    parameter : FitParameter
-    value : float
-        Its value in the fit's own scale.
-
-    Returns
-    -------
-    float
-        In the fit's own scale.
-    """
-    quantity = parameter.quantity
-    if quantity.logarithmic:
-        return 0.5
-    room = quantity.upper - quantity.lower
-    if parameter.name == "amplitude":
-        return max(abs(value), 1e-3 * room, 1e-6)
-    return max(0.2 * abs(value), 0.02 * min(room, 1e3))
-
-
-@dataclass(frozen=True, eq=False)
-class Linearisation:
-    """A structure at its solution, linearised.
-
-    Attributes
-    ----------
-    terms : tuple of Term
-        With their values.
-    beta : ndarray
-        Linear parameters.
-    target : ndarray, shape (fitted,)
-        White residual of unit variance, as it is.
-    sensitivity : ndarray, shape (fitted, p)
-        Whitened derivative by every parameter: linear ones first, then nonlinear ones.
-    """
-
-    terms: tuple[Term, ...]
-    beta: Floats
-    target: Floats
-    sensitivity: Floats
 
 
 class JointFit:
@@ -308,7 +264,7 @@ class JointFit:
         self._last = (terms, white, beta)
         return self._shifted - white @ beta
 
-    def expand_at(self, values: Floats) -> None:
+    def expand_at(self, values: Floats) -> Expansion:
         """Move the point about which the likelihood is expanded to these nonlinear parameters."""
         exact = self.noise
         for level in _levels(exact):
@@ -322,6 +278,15 @@ class JointFit:
                 self._work_at(mean)
                 if settled:
                     break
+        chi2 = float(self.target @ self.target)
+        misfit = self.noise.misfit(self.angle, self.mean[self.use])
+        return Expansion(chi2, misfit, values, self.history, self.mean, self.law, self.terms)
+
+    def return_to(self, before: Expansion) -> None:
+        """Move the point back to one about which the likelihood was expanded before."""
+        self.history, self.mean = before.history, before.mean_deg
+        self.law, self.terms = before.law, before.terms
+        self._work_at(self.mean)
 
     def _follow_amplitudes(self, history: History, beta: Floats) -> None:
         """Compute shapes anew that depend on the amplitudes.

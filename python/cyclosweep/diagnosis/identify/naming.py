@@ -137,10 +137,11 @@ def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tup
     -------
     tuple of LawCheck
     """
-    if fitted.keeps_line:
-        return tuple(checks)
     elastic = {term.name for term in fitted.terms if term.elastic}
-    return _withdrawn_where(elastic.__contains__, checks)
+    if fitted.keeps_line or not elastic:
+        return tuple(checks)
+    # The others were fitted beside a wrong line: they are judged when they are fitted without it.
+    return tuple(replace(check, holds=check.name not in elastic) for check in checks)
 
 
 def _without_lesser_laws(

@@ -106,6 +106,7 @@ class Search:
             self.threshold = self.alarm.threshold
             self.start = replace(self.start, alarm=self.alarm)
             self.visited[self.start.names] = self.start
+        self._tried: set[tuple[Candidate, str]] = set()
         self.chosen: Candidate | None = None
         self.flexible: Floats | None = None
         self.rivals_of_start: list[tuple[Candidate, float]] = []
@@ -201,6 +202,7 @@ class Search:
         Candidate or None
             None where no fit is better and has amplitudes of the sign that physics asks for.
         """
+        self._tried.add((parent, hypothesis))
         best: Candidate | None = None
         for term, rank, penalty in starting_terms(parent, hypothesis):
             terms = (*parent.fit.terms, term)
@@ -333,30 +335,9 @@ class Search:
         return float(evidence(gain, rank)) - penalty
 
     def _hypotheses_to_add(self, candidate: Candidate, most: int, least_named: int) -> list[str]:
-        """Hypotheses worth adding to a structure, strongest first, with so many named effects.
-
-        Parameters
-        ----------
-        candidate : Candidate
-        most : int
-            Most hypotheses, whatever they are.
-        least_named : int
-            Named effects that are taken even beyond that.
-
-        Returns
-        -------
-        list of str
-        """
-        excesses = candidate.excesses
-        good = sorted(
-            (name for name, value in excesses.items() if value > self.threshold),
-            key=lambda name: -excesses[name],
-        )
-        good = [name for name in good if name not in candidate.names]
+        """Hypotheses worth adding to a structure, see `Candidate.hypotheses_to_add`."""
         named = self.library.effects
-        first = good[:most]
-        others = [name for name in good if name in named and name not in first]
-        return first + others[: max(0, least_named - sum(name in named for name in first))]
+        return candidate.hypotheses_to_add(self.threshold, named, most, least_named)
 
     def _visit_parts(self) -> None:
         """Leave each term out of the best structures: the others may explain it all."""
@@ -376,10 +357,16 @@ class Search:
         for name in names:
             if name not in parent.scan.groups:
                 return
-            child = self.extend(parent, name)
+            child = self._child(parent, name)
             if child is None:
                 return
             parent = child
+
+    def _child(self, parent: Candidate, name: str) -> Candidate | None:
+        """Structure with one more hypothesis; from one parent it is fitted once."""
+        if (parent, name) in self._tried:
+            return self.visited.get(parent.names | {name})
+        return self.extend(parent, name)
 
     def _follow(self, progress: Callable[[str], None]) -> None:
         """Add further terms to the best structure as long as the residual asks for them."""
@@ -390,7 +377,7 @@ class Search:
             children = []
             for name in self._hypotheses_to_add(best, 2, 1):
                 progress(f"fitting {' + '.join([*best.fit.names, name])}")
-                child = self.extend(best, name)
+                child = self._child(best, name)
                 if child is not None and child.score > best.score:
                     children.append(child)
             if not children:

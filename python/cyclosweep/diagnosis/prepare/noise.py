@@ -164,6 +164,27 @@ class Noise:
             return shape(white, self.tail)[0] / root, even * (slope / root)
         return white, even
 
+    def misfit(self, angle: Floats, mean: Floats) -> float:
+        """Twice the log likelihood that a mean lacks to a perfect one.
+
+        The residual's sum of squares is no such measure: under heavy tails it forgets what is far
+        off. A rounding counts as noise.
+
+        Parameters
+        ----------
+        angle, mean : ndarray, shape (n,)
+            Measured and modelled twist of the fitted rows [deg].
+
+        Returns
+        -------
+        float
+        """
+        size = float(np.hypot(self.sigma_deg, self.step_deg / np.sqrt(12.0)))
+        white = self.whiten((angle - mean) / size)
+        if np.isfinite(self.tail):
+            white = student_deviance(white, self.tail)[0]
+        return float(white @ white)
+
     def design(self, columns: Floats, weight: Floats) -> Floats:
         """Whitened columns in the unit of the residual.
 

@@ -1,0 +1,71 @@
+"""Refinement of a joint fit: least squares and elastic law in turn, until both have settled."""
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fit_parameters import usual_change
+from cyclosweep.diagnosis.identify.joint_fit import JointFit
+from cyclosweep.diagnosis.identify.secant_fit import minimise
+from cyclosweep.simulation.effects.history import Floats
+
+EXPANSIONS = 10
+"""Most times the likelihood is expanded about the point that a refinement has led to. A refinement
+holds the elastic law, and what else follows from the linear parameters, as it was there: it has to
+be repeated until both have settled."""
+LEAST_GAIN = 1.0
+"""Chi-squared that a further expansion has to be worth,"""
+LEAST_SHARE = 1e-4
+"""and the share of all chi-squared, which a structure leaves that lacks an effect."""
+STEPS_A_ROUND = 2
+"""Steps with updated slopes that are tried for each iteration with measured ones."""
+MOST_RISES = 2
+"""Expansions that may each leave more than the one before, until a refinement is given up."""
+FAR_ABOVE = 2.0
+"""The same at once, where an expansion leaves so many times what the best one did."""
+SETTLED = 1e-2
+"""Largest move of a parameter, in usual changes, that is the end of a refinement."""
+
+
+def refine(work: JointFit, start: Floats, bounds: tuple[Floats, Floats], rounds: int) -> Floats:
+    """Move the nonlinear parameters of a fit to where chi-squared is least.
+
+    Path and elastic law may drive each other ever further, as where two terms make up for each
+    other; the fit then ends at the best expansion that it passed.
+
+    Parameters
+    ----------
+    work : JointFit
+        The fit, which ends expanded about the result.
+    start : ndarray, shape (p,)
+        Parameters, in the fit's own scale.
+    bounds : pair of ndarray, shape (p,)
+        Lower and upper bounds.
+    rounds : int
+        Most iterations of a refinement.
+
+    Returns
+    -------
+    ndarray, shape (p,)
+        Parameters of the best expansion.
+    """
+    of = work.fit_parameters
+    scale = np.array([usual_change(each, value) for each, value in zip(of, start, strict=True)])
+    here = best = work.expand_at(start)
+    slopes: Floats | None = None
+    before, rises = here, 0
+    for count in range(EXPANSIONS):
+        values, slopes = minimise(
+            work.residual, here.values, bounds, scale, STEPS_A_ROUND * rounds, slopes
+        )
+        moved = float(np.max(np.abs(values - here.values) / scale))
+        here = work.expand_at(values)
+        best = min(best, here, key=lambda each: each.misfit)
+        rises += here.misfit > before.misfit + max(LEAST_GAIN, LEAST_SHARE * here.misfit)
+        if rises >= MOST_RISES or here.misfit > FAR_ABOVE * best.misfit:
+            break
+        least = max(LEAST_GAIN, LEAST_SHARE * here.chi2)
+        if moved < SETTLED or (count and abs(before.chi2 - here.chi2) < least):
+            break
+        before = here
+    if best is not here:
+        work.return_to(best)
+    return best.values

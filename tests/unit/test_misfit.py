@@ -1,0 +1,39 @@
+"""Misfit of a mean: what it lacks in log likelihood, whatever the tails of the noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from cyclosweep.diagnosis.prepare.noise import Noise
+from tests.unit.test_one_class import search_of
+
+
+@pytest.fixture(scope="module")
+def noise() -> Noise:
+    """White Gaussian noise of a recording."""
+    return replace(search_of().noise.plain, correlation=0.0, white_share=0.0)
+
+
+def test_misfit_is_twice_the_log_likelihood_that_is_lost(noise: Noise) -> None:
+    left = np.linspace(-40.0, 40.0, len(noise.gap)) * noise.sigma_deg
+    mean = np.zeros_like(left)
+    assert noise.misfit(left, mean) == pytest.approx(np.sum((left / noise.sigma_deg) ** 2))
+    tail = 5.0
+    scale = noise.sigma_deg * np.sqrt((tail - 2.0) / tail)
+    lost = stats.t.logpdf(0.0, tail, scale=scale) - stats.t.logpdf(left, tail, scale=scale)
+    heavy = replace(noise, tail=tail)
+    assert heavy.misfit(left, mean) == pytest.approx(2.0 * np.sum(lost))
+
+
+def test_misfit_grows_with_the_distance_where_the_sum_of_squares_forgets_it(noise: Noise) -> None:
+    heavy = replace(noise, tail=3.0)
+    some = np.arange(len(noise.gap)) % 3 == 0
+    near, far = (np.where(some, size * noise.sigma_deg, 0.0) for size in (3.0, 300.0))
+    mean = np.zeros_like(near)
+    squares = [float(np.sum(heavy.residual(each, mean)[0] ** 2)) for each in (near, far)]
+    assert squares[1] < squares[0]
+    assert heavy.misfit(far, mean) > heavy.misfit(near, mean)
+    rounded = replace(noise, step_deg=10.0 * noise.sigma_deg)
+    assert rounded.misfit(far, mean) < noise.misfit(far, mean)

@@ -1,0 +1,79 @@
+"""Refinement of a joint fit: where it ends when path and law do not settle, and what it costs."""
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.fit_state import Expansion
+from cyclosweep.diagnosis.identify.joint_fit import JointFit
+from cyclosweep.diagnosis.identify.refine import EXPANSIONS, FAR_ABOVE, MOST_RISES, refine
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.simulation.effects.base import Parameter
+from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import friction
+from tests.unit.test_one_class import search_of
+
+BOUNDS = (np.array([-100.0]), np.array([100.0]))
+
+
+class Wandering:
+    """A fit whose every refinement asks for one more step of one, whatever that leaves."""
+
+    def __init__(self, chi2: Sequence[float]) -> None:
+        parameter = Parameter("power", "", "of a test", -100.0, 100.0)
+        self.fit_parameters = (FitParameter(0, "power", parameter),)
+        self.left, self.seen = list(chi2), list[Expansion]()
+        self.returned: Expansion | None = None
+
+    def residual(self, values: Floats) -> Floats:
+        return values - (self.seen[-1].values + 1.0)
+
+    def expand_at(self, values: Floats) -> Expansion:
+        chi2 = self.left[min(len(self.seen), len(self.left) - 1)]
+        self.seen.append(Expansion(chi2, chi2, values, *cast(Any, (None, None, None, ()))))
+        return self.seen[-1]
+
+    def return_to(self, before: Expansion) -> None:
+        self.returned = before
+
+
+@pytest.mark.parametrize(
+    ("chi2", "asked", "best"),
+    [
+        ([9e4, 5e4, 4e4, 4.5e4, 6e4, 3e4], 3 + MOST_RISES, 2),
+        ([9e4, 5e4, FAR_ABOVE * 5.1e4, 1e4], 3, 1),
+        ([5e4, 6e4, 4e4, 4e4], 4, 2),
+        ([float(5e4 - 1e3 * k) for k in range(20)], 1 + EXPANSIONS, EXPANSIONS),
+    ],
+    ids=["rises again and again", "far above", "rises once", "falls all along"],
+)
+def test_refinement_ends_at_the_best_expansion(
+    chi2: Sequence[float], asked: int, best: int
+) -> None:
+    work = Wandering(chi2)
+    found = refine(cast(JointFit, work), np.zeros(1), BOUNDS, 6)
+    assert len(work.seen) == asked
+    assert found == pytest.approx(work.seen[best].values)
+    last = best == asked - 1
+    assert work.returned is (None if last else work.seen[best])
+
+
+def test_a_search_fits_no_structure_twice_from_the_same_parent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search = search_of(friction(0.3), EffectValue("load_asymmetry", {"power": 1.0}, (0.1,)))
+    asked = list[tuple[Candidate, str]]()
+    extend = Search.extend
+
+    def counted(self: Search, parent: Candidate, hypothesis: str) -> Candidate | None:
+        asked.append((parent, hypothesis))
+        return extend(self, parent, hypothesis)
+
+    monkeypatch.setattr(Search, "extend", counted)
+    search.run()
+    assert len(asked) == len(set(asked)) > 3
