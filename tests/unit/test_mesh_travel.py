@@ -1,11 +1,16 @@
 """Position of the mesh while the shaft twists: what it is, and what stands on it."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.whole_loop.forecast import Forecast
+from cyclosweep.diagnosis.whole_loop.staircase_found import named_staircase
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.mesh_range import LEAST_TRAVEL_DEG
 from cyclosweep.simulation.effects.orders import CYCLE_STEP, travel_deg, travel_shapes
@@ -172,7 +177,7 @@ def test_a_staircase_goes_through_a_model_file(tmp_path: Path) -> None:
     assert cs.Model.from_json(path) == model(1.0 / 13.0)
 
 
-def test_a_programme_for_a_travelling_mesh_needs_no_locking_position() -> None:
+def test_a_programme_needs_the_locking_position_where_orders_are_counted_from_it() -> None:
     load = cs.Recording.from_arrays([1.0, 5.0])
     assert len(cs.simulate(model(), load)) == 2
     for shape in ({"order_1": 1.0}, {"travel_ratio": 1.0, "order_1": 1.0}):
@@ -205,3 +210,22 @@ def test_a_second_order_is_a_harmonic_where_it_is_near_one_and_else_its_own() ->
 
 def test_made_recording_has_no_locking_position() -> None:
     assert recording([(0.5, 5.0, 0.5)], [WAVE]).crank_deg is None
+
+
+@pytest.mark.parametrize(
+    ("shape", "steps"),
+    [
+        ({"travel_ratio": 1.0, "travel_order_1": 7.0}, True),
+        ({"travel_ratio": 1.0, "order_1": 1.0}, False),
+    ],
+)
+def test_a_low_order_of_recorded_positions_is_no_staircase(
+    shape: dict[str, float], steps: bool
+) -> None:
+    value = EffectValue("transmission_error", shape, (0.1, 0.2))
+    forecast = SimpleNamespace(
+        terms=(Term(find("transmission_error"), shape),),
+        model=cs.Model(1.0, 2.0, effects=(value,)),
+        history=history(),
+    )
+    assert (named_staircase(cast(Forecast, forecast)) is not None) == steps

@@ -26,10 +26,10 @@ SETTLED = 1e-2
 
 
 def refine(work: JointFit, start: Floats, bounds: tuple[Floats, Floats], rounds: int) -> Floats:
-    """Move the nonlinear parameters of a fit to where chi-squared is least.
+    """Move the nonlinear parameters of a fit by least squares until they settle.
 
     Path and elastic law may drive each other ever further, as where two terms make up for each
-    other; the fit then ends at the best expansion that it passed.
+    other; the fit then ends at the expansion of the least misfit that it passed.
 
     Parameters
     ----------

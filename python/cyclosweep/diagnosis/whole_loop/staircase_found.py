@@ -8,7 +8,7 @@ from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.effects.orders import travels
+from cyclosweep.simulation.effects.orders import from_recorded_position, travels
 
 STEPS = (3.0, 40.0)
 """Fewest and most steps of a staircase over the range of the angle."""
@@ -22,9 +22,13 @@ def angle_in_words(value_deg: float) -> str:
 
 
 def named_staircase(forecast: Forecast) -> Finding | None:
-    """Orders of a staircase that is one of the effects; None where none is."""
+    """Orders of a staircase that is one of the effects; None where none is.
+
+    One to three waves a turn of the mesh, counted from recorded positions, are no staircase.
+    """
     for term, value in zip(forecast.terms, forecast.model.effects, strict=True):
-        if term.effect is not None and travels(term.shape):
+        has_steps = travels(term.shape) and not from_recorded_position(term.shape)
+        if term.effect is not None and has_steps:
             amplitudes = np.array(value.amplitudes)
             law = term.effect.found_law(forecast.history, term.shape, amplitudes)
             return Finding(topic="staircase", text=f"Named: {term.name.replace('_', ' ')}. {law}")

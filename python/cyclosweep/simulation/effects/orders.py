@@ -61,7 +61,7 @@ def travels(shape: Shape) -> bool:
 
 
 def orders_of(shape: Shape) -> tuple[float, ...]:
-    """Orders of a shape, of either kind."""
+    """Orders of a shape, of any of the three kinds."""
     return tuple(value for name, value in shape.items() if name != RATIO)
 
 

@@ -15,7 +15,7 @@ from cyclosweep.simulation.effects.orders import (
 class PhaseDependentCompliance(MeshPeriodic):
     """Compliance periodic in the mesh position: orders 1-4, and those of the output pins.
 
-    Where the mesh travels, any order.
+    Orders 1 to 3 where it travels from recorded positions, any order where none was recorded.
     """
 
     name = "phase_dependent_compliance"

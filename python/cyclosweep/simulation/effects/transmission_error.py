@@ -15,8 +15,8 @@ from cyclosweep.simulation.effects.orders import (
 class TransmissionError(MeshPeriodic):
     """Offset periodic in the position of the mesh zone.
 
-    Orders 1 to 3 of the position at which it is locked, or any order of the position to which it
-    travels.
+    Orders 1 to 3 of a recorded position, where it was locked or to which it has travelled since;
+    any order where it travels and no position was recorded.
     """
 
     name = "transmission_error"
