@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from cyclosweep.diagnosis.prepare.noise import Noise
-from tests.unit.test_one_class import search_of
+from tests.support.searches import search_of
 
 
 @pytest.fixture(scope="module")

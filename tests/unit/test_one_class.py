@@ -6,10 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import cyclosweep as cs
-from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import LOOP
-from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify import naming
 from cyclosweep.diagnosis.identify import testability as bounds_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
@@ -27,25 +24,16 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
-from cyclosweep.diagnosis.prepare.problem import prepare
-from cyclosweep.simulation.effects import effects, find
+from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
-from tests.support.long_recording import COMPLIANCE, friction, long_recording
+from tests.support.long_recording import COMPLIANCE, friction
+from tests.support.searches import search_of
 
-DRIVE = cs.Drive.reference_87()
 LOADED = {"slip_deg": 0.8, "scatter": 0.6, "skew": 0.0, "slack": 0.0}
 ASYMMETRY = 0.1
 """Amplitude of a difference of the sides at 10 N m [deg]."""
 KINKS = {"kink_1_nm": 4.0, "kink_2_nm": 8.0}
 CREEP = EffectValue("creep", {"lag_s": 20.0}, (0.1,))
-
-
-def search_of(*values: EffectValue) -> Search:
-    """Calibrated search of a recording made with these effects."""
-    recording = long_recording(3_000, values)
-    problem = prepare(recording, DRIVE.nominal_line("input"), int(DRIVE.output_pin_count))
-    library = build_library(problem.history, problem.fitted, tuple(effects()))
-    return calibrate(problem, library, 0)
 
 
 def fitted(search: Search, terms: Sequence[Term]) -> Candidate:

@@ -16,7 +16,7 @@ from cyclosweep.simulation.effects.base import Parameter
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
-from tests.unit.test_one_class import search_of
+from tests.support.searches import search_of
 
 BOUNDS = (np.array([-100.0]), np.array([100.0]))
 

@@ -1,6 +1,5 @@
 """A candidate explanation: a fitted structure, its evidence and what its residual still shows."""
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -159,17 +158,11 @@ class Candidate:
         """Largest excess of anything that remains in the residual [nat]."""
         return max(max(self.excesses.values(), default=0.0), 0.0)
 
-    def hypotheses_to_add(
-        self, threshold: float, named: Collection[str], most: int, least_named: int
-    ) -> list[str]:
+    def hypotheses_to_add(self, most: int, least_named: int) -> list[str]:
         """Hypotheses worth adding, strongest first, with so many named effects.
 
         Parameters
         ----------
-        threshold : float
-            Excess from which something is worth adding [nat].
-        named : collection of str
-            Names of all effects.
         most : int
             Most hypotheses, whatever they are.
         least_named : int
@@ -179,9 +172,9 @@ class Candidate:
         -------
         list of str
         """
-        excesses = self.excesses
+        excesses, named = self.excesses, self.scan.library.effects
         good = sorted(
-            (name for name, value in excesses.items() if value > threshold),
+            (name for name, value in excesses.items() if value > self.alarm.threshold),
             key=lambda name: -excesses[name],
         )
         good = [name for name in good if name not in self.names]

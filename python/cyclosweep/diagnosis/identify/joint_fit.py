@@ -57,7 +57,6 @@ class JointFit:
         self.angle = problem.angle_deg[self.use]
         self.history = history
         self.mean, self.law = mean_deg, law
-        self.beta = np.zeros(0)
         self._work_at(self.mean)
 
     def _work_at(self, mean: Floats) -> None:
@@ -273,7 +272,7 @@ class JointFit:
             for _ in range(6):
                 history, mean, beta, law = self._evaluate(values)
                 settled = self._is_settled(self.mean, mean)
-                self.history, self.mean, self.beta, self.law = history, mean, beta, law
+                self.history, self.mean, self.law = history, mean, law
                 self._follow_amplitudes(history, beta)
                 self._work_at(mean)
                 if settled:

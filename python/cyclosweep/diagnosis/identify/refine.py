@@ -51,21 +51,26 @@ def refine(work: JointFit, start: Floats, bounds: tuple[Floats, Floats], rounds:
     scale = np.array([usual_change(each, value) for each, value in zip(of, start, strict=True)])
     here = best = work.expand_at(start)
     slopes: Floats | None = None
-    before, rises = here, 0
+    rises = 0
     for count in range(EXPANSIONS):
+        before = here
         values, slopes = minimise(
             work.residual, here.values, bounds, scale, STEPS_A_ROUND * rounds, slopes
         )
         moved = float(np.max(np.abs(values - here.values) / scale))
         here = work.expand_at(values)
         best = min(best, here, key=lambda each: each.misfit)
-        rises += here.misfit > before.misfit + max(LEAST_GAIN, LEAST_SHARE * here.misfit)
+        rises += here.misfit - before.misfit > _least_change(here.misfit)
         if rises >= MOST_RISES or here.misfit > FAR_ABOVE * best.misfit:
             break
-        least = max(LEAST_GAIN, LEAST_SHARE * here.chi2)
-        if moved < SETTLED or (count and abs(before.chi2 - here.chi2) < least):
+        gained_little = abs(before.chi2 - here.chi2) < _least_change(here.chi2)
+        if moved < SETTLED or (count and gained_little):
             break
-        before = here
     if best is not here:
         work.return_to(best)
     return best.values
+
+
+def _least_change(left: float) -> float:
+    """Least change that counts of chi-squared, or of misfit, where so much is left."""
+    return max(LEAST_GAIN, LEAST_SHARE * left)

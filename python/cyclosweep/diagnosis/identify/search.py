@@ -122,7 +122,7 @@ class Search:
         for depth in range(MOST_TERMS):
             found: list[Candidate] = []
             for parent in front:
-                for name in self._hypotheses_to_add(parent, 6 if depth == 0 else 3, 3 - depth):
+                for name in parent.hypotheses_to_add(6 if depth == 0 else 3, 3 - depth):
                     if parent.names | {name} in self.visited and depth:
                         continue
                     progress(f"fitting {' + '.join([*parent.fit.names, name])}")
@@ -334,11 +334,6 @@ class Search:
             penalty = max(penalty, shape_penalty(joint, parent.scan))
         return float(evidence(gain, rank)) - penalty
 
-    def _hypotheses_to_add(self, candidate: Candidate, most: int, least_named: int) -> list[str]:
-        """Hypotheses worth adding to a structure, see `Candidate.hypotheses_to_add`."""
-        named = self.library.effects
-        return candidate.hypotheses_to_add(self.threshold, named, most, least_named)
-
     def _visit_parts(self) -> None:
         """Leave each term out of the best structures: the others may explain it all."""
         for candidate in sorted(self.visited.values(), key=lambda n: -n.score)[:4]:
@@ -375,7 +370,7 @@ class Search:
             if best.largest_excess <= self.threshold:
                 return
             children = []
-            for name in self._hypotheses_to_add(best, 2, 1):
+            for name in best.hypotheses_to_add(2, 1):
                 progress(f"fitting {' + '.join([*best.fit.names, name])}")
                 child = self._child(best, name)
                 if child is not None and child.score > best.score:

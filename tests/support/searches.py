@@ -1,0 +1,20 @@
+"""Searches of made recordings, calibrated and with nothing visited."""
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.calibrate import calibrate
+from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.simulation.effects import effects
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import long_recording
+
+DRIVE = cs.Drive.reference_87()
+
+
+def search_of(*values: EffectValue) -> Search:
+    """Calibrated search of a recording made with these effects."""
+    recording = long_recording(3_000, values)
+    problem = prepare(recording, DRIVE.nominal_line("input"), int(DRIVE.output_pin_count))
+    library = build_library(problem.history, problem.fitted, tuple(effects()))
+    return calibrate(problem, library, 0)
