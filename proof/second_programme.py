@@ -3,7 +3,7 @@
     python proof/second_programme.py
 
 makes recordings with the independent generator of the challenge, diagnoses each, predicts the
-second programme with `cyclosweep simulate`, and prints the table of docs/diagnosis.md. "Without" is
+second programme with `cyclosweep simulate`, and prints the table of docs/proof.md. "Without" is
 the calibrated model of a diagnosis that was not allowed the effects.
 """
 

@@ -116,6 +116,17 @@ def figure_at_most(name: str, most: float, words: str) -> Check:
     return Check(f"{words} at most {most:g}", lambda o: o.figures.get(name, math.inf) <= most)
 
 
+def within_noise() -> Check:
+    """Check that what the repaired model leaves is no larger than the noise may be."""
+    return Check(f"leaves at most {WITHIN_NOISE:g} times the noise", _leaves_noise)
+
+
+def _leaves_noise(outcome: Outcome) -> bool:
+    """Whether the repaired model errs by no more than `WITHIN_NOISE`."""
+    error, noise = outcome.rms_repaired_deg, outcome.noise_deg
+    return error is not None and noise is not None and error <= WITHIN_NOISE * noise
+
+
 def within_seconds(most: float) -> Check:
     """Check that the diagnosis took no longer than it may [s]."""
     return Check(f"at most {most:g} s", lambda o: o.seconds <= most)

@@ -15,6 +15,7 @@ from cyclosweep_challenge.scoreboard.printed_drive import (
     printed_drive_lines,
     printed_drive_summaries,
 )
+from cyclosweep_challenge.scoreboard.turned_lines import turned_lines
 
 SHARED = "CYCLOSWEEP_SHARED"
 """Environment variable that names the shared folder."""
@@ -38,6 +39,7 @@ def all_lines(recordings: Path) -> list[Line]:
         *printed_drive_lines(),
         *other_rig_lines(),
         *made_lines(),
+        *turned_lines(),
         *practice_lines(recordings),
     ]
 

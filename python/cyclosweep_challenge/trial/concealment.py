@@ -72,6 +72,8 @@ def _evaluate(
     """Response, signatures by switching each cause off, and their visibility."""
     response = measure(specimen, programme, amplitudes)
     seen = response.recorded & ~lost
+    if not np.any(seen):
+        raise ValueError("every sample would fall into the dead zone or be lost")
     columns = []
     for name in amplitudes:
         rest = {other: a for other, a in amplitudes.items() if other != name}

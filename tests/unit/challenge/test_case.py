@@ -7,6 +7,10 @@ import polars as pl
 import pytest
 
 from cyclosweep_challenge import ALIASES, NOISES, VOCABULARY, ConcealmentError, make_case
+from cyclosweep_challenge.rig.noise import Noise
+from cyclosweep_challenge.rig.programme import make_programme
+from cyclosweep_challenge.rig.specimen import Specimen
+from cyclosweep_challenge.trial.concealment import conceal
 from cyclosweep_challenge.trial.oracle import oracle_d, oracle_power
 
 
@@ -90,3 +94,13 @@ def test_what_a_programme_cannot_show_is_refused() -> None:
 def test_divided_dial_reads_only_its_divisions() -> None:
     angle = make_case(3, noise="resolution", samples=300).recording["angle_deg"].to_numpy()
     np.testing.assert_allclose(angle, np.round(angle / 0.5) * 0.5, atol=1e-9)
+
+
+def test_recording_without_a_reading_cannot_be_concealed() -> None:
+    # At some sizes every reading fell into the dead zone, and the draw ended in an IndexError.
+    streams = np.random.default_rng(1).spawn(3)
+    programme = make_programme("rich", streams[1], 300)
+    lost = np.ones(len(programme), dtype=bool)
+    noise = Noise.draw("white", streams[2], 0.05, 0.0)
+    with pytest.raises(ConcealmentError, match="every sample"):
+        conceal(Specimen.draw(streams[0]), programme, noise, ["creep"], [10.0], [1.0], lost, {})

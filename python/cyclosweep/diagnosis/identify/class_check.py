@@ -170,6 +170,12 @@ def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:
     return tuple(each for each in found if each.visibility >= LEAST_SIZE * largest)
 
 
+def most_missed(classes: Collection[str]) -> float:
+    """Largest share that a named law of some classes may miss inside them."""
+    loose = {LOOP, OPENING_LOOP, RATE_LOOP, *ONE_CAUSE} & set(classes)
+    return MOST_MISSED_LOOP if loose else MOST_MISSED
+
+
 def candidates_of(behaviour: str, library: Library) -> tuple[str, ...]:
     """Effects of a library that belong to a class.
 
@@ -252,7 +258,7 @@ def _check(
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))
     replaced = False
-    loose = bool({LOOP, OPENING_LOOP, RATE_LOOP, *ONE_CAUSE} & set(own))
+    loose = most_missed(own) > MOST_MISSED
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
     close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
     beyond = max(by_law - CLEARLY, 0.0)

@@ -23,6 +23,7 @@ from cyclosweep.diagnosis.identify.friction_first import (
 from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, share_class
 from cyclosweep.diagnosis.identify.other_laws import with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
@@ -264,6 +265,7 @@ def _without_model_error(
     before = {term.name for term in accepted}
     size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
     left = _beyond_noise(fitted, noise_deg)
+    errors = errors_of_larger(fitted)
     kept = []
     for k, term in enumerate(fitted.terms):
         others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
@@ -271,6 +273,7 @@ def _without_model_error(
         alike = max((s for s, each in others if share_class(each, term)), default=0.0)
         least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
-        if term.name in before or (stands_out and size[k] >= LEAST_OF_CLASS * alike):
+        stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
+        if term.name in before or stands_out:
             kept.append(term)
     return tuple(kept)

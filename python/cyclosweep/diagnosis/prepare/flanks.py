@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 LOADED = 0.25
@@ -41,6 +42,8 @@ class Flanks:
         Torque beyond which a flank is in contact whatever the angle says [N m].
     loaded_scored_nm : float
         The same by the largest torque of the readings that are scored [N m].
+    turned : TurnedPlay or None
+        Play through which the shaft was turned, where its ends were seen in the angle.
     """
 
     datum_deg: float
@@ -49,6 +52,7 @@ class Flanks:
     loop_width_deg: float
     loaded_nm: float
     loaded_scored_nm: float
+    turned: TurnedPlay | None = None
 
     def at(
         self, torque: Floats, angle: Floats, scored: Flags | None = None
@@ -77,6 +81,8 @@ class Flanks:
         loaded = np.abs(torque) > self.loaded_nm
         if scored is not None:
             loaded = (np.abs(torque) > self.loaded_scored_nm) & scored
+        if self.turned is not None:
+            return self.turned.side(angle), ~self.turned.holds(angle)
         inside = angle - self.datum_deg - self.compliance_deg_per_nm * torque
         side = np.where(inside >= 0, 1.0, -1.0)
         side[loaded] = sign[loaded]
@@ -166,4 +172,10 @@ def find_flanks(
     play = float(robust[2]) if both else line.free_play_deg
     residual = target[loaded] - design[loaded] @ robust
     width = 2.0 * float(np.quantile(np.abs(residual), 0.9))
-    return Flanks(datum, compliance, max(play, 0.0), width, threshold, scored_threshold)
+    thresholds = threshold, scored_threshold
+    turned = turned_play(compliance * torque, angle, sign * loaded)
+    if turned is not None:
+        return Flanks(
+            turned.datum_deg, compliance, turned.free_play_deg, width, *thresholds, turned
+        )
+    return Flanks(datum, compliance, max(play, 0.0), width, *thresholds)

@@ -158,6 +158,8 @@ def prepare(
     play = flanks.free_play_deg
     if rows.on_one_flank is not None:
         contact &= rows.on_one_flank
+    # No torque tells at which angle the shaft stands within a play through which it was turned.
+    predicted = counts & contact if flanks.turned is not None else counts
     kept = np.isin(run_label, list(recording.holdout_runs))
     held = kept & contact & counts
     fitted = contact & counts & ~kept
@@ -189,8 +191,8 @@ def prepare(
         weight=rows.samples,
         fitted=fitted,
         held_out=held,
-        whole_fitted=counts & ~kept,
-        whole_held_out=counts & kept,
+        whole_fitted=predicted & ~kept,
+        whole_held_out=predicted & kept,
         gap=gaps(fitted, run, time),
         rows=rows,
         one_sided=one_sided,
