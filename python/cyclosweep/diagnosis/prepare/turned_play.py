@@ -102,8 +102,8 @@ def turned_play(twist: Floats, angle: Floats, loaded: Floats) -> TurnedPlay | No
     low, high = 0.5 * (up + down)
     step = float(np.median(steps))
     under_load = np.abs(np.diff(angle))[(loaded[1:] == loaded[:-1]) & (loaded[1:] != 0)]
-    falls = step > STEADY * float(np.median(under_load))
-    if falls or np.max(np.abs(up - down)) > AGREE * (high - low):
+    steady = len(under_load) > 0 and step <= STEADY * float(np.median(under_load))
+    if not steady or np.max(np.abs(up - down)) > AGREE * (high - low):
         return None
     # A reading between two within the play is two steps from its end at most.
     return TurnedPlay(float(low), float(high), 2.0 * max(step, least))
