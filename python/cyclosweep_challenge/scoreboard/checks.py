@@ -118,13 +118,17 @@ def figure_at_most(name: str, most: float, words: str) -> Check:
 
 def within_noise() -> Check:
     """Check that what the repaired model leaves is no larger than the noise may be."""
-    return Check(f"leaves at most {WITHIN_NOISE:g} times the noise", _leaves_noise)
+    return Check(
+        f"leaves at most {WITHIN_NOISE:g} times the noise",
+        lambda o: _is_noise(o.rms_repaired_deg, o),
+    )
 
 
-def _leaves_noise(outcome: Outcome) -> bool:
-    """Whether the repaired model errs by no more than `WITHIN_NOISE`."""
-    error, noise = outcome.rms_repaired_deg, outcome.noise_deg
-    return error is not None and noise is not None and error <= WITHIN_NOISE * noise
+def _is_noise(error_deg: float | None, outcome: Outcome) -> bool:
+    """Whether an error is known and no larger than the noise of an outcome may be [deg]."""
+    if error_deg is None or outcome.noise_deg is None:
+        return False
+    return error_deg <= WITHIN_NOISE * outcome.noise_deg
 
 
 def within_seconds(most: float) -> Check:
@@ -135,14 +139,10 @@ def within_seconds(most: float) -> Check:
 def _agrees_with_noise(outcome: Outcome) -> bool:
     """Whether a verdict that leaves nothing open agrees with the errors it states."""
     if outcome.verdict == "NOTHING_MISSING":
-        error = outcome.rms_calibrated_deg
-    elif outcome.verdict == "IDENTIFIED":
-        error = outcome.rms_repaired_deg
-    else:
-        return True
-    if error is None or outcome.noise_deg is None:
-        return False
-    return error <= WITHIN_NOISE * outcome.noise_deg
+        return _is_noise(outcome.rms_calibrated_deg, outcome)
+    if outcome.verdict == "IDENTIFIED":
+        return _is_noise(outcome.rms_repaired_deg, outcome)
+    return True
 
 
 def _forecasts_no_worse(outcome: Outcome) -> bool:

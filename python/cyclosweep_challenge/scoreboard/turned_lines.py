@@ -15,12 +15,12 @@ from cyclosweep_challenge.scoreboard.checks import (
     within_noise,
 )
 from cyclosweep_challenge.scoreboard.line import Check, Line
+from cyclosweep_challenge.scoreboard.made_lines import NAMED
 from cyclosweep_challenge.scoreboard.made_rig import Friction
 from cyclosweep_challenge.scoreboard.turned_rig import TurnedLoops, turned
 
 GROUP = "Made recordings of a rig that sets the angle"
 SOURCE = "by construction (cyclosweep_challenge/scoreboard/turned_rig.py)"
-NAMED = ("IDENTIFIED", "MOSTLY_EXPLAINED")
 COULOMB = "friction_hysteresis"
 
 

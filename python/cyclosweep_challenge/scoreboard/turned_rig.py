@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cyclosweep.recording import Recording
+from cyclosweep_challenge.scoreboard.made import DRIVE
 from cyclosweep_challenge.scoreboard.made_rig import COMPLIANCE_DEG_PER_NM, PLAY_DEG, Friction
 
 Array = NDArray[np.float64]
 
-DRIVE = "reference-87"
 NO_FRICTION = Friction()
 
 

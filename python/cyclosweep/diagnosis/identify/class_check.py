@@ -172,8 +172,7 @@ def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:
 
 def most_missed(classes: Collection[str]) -> float:
     """Largest share that a named law of some classes may miss inside them."""
-    loose = {LOOP, OPENING_LOOP, RATE_LOOP, *ONE_CAUSE} & set(classes)
-    return MOST_MISSED_LOOP if loose else MOST_MISSED
+    return MOST_MISSED_LOOP if _is_loose(classes) else MOST_MISSED
 
 
 def candidates_of(behaviour: str, library: Library) -> tuple[str, ...]:
@@ -195,6 +194,11 @@ def candidates_of(behaviour: str, library: Library) -> tuple[str, ...]:
         if each.effect is not None and behaviour in own_classes(Term(each.effect, each.shape))
     )
     return tuple(dict.fromkeys(found))
+
+
+def _is_loose(classes: Collection[str]) -> bool:
+    """Whether laws of some classes may differ as loops do, or what follows one known cause."""
+    return bool({LOOP, OPENING_LOOP, RATE_LOOP, *ONE_CAUSE} & set(classes))
 
 
 def _check(
@@ -258,7 +262,7 @@ def _check(
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))
     replaced = False
-    loose = most_missed(own) > MOST_MISSED
+    loose = _is_loose(own)
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
     close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
     beyond = max(by_law - CLEARLY, 0.0)

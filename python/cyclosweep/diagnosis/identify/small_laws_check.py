@@ -83,26 +83,25 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
     frozenset of str
         Laws far smaller than another, of which little is left beside the whole class of the other.
     """
-    size = [size_of(fitted, k) for k in range(len(fitted.terms))]
-    found = set[str]()
-    for k, term in enumerate(fitted.terms):
-        if term.effect is None:
-            continue
-        larger = {
-            behaviour
-            for j, other in enumerate(fitted.terms)
-            if other.effect is not None
-            and np.std(size[k]) < most_missed(own_classes(other)) * np.std(size[j])
-            and _visibility(fitted, size[j]) > LOUD
-            for behaviour in own_classes(other)
-        }
-        if not larger:
-            continue
-        classes = ClassColumns.of(fitted)
+    laws = [k for k, term in enumerate(fitted.terms) if term.effect is not None]
+    sizes = {k: size_of(fitted, k) for k in laws}
+    spread = {k: float(np.std(size)) for k, size in sizes.items()}
+    own = {k: own_classes(fitted.terms[k]) for k in laws}
+    loud = [k for k in laws if _visibility(fitted, sizes[k]) > LOUD]
+    larger = {
+        k: {name for j in loud if spread[k] < most_missed(own[j]) * spread[j] for name in own[j]}
+        for k in laws
+    }
+    small = [k for k in laws if larger[k]]
+    if not small:
+        return frozenset()
+    classes = ClassColumns.of(fitted)
+
+    def is_replaced(k: int) -> bool:
         law = LawBeside.of(fitted, classes, [k])
-        if any(law.is_replaced(classes, each) for each in larger & set(classes.columns)):
-            found.add(term.name)
-    return frozenset(found)
+        return any(law.is_replaced(classes, name) for name in larger[k] & set(classes.columns))
+
+    return frozenset(fitted.terms[k].name for k in small if is_replaced(k))
 
 
 def _visibility(fitted: FittedStructure, size_deg: Floats) -> float:

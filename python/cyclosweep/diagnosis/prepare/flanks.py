@@ -74,6 +74,8 @@ class Flanks:
             Readings in the order in which they were taken: between one within the play and one in
             contact, others may be on their way.
         """
+        if self.turned is not None:
+            return self.turned.side(angle), ~self.turned.holds(angle)
         sign = np.where(torque >= 0, 1.0, -1.0)
         play = self.free_play_deg
         if play <= 0:
@@ -81,8 +83,6 @@ class Flanks:
         loaded = np.abs(torque) > self.loaded_nm
         if scored is not None:
             loaded = (np.abs(torque) > self.loaded_scored_nm) & scored
-        if self.turned is not None:
-            return self.turned.side(angle), ~self.turned.holds(angle)
         inside = angle - self.datum_deg - self.compliance_deg_per_nm * torque
         side = np.where(inside >= 0, 1.0, -1.0)
         side[loaded] = sign[loaded]
@@ -172,10 +172,7 @@ def find_flanks(
     play = float(robust[2]) if both else line.free_play_deg
     residual = target[loaded] - design[loaded] @ robust
     width = 2.0 * float(np.quantile(np.abs(residual), 0.9))
-    thresholds = threshold, scored_threshold
     turned = turned_play(compliance * torque, angle, sign * loaded)
     if turned is not None:
-        return Flanks(
-            turned.datum_deg, compliance, turned.free_play_deg, width, *thresholds, turned
-        )
-    return Flanks(datum, compliance, max(play, 0.0), width, *thresholds)
+        datum, play = turned.datum_deg, turned.free_play_deg
+    return Flanks(datum, compliance, max(play, 0.0), width, threshold, scored_threshold, turned)
