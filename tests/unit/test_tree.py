@@ -77,9 +77,11 @@ STAGES = {
     "verification": DECIDED | {"verify", "change"},
     "effects_found": DECIDED,
     "remainder": DECIDED | {"verify", "verification"},
+    "model_error_table": DECIDED | {"verify", "verification", "repair"},
     "finish": DECIDED | {"verification", "repair"},
     "compose": DECIDED
-    | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility", "finish"},
+    | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility", "finish"}
+    | {"model_error_table"},
 }
 
 

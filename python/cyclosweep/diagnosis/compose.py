@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.finish import finished
 from cyclosweep.diagnosis.identify.alarm import probability
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import hidden_effects
+from cyclosweep.diagnosis.model_error_table import learned_in_words
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.plausibility import doubts
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -146,7 +147,7 @@ def _answer(
         stationary=verified.drift is None and verified.change is None,
         drift=verified.drift,
         change=verified.change,
-        findings=_findings(concluded, verified),
+        findings=_findings(concluded, repaired, verified),
     )
     if verified.change is not None:
         answer = _with_range(answer, verified.change)
@@ -311,16 +312,21 @@ def _repair(repaired: RepairedModel, verified: Verification) -> Repair:
         holdout=held.label,
         blocks=held.blocks,
         stand_ins=repaired.stand_ins,
+        model_error=repaired.learned,
     )
 
 
-def _findings(concluded: Conclusion, verified: Verification) -> tuple[Finding, ...]:
+def _findings(
+    concluded: Conclusion, repaired: RepairedModel, verified: Verification
+) -> tuple[Finding, ...]:
     """What the measured loops show.
 
     Parameters
     ----------
     concluded : Conclusion
         Verdict and accepted structure.
+    repaired : RepairedModel
+        The model before and after the repair.
     verified : Verification
         What held-out data and synthetic twins say.
 
@@ -329,7 +335,10 @@ def _findings(concluded: Conclusion, verified: Verification) -> tuple[Finding, .
     tuple of Finding
     """
     unsteady = verified.drift is not None
-    return concluded.accepted.fit.findings(concluded.repetition, unsteady=unsteady)
+    found = concluded.accepted.fit.findings(concluded.repetition, unsteady=unsteady)
+    if repaired.learned is None:
+        return found
+    return *found, Finding(topic="model error", text=learned_in_words(repaired.learned))
 
 
 def _rated_torque(drive: Drive, recording: Recording) -> float:

@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_of
 from cyclosweep.diagnosis.locate import locate
+from cyclosweep.diagnosis.model_error_table import with_error_table
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.refuse import (
@@ -120,4 +121,5 @@ def _run_stages(
     regions = locate(concluded)
     repaired = repair(concluded, drive)
     verified = verify(concluded, full=full, say=say)
+    repaired = with_error_table(concluded, repaired, verified)
     return compose(drive, concluded, regions, repaired, verified)

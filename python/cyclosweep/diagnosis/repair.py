@@ -7,7 +7,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.result import Baseline, CalibratedParameter
+from cyclosweep.result import Baseline, CalibratedParameter, LearnedError
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
@@ -34,6 +34,8 @@ class RepairedModel:
         Twist of every sample of the recording by both [deg].
     stand_ins : tuple of str
         Effects of the model whose laws were not found to hold.
+    learned : LearnedError or None
+        What is said of the table of what the effects miss; None where the model has none.
     """
 
     model: Model
@@ -42,6 +44,7 @@ class RepairedModel:
     before_deg: Floats
     after_deg: Floats
     stand_ins: tuple[str, ...] = ()
+    learned: LearnedError | None = None
 
 
 def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:

@@ -20,6 +20,7 @@ from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.proof import (
     HeldOutBlock,
+    LearnedError,
     NextExperiment,
     Repair,
     SelfCheck,
@@ -43,6 +44,7 @@ __all__ = [
     "FoundEffect",
     "HeldOutBlock",
     "Hypothesis",
+    "LearnedError",
     "Mismatch",
     "NextExperiment",
     "NoiseEstimate",

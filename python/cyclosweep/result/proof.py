@@ -54,15 +54,33 @@ class HeldOutBlock(Part):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class LearnedError(Part):
+    """What the effects of a repaired model miss at the same state of load: a table of the model."""
+
+    rms_deg: float
+    """Root mean square of the table over the fitted readings [deg]."""
+    repeats: float
+    """Share of its variance that is the same in another pass of the same loads; from one pass, in
+    the next cell of torque."""
+    passes: int
+    """Most passes of the same loads."""
+    holdout_rmse_deg: float | None = field(default=None, metadata=LEFT_OUT)
+    """Root mean square error on runs that were held out, crossings of the play included [deg]."""
+    holdout_without_deg: float | None = field(default=None, metadata=LEFT_OUT)
+    """The same without the table [deg]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Repair(Part):
     """The published model with the accepted effects added and calibrated again."""
 
     parameters: Mapping[str, CalibratedParameter] = field(default_factory=dict)
     """Calibrated parameters by name."""
     rmse_deg: float | None = None
-    """Root mean square error on the fitted data [deg]."""
+    """Root mean square error of the effects on the fitted data [deg]."""
     holdout_rmse_deg: float | None = None
-    """Root mean square error on data that were not fitted [deg]; 0 where it was not computed."""
+    """Root mean square error of the effects on data that were not fitted [deg]; 0 where it was not
+    computed. What ``model_error`` adds is not in it."""
     holdout: str = ""
     """What was held out."""
     blocks: tuple[HeldOutBlock, ...] = ()
@@ -70,6 +88,8 @@ class Repair(Part):
     stand_ins: tuple[str, ...] = ()
     """Effects of the repaired model that are not named: their laws were not found to hold, and
     stand in for others of their class."""
+    model_error: LearnedError | None = field(default=None, metadata=LEFT_OUT)
+    """What they miss at the same state of load, where that is known."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -21,6 +21,7 @@ from cyclosweep.simulation.json_fields import (
     object_of,
     text_of,
 )
+from cyclosweep.simulation.model_error import ModelError
 from cyclosweep.simulation.train_spring import drag_time_s, spring_of
 
 __all__ = ["SCHEMA", "EffectValue", "Model", "linear_twist"]
@@ -59,6 +60,10 @@ class Model:
         What a user of the model should know, one sentence each.
     elastic_curve : ElasticCurve or None
         Twist over torque beyond the free play, instead of the line.
+    model_error : ModelError or None
+        What line and effects miss at the same state of load, learned from a recording. A forecast
+        of the twist adds it; a torque for a given twist and a spring of a torsional train leave it
+        out.
     """
 
     compliance_deg_per_nm: float
@@ -71,6 +76,7 @@ class Model:
     torque_zero_nm: float = 0.0
     notes: tuple[str, ...] = field(default=())
     elastic_curve: ElasticCurve | None = None
+    model_error: ModelError | None = None
 
     def __post_init__(self) -> None:
         numbers = ("compliance_deg_per_nm", "free_play_deg", "datum_deg", "torque_zero_nm")
@@ -242,6 +248,8 @@ class Model:
         }
         if self.elastic_curve is not None:
             content["elastic_curve"] = self.elastic_curve.as_dict()
+        if self.model_error is not None:
+            content["model_error"] = self.model_error.as_list()
         return json.dumps(content, indent=1)
 
     @classmethod
@@ -289,6 +297,7 @@ class Model:
         entries = list_of(content, "effects")
         notes = list_of(content, "notes")
         curve = object_of(content, "elastic_curve", {})
+        missed = list_of(content, "model_error")
         return cls(
             compliance_deg_per_nm=compliance,
             free_play_deg=number_of(base, "free_play_deg"),
@@ -303,4 +312,5 @@ class Model:
             drive=text_of(content, "drive", ""),
             notes=tuple(text_of({"note": note}, "note") for note in notes),
             elastic_curve=ElasticCurve.from_dict(curve) if curve else None,
+            model_error=ModelError.from_list(missed) if missed else None,
         )

@@ -190,7 +190,11 @@ def predict_history(model: Model, programme: Recording) -> History:
     History
         n samples with the predicted path.
     """
-    return settle(model, history_of(programme, model))
+    settled = settle(model, history_of(programme, model))
+    if model.model_error is None:
+        return settled
+    missed = model.model_error.twist(settled)
+    return settled.with_state(angle_deg=settled.angle_deg + missed)
 
 
 def settle(

@@ -6,6 +6,7 @@ import itertools
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -95,7 +96,7 @@ def forecast(found: Diagnosis) -> Mapping[str, float]:
     -------
     mapping
         ``forecast_deg``, ``floor_deg`` and their ratio ``over_floor``, on loaded readings;
-        ``repeats``, the correlation of what the model leaves on the two ramps, and
+        ``repeats``, the correlation of what its named effects leave on the two ramps, and
         ``repeating_deg``, how large what repeats is.
     """
     loops = loops_of(found.recording)
@@ -104,11 +105,10 @@ def forecast(found: Diagnosis) -> Mapping[str, float]:
     floor = loaded_rms(template - loops.angle_deg, loops, SECOND, free_datum=False)
     if found.model is None:
         return {"floor_deg": floor}
-    predicted = cs.simulate(found.model, found.recording).angle_deg
-    assert predicted is not None
-    error = predicted - loops.angle_deg
-    ahead = loaded_rms(error, loops, SECOND, free_datum=False)
-    correlation, size = _repeating(loops, error)
+    ahead = loaded_rms(_error(found.model, found, loops), loops, SECOND, free_datum=False)
+    # A table of what the effects miss is no name: what repeats beside the names is asked.
+    named = replace(found.model, model_error=None)
+    correlation, size = _repeating(loops, _error(named, found, loops))
     return {
         "forecast_deg": ahead,
         "floor_deg": floor,
@@ -116,6 +116,13 @@ def forecast(found: Diagnosis) -> Mapping[str, float]:
         "repeats": correlation,
         "repeating_deg": size,
     }
+
+
+def _error(model: cs.Model, found: Diagnosis, loops: Loops) -> NDArray[np.float64]:
+    """Simulated less measured angle of all readings [deg]."""
+    predicted = cs.simulate(model, found.recording).angle_deg
+    assert predicted is not None
+    return predicted - loops.angle_deg
 
 
 def _repeating(loops: Loops, error: NDArray[np.float64]) -> tuple[float, float]:

@@ -1,0 +1,180 @@
+"""What the laws of a model miss: a table by direction and torque, in a forecast and in a file."""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.model import EffectValue
+from cyclosweep.simulation.model_error import ErrorBranch, LoadPath, ModelError
+from cyclosweep.simulation.simulate import predict_history
+
+TOP_NM = 20.0
+PLAIN = cs.Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, drive="reference-87")
+NODES = np.linspace(-19.0, 19.0, 77)
+
+
+def bumps(torque: Floats, phase: float = 0.0) -> Floats:
+    """Error of a few waves over the range of the torque [deg]."""
+    return np.asarray(0.5 * np.sin(0.8 * torque + phase))
+
+
+def branch(direction: Any, from_nm: float, phase: float = 0.0) -> ErrorBranch:
+    return ErrorBranch(direction, from_nm, tuple(NODES), tuple(bumps(NODES, phase)))
+
+
+TABLE = ModelError((branch("falling", TOP_NM), branch("rising", -TOP_NM, 1.0)))
+KNOWING = replace(PLAIN, model_error=TABLE)
+
+
+def loop(top_nm: float, loops: int = 1, **columns: Any) -> cs.Recording:
+    """Loops from zero to the top, to minus the top and back, 0.1 N m a reading."""
+    path = np.concatenate([np.linspace(0.1, top_nm, 200)] + [
+        np.concatenate([np.linspace(top_nm, -top_nm, 400), np.linspace(-top_nm, top_nm, 400)])
+        for _ in range(loops)
+    ])  # fmt: skip
+    return cs.Recording.from_arrays(path, **columns)
+
+
+def missed(programme: cs.Recording) -> Floats:
+    """What the table adds to a forecast."""
+    with_table = cs.simulate(KNOWING, programme).angle_deg
+    without = cs.simulate(PLAIN, programme).angle_deg
+    assert with_table is not None
+    assert without is not None
+    return with_table - without
+
+
+def test_branches_begin_where_the_torque_turns() -> None:
+    path = LoadPath.of(predict_history(PLAIN, loop(TOP_NM)))
+    assert np.unique(path.branch).tolist() == [0, 1, 2]
+    assert [path.from_nm[path.branch == k][5] for k in range(3)] == [0.0, TOP_NM, -TOP_NM]
+    assert [bool(path.rising[path.branch == k].all()) for k in (0, 2)] == [True, True]
+    assert not path.rising[path.branch == 1].any()
+
+
+def test_a_run_that_follows_without_a_break_continues_its_branch() -> None:
+    torque = np.r_[np.linspace(-20, 0, 50), np.linspace(0.4, 20, 50)]
+    run = np.repeat([1, 2], 50)
+    for history, starts in (("continuous", [0.0]), (None, [0.0, 0.0])):
+        columns = {} if history is None else {"history": history}
+        programme = cs.Recording.from_arrays(torque, run=run, **columns)
+        path = LoadPath.of(predict_history(PLAIN, programme))
+        assert [path.from_nm[path.branch == k][0] for k in np.unique(path.branch)] == starts
+
+
+def test_same_loop_has_the_errors_of_the_table() -> None:
+    programme = loop(TOP_NM)
+    torque, added = programme.torque_nm, missed(programme)
+    inside = np.abs(torque) < 18.9
+    falling = np.arange(len(torque)) - 200
+    down, up = inside & (falling >= 0) & (falling < 400), inside & (falling >= 405)
+    assert added[down] == pytest.approx(bumps(torque[down]), abs=0.03)
+    assert added[up] == pytest.approx(bumps(torque[up], 1.0), abs=0.03)
+    # The first loading begins at rest, not at a reversal: its start is another one, at first.
+    first = (falling < 0) & inside
+    assert np.abs(added[first & (torque < 2.0)]).max() < 1e-3
+
+
+def test_errors_fade_on_a_loop_that_turns_elsewhere_and_beyond_the_torques_of_the_table() -> None:
+    small = loop(0.5 * TOP_NM)
+    turned = np.abs(small.torque_nm[200:260] - 0.5 * TOP_NM) < 2.0
+    assert np.abs(missed(small)[200:260][turned]).max() < 0.05
+    assert np.abs(missed(small)).max() < np.abs(missed(loop(TOP_NM))).max()
+    large = loop(2.0 * TOP_NM)
+    far = np.abs(large.torque_nm) > 1.9 * TOP_NM
+    assert np.abs(missed(large)[far]).max() < 0.01
+
+
+def test_torque_for_a_twist_leaves_the_table_out() -> None:
+    programme = cs.simulate(PLAIN, loop(TOP_NM))
+    assert cs.simulate(KNOWING, programme, "torque").torque_nm == pytest.approx(
+        cs.simulate(PLAIN, programme, "torque").torque_nm
+    )
+
+
+def test_file_gives_back_the_table() -> None:
+    again = cs.Model.from_json(json.loads(KNOWING.to_json()))
+    assert again.model_error == TABLE
+    assert "model_error" not in json.loads(PLAIN.to_json())
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        (
+            "direction",
+            "up",
+            "model_error 1: direction: found 'up', expected one of rising, falling",
+        ),
+        ("torque_nm", [1.0, 0.0], "model_error 1: torque_nm: expected numbers that rise"),
+        ("error_deg", [0.1], "model_error 1: found 2 torques and 1 errors"),
+        ("error_deg", [0.1, "x"], 'model_error 1: error_deg 2: found "x", expected a number'),
+        ("from_nm", None, "model_error 1: from_nm: "),
+    ],
+)
+def test_a_table_that_is_none_is_one_line(key: str, value: Any, words: str) -> None:
+    content = json.loads(KNOWING.to_json())
+    entry = {"direction": "rising", "from_nm": 0.0, "torque_nm": [0.0, 1.0], "error_deg": [0, 1]}
+    content["model_error"] = [entry | {key: value}]
+    with pytest.raises(cs.InputError) as raised:
+        cs.Model.from_json(content)
+    assert words in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+SLIP = {"slip_deg": 3.0, "scatter": 0.3}
+SEEN = replace(PLAIN, effects=(EffectValue("friction_hysteresis", SLIP, (2.0,)),))
+
+
+def measured(size_deg: float, *, same: bool, noise_deg: float = 0.02) -> cs.Recording:
+    """Four runs of two loops with friction and an error that no law has; the last is held out.
+
+    The error is the same in every run, or each run has its own.
+    """
+    rng = np.random.default_rng(5)
+    one = loop(TOP_NM, 2).torque_nm[::4]
+    torque, run = np.tile(one, 4), np.repeat([1, 2, 3, 4], len(one))
+    programme = cs.Recording.from_arrays(
+        torque, run=run, time_s=np.arange(float(len(torque))), holdout_runs=(4,),
+        drive="reference-87",
+    )  # fmt: skip
+    angle = cs.simulate(SEEN, programme).angle_deg
+    assert angle is not None
+    error = np.zeros(len(torque))
+    for number in range(1, 5):
+        waves = np.random.default_rng(1 if same else number)
+        here = run == number
+        for order in (0.9, 1.3, 1.7):
+            phase = waves.uniform(0.0, 2.0 * np.pi, 2)
+            rising = np.gradient(torque[here]) > 0
+            error[here] += np.sin(order * torque[here] + np.where(rising, *phase))
+    noise = rng.normal(0.0, noise_deg, len(torque))
+    return programme.with_angle(angle + size_deg / np.sqrt(1.5) * error + noise)
+
+
+def test_what_repeats_is_learned_and_forecasts_a_run_that_was_held_out() -> None:
+    found = cs.diagnose(measured(0.4, same=True), full=False)
+    learned = found.answer.repaired.model_error
+    assert learned is not None
+    assert learned.repeats > 0.9
+    assert learned.passes >= 6
+    assert learned.rms_deg == pytest.approx(0.4, rel=0.3)
+    assert learned.holdout_rmse_deg is not None
+    assert learned.holdout_without_deg is not None
+    assert learned.holdout_rmse_deg < 0.5 * learned.holdout_without_deg
+    said = [finding.text for finding in found.answer.findings if finding.topic == "model error"]
+    assert len(said) == 1
+    assert f"{learned.holdout_rmse_deg:.3g} deg with it" in said[0]
+
+
+@pytest.mark.parametrize(("size_deg", "same"), [(0.4, False), (0.0, True)])
+def test_what_does_not_repeat_and_what_is_noise_is_not_learned(size_deg: float, same: bool) -> None:
+    found = cs.diagnose(measured(size_deg, same=same), full=False)
+    assert found.answer.repaired.model_error is None
+    assert found.model is not None
+    assert found.model.model_error is None
