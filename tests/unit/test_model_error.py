@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT
+from cyclosweep.diagnosis.model_error_table import repeatability
 from cyclosweep.simulation.model import EffectValue
-from cyclosweep.simulation.model_error import ErrorBranch, LoadPath, ModelError
+from cyclosweep.simulation.model_error import ErrorBranch, ModelError, load_branches
 from cyclosweep.simulation.simulate import predict_history
+from tests.support.arrays import Floats, present
 
 TOP_NM = 20.0
 PLAIN = cs.Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, drive="reference-87")
@@ -27,7 +29,7 @@ def branch(direction: Any, from_nm: float, phase: float = 0.0) -> ErrorBranch:
     return ErrorBranch(direction, from_nm, tuple(NODES), tuple(bumps(NODES, phase)))
 
 
-TABLE = ModelError((branch("falling", TOP_NM), branch("rising", -TOP_NM, 1.0)))
+TABLE = ModelError((branch("falling", TOP_NM), branch("rising", -TOP_NM, 1.0)), TOP_NM)
 KNOWING = replace(PLAIN, model_error=TABLE)
 
 
@@ -42,29 +44,41 @@ def loop(top_nm: float, loops: int = 1, **columns: Any) -> cs.Recording:
 
 def missed(programme: cs.Recording) -> Floats:
     """What the table adds to a forecast."""
-    with_table = cs.simulate(KNOWING, programme).angle_deg
-    without = cs.simulate(PLAIN, programme).angle_deg
-    assert with_table is not None
-    assert without is not None
-    return with_table - without
+    with_table, without = (present(cs.simulate(m, programme).angle_deg) for m in (KNOWING, PLAIN))
+    return np.asarray(with_table - without)
+
+
+def branches(programme: cs.Recording) -> list[tuple[float, str, int]]:
+    """Start, direction and number of samples of every branch."""
+    found = load_branches(predict_history(PLAIN, programme), TOP_NM)
+    return [(b.from_nm, b.direction, b.samples.stop - b.samples.start) for b in found]
 
 
 def test_branches_begin_where_the_torque_turns() -> None:
-    path = LoadPath.of(predict_history(PLAIN, loop(TOP_NM)))
-    assert np.unique(path.branch).tolist() == [0, 1, 2]
-    assert [path.from_nm[path.branch == k][5] for k in range(3)] == [0.0, TOP_NM, -TOP_NM]
-    assert [bool(path.rising[path.branch == k].all()) for k in (0, 2)] == [True, True]
-    assert not path.rising[path.branch == 1].any()
+    expected = [(0.0, "rising", 200), (TOP_NM, "falling", 400), (-TOP_NM, "rising", 400)]
+    assert branches(loop(TOP_NM)) == expected
+
+
+def test_a_load_that_is_there_at_once_was_put_on() -> None:
+    torque = np.r_[np.linspace(20.0, 5.0, 40), np.linspace(5.5, 20.0, 30)]
+    expected = [(0.0, "rising", 1), (20.0, "falling", 39), (5.0, "rising", 30)]
+    assert branches(cs.Recording.from_arrays(torque)) == expected
+
+
+@pytest.mark.parametrize("torque", [[], [3.0], [2.0] * 9, [0.0] * 5])
+def test_every_programme_has_branches_and_a_forecast(torque: list[float]) -> None:
+    programme = cs.Recording.from_arrays(torque)
+    assert sum(count for *_, count in branches(programme)) == len(torque)
+    assert np.isfinite(missed(programme)).all()
 
 
 def test_a_run_that_follows_without_a_break_continues_its_branch() -> None:
     torque = np.r_[np.linspace(-20, 0, 50), np.linspace(0.4, 20, 50)]
     run = np.repeat([1, 2], 50)
-    for history, starts in (("continuous", [0.0]), (None, [0.0, 0.0])):
-        columns = {} if history is None else {"history": history}
-        programme = cs.Recording.from_arrays(torque, run=run, **columns)
-        path = LoadPath.of(predict_history(PLAIN, programme))
-        assert [path.from_nm[path.branch == k][0] for k in np.unique(path.branch)] == starts
+    broken = cs.Recording.from_arrays(torque, run=run)
+    whole = cs.Recording.from_arrays(torque, run=run, history="continuous")
+    assert branches(whole) == [(0.0, "falling", 1), (-20.0, "rising", 99)]
+    assert branches(broken)[-1] == (0.0, "rising", 50)
 
 
 def test_same_loop_has_the_errors_of_the_table() -> None:
@@ -90,6 +104,30 @@ def test_errors_fade_on_a_loop_that_turns_elsewhere_and_beyond_the_torques_of_th
     assert np.abs(missed(large)[far]).max() < 0.01
 
 
+def test_forecast_does_not_depend_on_loads_that_follow() -> None:
+    torque = loop(TOP_NM).torque_nm
+    alone = missed(cs.Recording.from_arrays(torque))
+    followed = missed(cs.Recording.from_arrays(np.r_[torque, np.linspace(20.0, 90.0, 300)]))
+    np.testing.assert_array_equal(followed[: len(torque)], alone)
+
+
+def test_error_does_not_jump_where_a_small_loop_turns() -> None:
+    torque = np.r_[np.linspace(0.1, 20, 200), np.linspace(20, 8, 240), np.linspace(8, 20, 240)]
+    added = missed(cs.Recording.from_arrays(torque))
+    assert np.abs(np.diff(added[205:640])).max() < 0.06
+    assert abs(added[439]) > 0.03
+
+
+def test_table_of_one_position_says_nothing_at_another() -> None:
+    known = replace(PLAIN, model_error=replace(TABLE, crank_deg=358.0))
+    for crank_deg, is_used in ((1.0, True), (358.0, True), (10.0, False), (None, True)):
+        torque = loop(TOP_NM).torque_nm
+        crank = None if crank_deg is None else np.full(len(torque), crank_deg)
+        programme = cs.Recording.from_arrays(torque, crank_deg=crank)
+        angle, plain = (present(cs.simulate(m, programme).angle_deg) for m in (known, PLAIN))
+        assert bool(np.abs(angle - plain).max() > 0.1) is is_used
+
+
 def test_torque_for_a_twist_leaves_the_table_out() -> None:
     programme = cs.simulate(PLAIN, loop(TOP_NM))
     assert cs.simulate(KNOWING, programme, "torque").torque_nm == pytest.approx(
@@ -109,18 +147,22 @@ def test_file_gives_back_the_table() -> None:
         (
             "direction",
             "up",
-            "model_error 1: direction: found 'up', expected one of rising, falling",
+            "model_error: branch 1: direction: found 'up', expected one of rising, falling",
         ),
-        ("torque_nm", [1.0, 0.0], "model_error 1: torque_nm: expected numbers that rise"),
-        ("error_deg", [0.1], "model_error 1: found 2 torques and 1 errors"),
-        ("error_deg", [0.1, "x"], 'model_error 1: error_deg 2: found "x", expected a number'),
-        ("from_nm", None, "model_error 1: from_nm: "),
+        ("torque_nm", [1.0, 0.0], "model_error: branch 1: torque_nm: expected numbers that rise"),
+        ("error_deg", [0.1], "model_error: branch 1: found 2 torques and 1 errors"),
+        (
+            "error_deg",
+            [0.1, "x"],
+            'model_error: branch 1: error_deg 2: found "x", expected a number',
+        ),
+        ("from_nm", None, "model_error: branch 1: from_nm: "),
     ],
 )
 def test_a_table_that_is_none_is_one_line(key: str, value: Any, words: str) -> None:
     content = json.loads(KNOWING.to_json())
     entry = {"direction": "rising", "from_nm": 0.0, "torque_nm": [0.0, 1.0], "error_deg": [0, 1]}
-    content["model_error"] = [entry | {key: value}]
+    content["model_error"] = {"largest_torque_nm": 1.0, "branches": [entry | {key: value}]}
     with pytest.raises(cs.InputError) as raised:
         cs.Model.from_json(content)
     assert words in str(raised.value)
@@ -143,8 +185,7 @@ def measured(size_deg: float, *, same: bool, noise_deg: float = 0.02) -> cs.Reco
         torque, run=run, time_s=np.arange(float(len(torque))), holdout_runs=(4,),
         drive="reference-87",
     )  # fmt: skip
-    angle = cs.simulate(SEEN, programme).angle_deg
-    assert angle is not None
+    angle = present(cs.simulate(SEEN, programme).angle_deg)
     error = np.zeros(len(torque))
     for number in range(1, 5):
         waves = np.random.default_rng(1 if same else number)
@@ -162,7 +203,7 @@ def test_what_repeats_is_learned_and_forecasts_a_run_that_was_held_out() -> None
     learned = found.answer.repaired.model_error
     assert learned is not None
     assert learned.repeats > 0.9
-    assert learned.passes >= 6
+    assert (learned.between, learned.compared) == ("runs", 3)
     assert learned.rms_deg == pytest.approx(0.4, rel=0.3)
     assert learned.holdout_rmse_deg is not None
     assert learned.holdout_without_deg is not None
@@ -170,6 +211,39 @@ def test_what_repeats_is_learned_and_forecasts_a_run_that_was_held_out() -> None
     said = [finding.text for finding in found.answer.findings if finding.topic == "model error"]
     assert len(said) == 1
     assert f"{learned.holdout_rmse_deg:.3g} deg with it" in said[0]
+
+
+def curves(rng: np.random.Generator, runs: int, common: float) -> list[Floats]:
+    """Errors of two branches in some runs, of which a share of the variance is common."""
+
+    def waves() -> Floats:
+        phases = rng.uniform(0.0, 2.0 * np.pi, 3)
+        orders = np.array([1.4, 2.0, 2.6])[:, None]
+        angle = 2.0 * np.pi * orders * np.linspace(0.0, 1.0, 101) + phases[:, None]
+        return np.asarray(np.sin(angle).sum(axis=0))
+
+    return [
+        np.sqrt(common) * waves() + np.sqrt(1.0 - common) * np.array([waves() for _ in range(runs)])
+        for _ in range(2)
+    ]
+
+
+@pytest.mark.parametrize("runs", [2, 3, 6])
+def test_smooth_errors_that_have_nothing_in_common_seldom_seem_to_repeat(runs: int) -> None:
+    rng = np.random.default_rng(3)
+    unlike = [repeatability(curves(rng, runs, 0.0)) for _ in range(200)]
+    assert np.mean([share >= LEAST_REPEAT for share in unlike if share is not None]) < 0.1
+    alike = [repeatability(curves(rng, runs, 0.8)) for _ in range(200)]
+    assert np.mean([share >= LEAST_REPEAT for share in alike if share is not None]) > 0.9
+    assert np.median([share for share in alike if share is not None]) == pytest.approx(0.8, abs=0.1)
+
+
+def test_too_few_places_say_nothing() -> None:
+    few = np.full((3, 101), np.nan)
+    few[:, 40:50] = np.sin(np.arange(10.0))
+    assert repeatability([few]) is None
+    few[:, 30:50] = np.sin(np.arange(20.0))
+    assert repeatability([few]) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(("size_deg", "same"), [(0.4, False), (0.0, True)])

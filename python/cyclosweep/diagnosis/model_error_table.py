@@ -1,8 +1,7 @@
 """The table of what the laws of a repaired model miss at the same state of load, and its worth."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
@@ -13,19 +12,25 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
-from cyclosweep.result import LearnedError
+from cyclosweep.result import Between, LearnedError
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats, History, Ints
+from cyclosweep.simulation.effects.mesh_range import position_count
 from cyclosweep.simulation.model_error import (
-    DIRECTIONS,
     SAME_START,
+    Direction,
     ErrorBranch,
-    LoadPath,
     ModelError,
+    load_branches,
 )
 
-CELL = 0.02
-"""Width of a cell of torque over the largest torque."""
+CELLS = 50
+"""Cells of torque from zero to the largest."""
+BY_CHANCE = 1.0
+"""Standard errors of the correlation of errors that have nothing in common, from which they are
+taken to have: five of six stay below. Among smooth errors of two runs that had nothing in common a
+twentieth was taken for one that repeats, of those with four fifths of the variance in common
+nineteen of twenty."""
 ABOVE_NOISE = 2.0
 """Size of what is learned from a single pass over the noise, from which it is model error: noise
 that drifts along a pass looks the same as an error of the laws."""
@@ -33,27 +38,53 @@ ROUNDS = 12
 """Most rounds in which the simulation settles, as in a forecast."""
 WITH_EFFECTS = ("IDENTIFIED", "MOSTLY_EXPLAINED", "AMBIGUOUS", "UNKNOWN_PHYSICS")
 """Verdicts that say that something is missing."""
+BETWEEN: dict[Between, str] = {
+    "runs": "between {count} runs",
+    "passes": "between {count} passes of the same loads in one run",
+    "loads": "between neighbouring loads; whether it repeats, one pass cannot show",
+}
+"""Between what an error repeats, in words."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Pass:
-    """Mean error in each cell of torque along one branch.
+    """Error along one branch, at multiples of a cell of torque.
 
     Attributes
     ----------
+    run : int
+        Run of the branch.
+    direction : {"rising", "falling"}
+        Whether the torque rises or falls.
     from_nm : float
-        Torque at which the branch began [N m].
-    cell : ndarray of int, shape (k,)
-        Numbers of the cells, rising.
-    torque_nm, error_deg, weight : ndarray, shape (k,)
-        Mean torque [N m], mean error [deg] and readings of each.
+        Torque at which it begins [N m].
+    error_deg : ndarray, shape (2 CELLS + 1,)
+        Measured less simulated twist [deg]; NaN at torques that the branch does not pass.
     """
 
+    run: int
+    direction: Direction
     from_nm: float
-    cell: Ints
-    torque_nm: Floats
     error_deg: Floats
-    weight: Floats
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Group:
+    """Passes of one direction that begin at about the same torque.
+
+    Attributes
+    ----------
+    direction : {"rising", "falling"}
+    from_nm : float
+        Their mean start [N m].
+    passes, runs : ndarray, shape (k, 2 CELLS + 1)
+        Error of every pass, and the mean of each run [deg].
+    """
+
+    direction: Direction
+    from_nm: float
+    passes: Floats
+    runs: Floats
 
 
 def with_error_table(
@@ -81,23 +112,25 @@ def with_error_table(
         return repaired
     problem, noise = concluded.search.problem, concluded.search.noise
     path = predicted_path(problem, repaired.model, ROUNDS)
-    error = problem.angle_deg - path.angle_deg
-    passes = _passes(problem, path, error)
-    repeats, single = _repeatability(passes)
-    if repeats is None or repeats < LEAST_REPEAT:
+    used = np.isin(problem.history.run, problem.history.run[problem.fitted])
+    largest = float(np.abs(path.applied_nm[used]).max())
+    passes = list(_passes(problem, path, largest))
+    groups = list(_groups(passes, SAME_START * largest))
+    repeats, between = _repeats(groups)
+    if repeats < LEAST_REPEAT:
         return repaired
-    table = ModelError(tuple(_branches(passes, repeats)))
+    branches = tuple(_branches(groups, repeats, between, largest))
+    table = ModelError(branches, largest, _only_position(problem))
     missed = table.twist(path)
-    size, held = (
-        problem.rms_error(problem.angle_deg - missed, problem.fitted),
-        problem.whole_held_out,
-    )
-    if single and not noise.structured and size < ABOVE_NOISE * noise.spread_deg:
+    held = problem.whole_held_out
+    size = problem.rms_error(problem.angle_deg - missed, problem.fitted)
+    if between == "loads" and not noise.structured and size < ABOVE_NOISE * noise.spread_deg:
         return repaired
     learned = LearnedError(
         rms_deg=size,
         repeats=repeats,
-        passes=max(map(len, passes.values())),
+        between=between,
+        compared=max(len(group.passes if between == "passes" else group.runs) for group in groups),
         holdout_rmse_deg=finite(problem.rms_error(path.angle_deg + missed, held)),
         holdout_without_deg=finite(problem.rms_error(path.angle_deg, held)),
     )
@@ -115,12 +148,7 @@ def learned_in_words(learned: LearnedError) -> str:
     -------
     str
     """
-    alike = f"(correlation {learned.repeats:.2f})"
-    among = (
-        f"in {learned.passes} passes of the same loads {alike}"
-        if learned.passes > 1
-        else f"at neighbouring loads {alike}; whether it repeats, one pass of them cannot show"
-    )
+    among = BETWEEN[learned.between].format(count=learned.compared)
     gain = ""
     if learned.holdout_rmse_deg is not None and learned.holdout_without_deg is not None:
         gain = (
@@ -128,9 +156,9 @@ def learned_in_words(learned: LearnedError) -> str:
             f"it and {learned.holdout_without_deg:.3g} deg without."
         )
     return (
-        f"The named effects miss {learned.rms_deg:.3g} deg rms at the same torque and direction, "
-        f"alike {among}. model.json holds it as a table beside the effects: it has no name, and it "
-        f"fades on loops that turn elsewhere.{gain}"
+        f"What the effects miss at the same torque and direction is {learned.rms_deg:.3g} deg rms, "
+        f"as far as it repeats (correlation {learned.repeats:.2f} {among}). It has no name; "
+        f"model.json holds it as a table, which fades on loops that turn elsewhere.{gain}"
     )
 
 
@@ -142,131 +170,204 @@ def _limited_by_laws(concluded: Conclusion, decision: Decision) -> bool:
     return counted or concluded.search.noise.structured or decision.unexplained
 
 
-def _passes(problem: Problem, path: History, error: Floats) -> dict[tuple[bool, int], list[_Pass]]:
-    """Errors of all branches by direction and the place at which the branch began.
+def _only_position(problem: Problem) -> float | None:
+    """Position of the mesh where all fitted rows have the same one; else None [deg]."""
+    crank = problem.history.crank_deg
+    if (
+        crank is None
+        or position_count(problem.history.with_state(crank_deg=crank[problem.fitted])) > 1
+    ):
+        return None
+    return float(np.median(crank[problem.fitted]))
+
+
+def _passes(problem: Problem, path: History, largest_nm: float) -> Iterator[_Pass]:
+    """Errors along every branch.
 
     Readings count that are fitted, in contact, and for which the simulation finds the same flank:
-    elsewhere the difference is a play, not an error of the laws.
+    elsewhere the difference is a play, not an error of the laws. The median over a cell does not
+    follow single readings that are far off.
 
     Parameters
     ----------
     problem : Problem
     path : History
         Simulated path along all rows.
-    error : ndarray, shape (n,)
-        Measured less simulated twist [deg].
+    largest_nm : float
+        Largest torque of the fitted runs [N m].
 
-    Returns
-    -------
-    dict
-        From whether the torque rises and a number of the start to the passes.
+    Yields
+    ------
+    _Pass
     """
-    load = LoadPath.of(path)
-    top = path.largest_torque_nm
     rows = problem.fitted & (path.side == problem.history.side)
-    cell: Ints = np.floor(path.applied_nm / (CELL * top)).astype(np.int64)
-    found: dict[tuple[bool, int], list[_Pass]] = {}
-    starts = _numbered(load.from_nm, SAME_START * top)
-    for branch in np.unique(load.branch[rows]):
-        here = np.flatnonzero(rows & (load.branch == branch))
-        cells, which = np.unique(cell[here], return_inverse=True)
-        weight = np.asarray(np.bincount(which, problem.weight[here]), dtype=np.float64)
-        torque, missed = (
-            np.bincount(which, problem.weight[here] * values[here]) / weight
-            for values in (path.applied_nm, error)
-        )
-        first = here[0]
-        key = bool(load.rising[first]), int(starts[first])
-        one = _Pass(float(load.from_nm[first]), cells, torque, missed, weight)
-        found.setdefault(key, []).append(one)
-    return found
+    error = problem.angle_deg - path.angle_deg
+    place = path.applied_nm / largest_nm * CELLS
+    grid = np.arange(-CELLS, CELLS + 1)
+    for branch in load_branches(path, largest_nm):
+        here = np.arange(len(path))[branch.samples]
+        here = here[rows[here]]
+        if not len(here):
+            continue
+        parts = _by_cell(here, place)
+        at = np.array([place[part].mean() for part in parts])
+        missed = np.array([np.median(error[part]) for part in parts])
+        passed = (grid >= np.round(at[0])) & (grid <= np.round(at[-1]))
+        along = np.where(passed, np.interp(grid, at, missed), np.nan)
+        yield _Pass(int(path.run[here[0]]), branch.direction, branch.from_nm, along)
 
 
-def _numbered(values: Floats, near: float) -> Ints:
-    """Number of the group of each value; groups are farther apart than ``near``."""
-    order = np.sort(np.unique(values))
-    edges = order[1:][np.diff(order) > near]
-    return np.asarray(np.searchsorted(edges, values, side="right"), dtype=np.int64)
+def _by_cell(rows: Ints, place: Floats) -> list[Ints]:
+    """Rows in the order of their torque, split by cells."""
+    ordered = rows[np.argsort(place[rows], kind="stable")]
+    edges = np.flatnonzero(np.diff(np.round(place[ordered])) > 0) + 1
+    return np.split(ordered, edges)
 
 
-def _repeatability(
-    passes: dict[tuple[bool, int], list[_Pass]],
-) -> tuple[float | None, bool]:
-    """Share of the variance of the error that is the same at the same state of load.
-
-    Between passes of the same state where there are enough; else between neighbouring cells of a
-    pass, by which an error of the laws is told from white noise.
+def _groups(passes: Iterable[_Pass], near_nm: float) -> Iterator[_Group]:
+    """Passes by direction and the torque at which they begin.
 
     Parameters
     ----------
-    passes : dict
-        See `_passes`.
+    passes : iterable of _Pass
+    near_nm : float
+        Range of the starts of one group [N m].
+
+    Yields
+    ------
+    _Group
+    """
+    group: list[_Pass] = []
+    for each in [*sorted(passes, key=lambda p: (p.direction, p.from_nm)), None]:
+        first = group[0] if group else None
+        if first is not None and (
+            each is None
+            or each.direction != first.direction
+            or each.from_nm > first.from_nm + near_nm
+        ):
+            errors = np.array([one.error_deg for one in group])
+            run = np.array([one.run for one in group])
+            means = [_mean(errors[run == number]) for number in np.unique(run)]
+            start = float(np.mean([one.from_nm for one in group]))
+            yield _Group(first.direction, start, errors, np.array(means))
+            group = []
+        if each is not None:
+            group.append(each)
+
+
+def _mean(errors: Floats) -> Floats:
+    """Mean of rows over those that have a number there; NaN where none has."""
+    count = np.sum(np.isfinite(errors), axis=0)
+    return np.asarray(np.where(count > 0, np.nansum(errors, axis=0) / np.maximum(count, 1), np.nan))
+
+
+def _repeats(groups: list[_Group]) -> tuple[float, Between]:
+    """Share of the variance that repeats, between runs if they can be compared.
+
+    What passes of one run have in common need not be there in the next, and what neighbouring loads
+    have in common need not be there in the next pass.
+    """
+    of_runs = repeatability([group.runs for group in groups])
+    if of_runs is not None:
+        return of_runs, "runs"
+    passes = [group.passes for group in groups]
+    of_passes = repeatability(passes)
+    if of_passes is not None:
+        return of_passes, "passes"
+    return _of_neighbours(passes), "loads"
+
+
+def repeatability(groups: Iterable[Floats]) -> float | None:
+    """Share of the variance of curves that they have in common (intraclass correlation).
+
+    Parameters
+    ----------
+    groups : iterable of ndarray, shape (k, m)
+        Curves that should be alike; NaN where one has no value.
 
     Returns
     -------
-    share : float or None
-        None with too few cells to say.
-    single : bool
-        Whether it is that of neighbouring cells.
+    float or None
+        None with too few places at which curves can be compared. Zero where curves that have
+        nothing in common could be as alike.
     """
-    alike = [
-        pair for group in passes.values() for one, other in combinations(group, 2)
-        for pair in _common(one, other)
-    ]  # fmt: skip
-    single = len(alike) < FEWEST_CELLS
-    if single:
-        alike = [
-            (float(a), float(b))
-            for group in passes.values()
-            for each in group
-            for a, b in zip(each.error_deg[:-1], each.error_deg[1:], strict=True)
-        ]
-    if len(alike) < FEWEST_CELLS:
-        return None, single
-    first, second = np.array(alike).T
-    size = 0.5 * float(np.mean(first**2 + second**2))
-    return (float(np.mean(first * second)) / size if size > 0.0 else 0.0), single
+    common, size, neighbours, places, more = 0.0, 0.0, 0.0, 0, 0
+    for curves in groups:
+        known = np.isfinite(curves)
+        count = known.sum(axis=0)
+        at = count >= 2
+        value = np.where(known, curves, 0.0)[:, at]
+        square = np.sum(value**2, axis=0)
+        common += float(np.sum((value.sum(axis=0) ** 2 - square) / (count[at] * (count[at] - 1))))
+        size += float(np.sum(square / count[at]))
+        neighbours += float(np.sum(value[:, 1:] * value[:, :-1] / count[at][1:]))
+        places += int(at.sum())
+        more += int(np.sum(count[at] - 1))
+    if places < FEWEST_CELLS or size <= 0.0:
+        return None
+    share = common / size
+    # Neighbouring places are alike, so that they tell less than as many that are not (Bartlett's
+    # formula for the correlation of two first-order autoregressions).
+    alike = float(np.clip(neighbours / size, 0.0, 0.99)) ** 2
+    independent = more * (1.0 - alike) / (1.0 + alike)
+    return share if share > BY_CHANCE / np.sqrt(max(independent, 1e-9)) else 0.0
 
 
-def _common(one: _Pass, other: _Pass) -> Iterator[tuple[float, float]]:
-    """Errors of two passes in the cells of both."""
-    _, here, there = np.intersect1d(one.cell, other.cell, return_indices=True)
-    yield from zip(one.error_deg[here].tolist(), other.error_deg[there].tolist(), strict=True)
+def _of_neighbours(groups: Iterable[Floats]) -> float:
+    """Correlation of neighbouring places of the same curve, by which it is told from white noise.
+
+    Parameters
+    ----------
+    groups : iterable of ndarray, shape (k, m)
+        Curves; NaN where one has no value.
+
+    Returns
+    -------
+    float
+        Zero with too few places.
+    """
+    pairs = [np.stack([curves[:, 1:].ravel(), curves[:, :-1].ravel()]) for curves in groups]
+    if not pairs:
+        return 0.0
+    first, second = np.concatenate(pairs, axis=1)
+    both = np.isfinite(first * second)
+    if np.count_nonzero(both) < FEWEST_CELLS:
+        return 0.0
+    size = 0.5 * float(np.mean(first[both] ** 2 + second[both] ** 2))
+    return float(np.mean(first[both] * second[both])) / size if size > 0.0 else 0.0
 
 
-def _branches(passes: dict[tuple[bool, int], list[_Pass]], repeats: float) -> Iterator[ErrorBranch]:
+def _branches(
+    groups: Iterable[_Group], repeats: float, between: Between, largest_nm: float
+) -> Iterator[ErrorBranch]:
     """Expected error along each kind of branch.
 
     Parameters
     ----------
-    passes : dict
-        See `_passes`.
+    groups : iterable of _Group
     repeats : float
-        Share of the variance of a pass that is the same in another.
+        Share of the variance that is the same in another run, pass or load.
+    between : {"runs", "passes", "loads"}
+        Between what it was found.
+    largest_nm : float
+        Largest torque of the fitted runs [N m].
 
     Yields
     ------
     ErrorBranch
-        The mean over the passes, smaller by as much as they do not repeat: of a mean of n passes
-        the share n r / (1 + (n - 1) r) is expected again (Spearman and Brown).
+        The mean, smaller by as much as it does not repeat: of a mean of n the share
+        n r / (1 + (n - 1) r) is expected again (Spearman and Brown).
     """
-    for (rising, _), group in sorted(passes.items()):
-        which = np.unique(_joined(group, "cell"), return_inverse=True)[1]
-        count = np.asarray(np.bincount(which), dtype=np.float64)
-        weight = _joined(group, "weight")
-        moment = np.bincount(which, weight * _joined(group, "torque_nm"))
-        torque = np.asarray(moment / np.bincount(which, weight))
-        share = count * repeats / (1.0 + (count - 1) * repeats)
-        mean = np.asarray(np.bincount(which, _joined(group, "error_deg"))) / count
-        start = float(np.mean([each.from_nm for each in group]))
+    torque = np.arange(-CELLS, CELLS + 1) * (largest_nm / CELLS)
+    for group in groups:
+        curves = group.passes if between == "passes" else group.runs
+        count = np.sum(np.isfinite(curves), axis=0)
+        known = count > 0
+        share = count * repeats / (1.0 + (np.maximum(count, 1) - 1) * repeats)
+        error = share[known] * _mean(curves)[known]
         yield ErrorBranch(
-            DIRECTIONS[0] if rising else DIRECTIONS[1],
-            start,
-            tuple(float(f"{value:.6g}") for value in torque),
-            tuple(float(f"{value:.6g}") for value in share * mean),
+            group.direction,
+            group.from_nm,
+            tuple(float(f"{value:.9g}") for value in torque[known]),
+            tuple(float(f"{value:.6g}") for value in error),
         )
-
-
-def _joined(group: Sequence[_Pass], name: str) -> Floats:
-    """One column of all passes of a group."""
-    return np.concatenate([getattr(each, name) for each in group])

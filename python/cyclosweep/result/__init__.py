@@ -19,6 +19,7 @@ from cyclosweep.result.mismatch import Explained, Mismatch, Region
 from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.proof import (
+    Between,
     HeldOutBlock,
     LearnedError,
     NextExperiment,
@@ -33,6 +34,7 @@ __all__ = [
     "Answer",
     "Baseline",
     "BehaviourClass",
+    "Between",
     "Bound",
     "CalibratedParameter",
     "Doubt",

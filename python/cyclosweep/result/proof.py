@@ -2,9 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from cyclosweep.result.calibration import CalibratedParameter
 from cyclosweep.result.part import LEFT_OUT, Part
+
+Between = Literal["runs", "passes", "loads"]
+"""Between what an error repeats: runs, passes of one run, neighbouring loads of a single pass."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,10 +64,12 @@ class LearnedError(Part):
     rms_deg: float
     """Root mean square of the table over the fitted readings [deg]."""
     repeats: float
-    """Share of its variance that is the same in another pass of the same loads; from one pass, in
-    the next cell of torque."""
-    passes: int
-    """Most passes of the same loads."""
+    """Share of the variance of what the effects miss that is the same in another of ``between``."""
+    between: Between
+    """Whether it was found between runs, between passes of one run, or, from a single pass, between
+    neighbouring loads."""
+    compared: int
+    """Most runs or passes of the same loads."""
     holdout_rmse_deg: float | None = field(default=None, metadata=LEFT_OUT)
     """Root mean square error on runs that were held out, crossings of the play included [deg]."""
     holdout_without_deg: float | None = field(default=None, metadata=LEFT_OUT)

@@ -249,7 +249,7 @@ class Model:
         if self.elastic_curve is not None:
             content["elastic_curve"] = self.elastic_curve.as_dict()
         if self.model_error is not None:
-            content["model_error"] = self.model_error.as_list()
+            content["model_error"] = self.model_error.as_dict()
         return json.dumps(content, indent=1)
 
     @classmethod
@@ -297,7 +297,7 @@ class Model:
         entries = list_of(content, "effects")
         notes = list_of(content, "notes")
         curve = object_of(content, "elastic_curve", {})
-        missed = list_of(content, "model_error")
+        missed = object_of(content, "model_error", {})
         return cls(
             compliance_deg_per_nm=compliance,
             free_play_deg=number_of(base, "free_play_deg"),
@@ -312,5 +312,5 @@ class Model:
             drive=text_of(content, "drive", ""),
             notes=tuple(text_of({"note": note}, "note") for note in notes),
             elastic_curve=ElasticCurve.from_dict(curve) if curve else None,
-            model_error=ModelError.from_list(missed) if missed else None,
+            model_error=ModelError.from_dict(missed) if missed else None,
         )

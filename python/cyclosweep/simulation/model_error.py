@@ -7,7 +7,7 @@ calibration of computer models, J. R. Stat. Soc. B 63(3), 2001, as a table inste
 process).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Literal, Self
@@ -16,7 +16,7 @@ import numpy as np
 
 from cyclosweep.errors import InputError, one_of
 from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
-from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints
+from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.json_fields import list_of, number_of, object_of, text_of
 
 SAME_START = 0.05
@@ -25,60 +25,69 @@ MEMORY = 0.5
 """Distance of two starts over the way since, at which the start counts for a factor of e: a loop
 that has gone far has forgotten where it turned."""
 FADE = 0.1
-"""Distance beyond the ends of a branch over the largest torque, at which its error has fallen by a
-factor of e."""
+"""Way over the largest torque in which an error falls by a factor of e: beyond the ends of the
+table, and from a turning point on where the table has no branch that begins there."""
+SAME_POSITION_DEG = 5.0
+"""Distance of two positions of the mesh up to which they are the same [deg]."""
 
 Direction = Literal["rising", "falling"]
 DIRECTIONS: tuple[Direction, Direction] = ("rising", "falling")
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class LoadPath:
-    """Branches of a load history: from a turning point of the torque to the next.
+@dataclass(frozen=True, slots=True)
+class LoadBranch:
+    """Samples of a load history from a turning point of the torque to the next.
 
     Attributes
     ----------
-    branch : ndarray of int, shape (n,)
-        Number of the branch of each sample.
-    from_nm : ndarray, shape (n,)
-        Torque at which the branch of each sample began [N m]; zero where play, slip and creep
-        started afresh.
-    rising : ndarray of bool, shape (n,)
-        Whether the torque rises along the branch.
+    samples : slice
+        The samples: those after the first turning point, up to the second.
+    from_nm : float
+        Torque at which the branch begins [N m].
+    direction : {"rising", "falling"}
+        Whether the torque rises or falls.
+    fresh : bool
+        The first branch after play, slip and creep started afresh, from no torque.
     """
 
-    branch: Ints
-    from_nm: Floats
-    rising: Flags
+    samples: slice
+    from_nm: float
+    direction: Direction
+    fresh: bool
 
-    @classmethod
-    def of(cls, history: History) -> Self:
-        """Split a load history at its turning points.
 
-        Parameters
-        ----------
-        history : History
-            Load history of n samples.
+def load_branches(history: History, largest_nm: float) -> list[LoadBranch]:
+    """Split a load history at its turning points.
 
-        Returns
-        -------
-        LoadPath
-        """
-        torque = history.applied_nm
-        count = len(torque)
-        branch = np.zeros(count, dtype=np.int64)
-        from_nm, rising = np.zeros(count), np.ones(count, dtype=bool)
-        least = REVERSAL_SHARE * float(np.ptp(torque)) if count else 0.0
-        number = 0
-        for start, stop in pairwise([*np.flatnonzero(history.restart).tolist(), count]):
-            turns = turning_points(torque[start:stop], least) + start
-            for first, last in pairwise([start, *(turns + 1).tolist(), stop]):
-                here = slice(first, last)
-                begun = 0.0 if first == start else float(torque[first - 1])
-                branch[here], from_nm[here] = number, begun
-                rising[here] = torque[last - 1] >= begun
-                number += 1
-        return cls(branch, from_nm, rising)
+    Parameters
+    ----------
+    history : History
+        Load history of n samples.
+    largest_nm : float
+        Torque of which a twentieth counts as a change of direction [N m].
+
+    Returns
+    -------
+    list of LoadBranch
+        In the order of the samples; each sample belongs to one.
+    """
+    found = []
+    starts = [*np.flatnonzero(history.restart).tolist(), len(history)]
+    for start, stop in pairwise(starts):
+        # Every load begins from none: one that is there at once was put on.
+        torque = np.r_[0.0, history.applied_nm[start:stop]]
+        turns = turning_points(torque, REVERSAL_SHARE * largest_nm).tolist()
+        for first, last in pairwise([0, *turns, len(torque) - 1]):
+            rises = torque[last] >= torque[first]
+            found.append(
+                LoadBranch(
+                    slice(start + first, start + last),
+                    float(torque[first]),
+                    "rising" if rises else "falling",
+                    first == 0,
+                )
+            )
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +113,8 @@ class ErrorBranch:
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, DIRECTIONS)
+        if not np.all(np.isfinite([self.from_nm, *self.torque_nm, *self.error_deg])):
+            raise InputError("expected finite torques and errors")
         if not 0 < len(self.torque_nm) == len(self.error_deg):
             raise InputError(
                 f"found {len(self.torque_nm)} torques and {len(self.error_deg)} errors, expected "
@@ -160,15 +171,29 @@ class ModelError:
     ----------
     branches : tuple of ErrorBranch
         One for each direction and torque at which branches began.
+    largest_torque_nm : float
+        Largest torque of the recording [N m].
+    crank_deg : float or None
+        Position of the mesh, where all was recorded at a single one [deg]. At others the table
+        says nothing.
     """
 
     branches: tuple[ErrorBranch, ...]
+    largest_torque_nm: float
+    crank_deg: float | None = None
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.largest_torque_nm < np.inf:
+            raise InputError(
+                f"largest_torque_nm: found {self.largest_torque_nm}, expected more than zero"
+            )
 
     def twist(self, history: History) -> Floats:
         """Twist that the model misses along a load history.
 
-        A branch that begins where a recorded one did has its error. It fades where the branch
-        began elsewhere and has not gone far since, and beyond the torques that were recorded.
+        A branch that begins where a recorded one did has its error. One that begins elsewhere
+        starts with the error of the turning point, which fades, and takes that of the recorded
+        ones on as it goes: `MEMORY`. Beyond the torques that were recorded the error fades.
 
         Parameters
         ----------
@@ -180,32 +205,65 @@ class ModelError:
         ndarray, shape (n,)
             In deg.
         """
-        path, torque, top = LoadPath.of(history), history.applied_nm, history.largest_torque_nm
-        gone = np.maximum(np.abs(torque - path.from_nm), 1e-9 * top)
-        total, weights, closest = np.zeros((3, len(history)))
+        missed = np.zeros(len(history))
+        for branch in load_branches(history, self.largest_torque_nm):
+            torque = history.applied_nm[branch.samples]
+            gone = np.abs(torque - branch.from_nm)
+            share, known = self._along(branch, torque, gone)
+            before = 0.0 if branch.fresh else missed[branch.samples.start - 1]
+            held = before * np.exp(-gone / (FADE * self.largest_torque_nm))
+            missed[branch.samples] = share * known + (1.0 - share) * held
+        if self.crank_deg is not None and history.crank_deg is not None:
+            away = np.abs((history.crank_deg - self.crank_deg + 180.0) % 360.0 - 180.0)
+            missed = np.where(away <= SAME_POSITION_DEG, missed, 0.0)
+        return missed
+
+    def _along(self, branch: LoadBranch, torque: Floats, gone: Floats) -> tuple[Floats, Floats]:
+        """How far the table knows a branch, from 0 to 1, and the error by it.
+
+        Parameters
+        ----------
+        branch : LoadBranch
+        torque : ndarray, shape (k,)
+            Torque along it [N m].
+        gone : ndarray, shape (k,)
+            Way since its start [N m].
+
+        Returns
+        -------
+        share, error : ndarray, shape (k,)
+            [-] and [deg].
+        """
+        top = self.largest_torque_nm
+        total, weights, closest = np.zeros((3, len(torque)))
         for known in self.branches:
+            if known.direction != branch.direction:
+                continue
             nodes = np.array(known.torque_nm)
-            apart = np.maximum(np.abs(path.from_nm - known.from_nm) - SAME_START * top, 0.0)
+            apart = max(abs(branch.from_nm - known.from_nm) - SAME_START * top, 0.0)
             beyond = np.maximum(np.maximum(nodes[0] - torque, torque - nodes[-1]), 0.0)
-            weight = np.exp(-apart / (MEMORY * gone) - beyond / (FADE * top))
-            weight = np.where(path.rising == (known.direction == "rising"), weight, 0.0)
+            forgotten = apart / (MEMORY * np.maximum(gone, 1e-9 * top))
+            weight = np.exp(-forgotten - beyond / (FADE * top))
             total += weight * np.interp(torque, nodes, known.error_deg)
             weights += weight
             closest = np.maximum(closest, weight)
-        return np.asarray(closest * total / np.maximum(weights, 1e-300))
+        return closest, total / np.maximum(weights, 1e-300)
 
-    def as_list(self) -> list[dict[str, Any]]:
+    def as_dict(self) -> dict[str, Any]:
         """Entry of ``model.json``."""
-        return [branch.as_dict() for branch in self.branches]
+        content: dict[str, Any] = {"largest_torque_nm": self.largest_torque_nm}
+        if self.crank_deg is not None:
+            content["crank_deg"] = self.crank_deg
+        return content | {"branches": [branch.as_dict() for branch in self.branches]}
 
     @classmethod
-    def from_list(cls, entries: Sequence[Any]) -> Self:
+    def from_dict(cls, content: Mapping[str, Any]) -> Self:
         """Read the entry of ``model.json``.
 
         Parameters
         ----------
-        entries : sequence
-            Decoded branches.
+        content : mapping
+            Decoded entry.
 
         Returns
         -------
@@ -217,10 +275,10 @@ class ModelError:
             A branch is not as expected; one line says which and why.
         """
         found = []
-        for number, entry in enumerate(entries, 1):
-            name = f"model_error {number}"
+        for number, entry in enumerate(list_of(content, "branches"), 1):
             try:
-                found.append(ErrorBranch.from_dict(object_of({name: entry}, name)))
+                found.append(ErrorBranch.from_dict(object_of({"entry": entry}, "entry")))
             except InputError as error:
-                raise InputError(f"{name}: {error}") from error
-        return cls(tuple(found))
+                raise InputError(f"model_error: branch {number}: {error}") from error
+        crank = number_of(content, "crank_deg") if "crank_deg" in content else None
+        return cls(tuple(found), number_of(content, "largest_torque_nm"), crank)

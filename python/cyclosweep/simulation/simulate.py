@@ -110,7 +110,8 @@ def simulate(
     Parameters
     ----------
     model : Model or Drive
-        A repaired model, or a drive: then the published model without calibration.
+        A repaired model, or a drive: then the published model without calibration. What a repaired
+        model is known to miss, ``model_error``, is added to the twist; a torque leaves it out.
     programme : Recording
         Load history; for ``predict="torque"`` with an angle.
     predict : {"angle", "torque"}
