@@ -61,6 +61,7 @@ STAGES = {
     "outcome": set[str](),
     "provenance": set[str](),
     "plausibility": set[str](),
+    "unbroken_runs": set[str](),
     "refuse": FITTING | {"outcome", "provenance", "plausibility"},
     "sliding": {"outcome", "provenance"},
     "series": {"outcome"},
@@ -81,7 +82,7 @@ STAGES = {
     "finish": DECIDED | {"verification", "repair"},
     "compose": DECIDED
     | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility", "finish"}
-    | {"model_error_table"},
+    | {"model_error_table", "unbroken_runs"},
 }
 
 

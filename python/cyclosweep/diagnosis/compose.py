@@ -24,6 +24,7 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
+from cyclosweep.diagnosis.unbroken_runs import unbroken_runs
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.diagnosis.whole_loop.rig_limits import rig_limits
 from cyclosweep.recording import Recording
@@ -141,6 +142,7 @@ def _answer(
         notes=(
             *repaired.model.notes,
             *recording.notes,
+            *unbroken_runs(recording),
             *(fault.reason for fault in recording.faults),
         ),
         unknown=remainder(concluded, verified, regions),

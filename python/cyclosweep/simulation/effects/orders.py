@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.mesh_range import (
@@ -279,6 +280,29 @@ class MeshPeriodic(Effect):
         pins = history.output_pin_count
         own = np.where(orders % pins == 0, orders / pins, orders)
         return np.asarray(self.largest(history) / own**2)
+
+    def known_shape(self, shape: Shape) -> Shape:
+        """Return a shape with its parameters in order; orders of a recorded position are whole.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape parameters by name, in any order.
+
+        Returns
+        -------
+        mapping
+
+        Raises
+        ------
+        InputError
+            A shape parameter is unknown or missing, or an order is no whole number above zero.
+        """
+        known = super().known_shape(shape)
+        for name, value in known.items() if from_recorded_position(known) else ():
+            if name != RATIO and (value < 1.0 or value != round(value)):
+                raise InputError(f"{name}: found {value:g}, expected a whole number above zero")
+        return known
 
     def untestable(self, history: History) -> str | None:
         """Need at least three positions, or a travel over a good part of a turn."""

@@ -1,0 +1,42 @@
+"""Runs that follow each other without a pause although each is taken to begin afresh."""
+
+import numpy as np
+
+from cyclosweep.recording import Recording
+
+NEXT_READING = 3.0
+"""Time from run to run over the usual one between readings, up to which there is no pause."""
+USUAL_STEP = 3.0
+"""Step of the torque from run to run over the 95th percentile of all steps, up to which the load
+goes on."""
+UNBROKEN = (
+    "Runs follow each other without a pause in clock and torque, and each is taken to begin with "
+    "fresh play and friction. If the rig was not reset between them, write "
+    'history = "continuous" into the recording\'s TOML file.'
+)
+
+
+def unbroken_runs(recording: Recording) -> tuple[str, ...]:
+    """Ask whether runs are one load history.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    tuple of str
+        One sentence; empty where there is a pause after a run, no clock, a single run, or where
+        the recording says that its runs are one history.
+    """
+    time, torque = recording.time_s, recording.torque_nm
+    if recording.history == "continuous" or time is None or len(torque) < 3:
+        return ()
+    between = np.diff(recording.run) != 0
+    lapse, step = np.diff(time), np.abs(np.diff(torque))
+    usual = lapse[~between & (lapse > 0)]
+    if not between.any() or not len(usual):
+        return ()
+    soon = (lapse > 0) & (lapse <= NEXT_READING * float(np.median(usual)))
+    goes_on = step <= USUAL_STEP * float(np.quantile(step[~between], 0.95))
+    return (UNBROKEN,) if np.all((soon & goes_on)[between]) else ()
