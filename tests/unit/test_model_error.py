@@ -104,6 +104,25 @@ def test_errors_fade_on_a_loop_that_turns_elsewhere_and_beyond_the_torques_of_th
     assert np.abs(missed(large)[far]).max() < 0.01
 
 
+def test_a_recorded_start_is_asked_alone_and_a_first_loading_is_another() -> None:
+    flat = tuple(np.ones(len(NODES)))
+    inner = ErrorBranch("falling", 0.5 * TOP_NM, tuple(NODES), tuple(-each for each in flat))
+    outer = ErrorBranch("falling", TOP_NM, tuple(NODES), flat)
+    first = ErrorBranch("rising", 0.0, tuple(NODES), flat, fresh=True)
+    known = replace(PLAIN, model_error=ModelError((inner, outer, first), TOP_NM))
+
+    def added(torque: Floats) -> Floats:
+        programme = cs.Recording.from_arrays(torque)
+        angle, plain = (present(cs.simulate(m, programme).angle_deg) for m in (known, PLAIN))
+        return np.asarray(angle - plain)
+
+    up, down = np.linspace(0.1, 20.0, 200), np.linspace(20.0, -18.0, 380)
+    inside = np.abs(np.r_[up, down]) < 18.9
+    np.testing.assert_allclose(added(np.r_[up, down])[inside], 1.0, atol=1e-9)
+    again = added(np.r_[up, np.linspace(20.0, 0.0, 200), up])[400:]
+    assert abs(again[60]) < 0.2
+
+
 def test_forecast_does_not_depend_on_loads_that_follow() -> None:
     torque = loop(TOP_NM).torque_nm
     alone = missed(cs.Recording.from_arrays(torque))
@@ -213,7 +232,7 @@ def test_what_repeats_is_learned_and_forecasts_a_run_that_was_held_out() -> None
     assert f"{learned.holdout_rmse_deg:.3g} deg with it" in said[0]
 
 
-def curves(rng: np.random.Generator, runs: int, common: float) -> list[Floats]:
+def curves(rng: np.random.Generator, runs: int, common: float, noise: float = 0.0) -> list[Floats]:
     """Errors of two branches in some runs, of which a share of the variance is common."""
 
     def waves() -> Floats:
@@ -228,12 +247,15 @@ def curves(rng: np.random.Generator, runs: int, common: float) -> list[Floats]:
     ]
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.3])
 @pytest.mark.parametrize("runs", [2, 3, 6])
-def test_smooth_errors_that_have_nothing_in_common_seldom_seem_to_repeat(runs: int) -> None:
+def test_smooth_errors_that_have_nothing_in_common_seldom_seem_to_repeat(
+    runs: int, noise: float
+) -> None:
     rng = np.random.default_rng(3)
-    unlike = [repeatability(curves(rng, runs, 0.0)) for _ in range(200)]
+    unlike = [repeatability(curves(rng, runs, 0.0, noise)) for _ in range(200)]
     assert np.mean([share >= LEAST_REPEAT for share in unlike if share is not None]) < 0.1
-    alike = [repeatability(curves(rng, runs, 0.8)) for _ in range(200)]
+    alike = [repeatability(curves(rng, runs, 0.8, noise)) for _ in range(200)]
     assert np.mean([share >= LEAST_REPEAT for share in alike if share is not None]) > 0.9
     assert np.median([share for share in alike if share is not None]) == pytest.approx(0.8, abs=0.1)
 
@@ -244,6 +266,20 @@ def test_too_few_places_say_nothing() -> None:
     assert repeatability([few]) is None
     few[:, 30:50] = np.sin(np.arange(20.0))
     assert repeatability([few]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("places", [(0.0, 360.0), (10.0, 10.08), (0.0, 90.0)])
+def test_table_remembers_the_only_position_of_the_mesh(places: tuple[float, float]) -> None:
+    recording = measured(0.4, same=True)
+    crank = np.where(recording.run == 2, places[1], places[0])
+    found = cs.diagnose(replace(recording, crank_deg=crank), full=False)
+    assert found.model is not None
+    table = found.model.model_error
+    assert table is not None
+    single = places[1] != 90.0
+    assert (table.crank_deg is not None) is single
+    if table.crank_deg is not None:
+        assert abs((table.crank_deg - places[0] + 180.0) % 360.0 - 180.0) < 0.1
 
 
 @pytest.mark.parametrize(("size_deg", "same"), [(0.4, False), (0.0, True)])

@@ -114,6 +114,7 @@ REFUSED = {
     "amplitude as text": (changed("effects", 1, "amplitudes", "cos_1", value="0.5"), "cos_1"),
     "amplitude as truth": (changed("effects", 1, "amplitudes", "cos_1", value=True), "cos_1"),
     "order of a half": (changed("effects", 1, "shape", "order_1", value=1.5), "order_1"),
+    "an order twice": (changed("effects", 1, "shape", "order_2", value=1.0), "1 1"),
     "order of nothing": (changed("effects", 1, "shape", "order_2", value=0.0), "order_2"),
     "shape as text": (changed("effects", 1, "shape", "order_1", value="1"), "order_1"),
     "effects as an object": (changed("effects", value={}), "effects"),

@@ -1,5 +1,7 @@
 """Runs without a pause between them: asked about once, and only then."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,7 @@ def test_a_pause_another_torque_no_clock_and_a_stated_history_are_not() -> None:
     assert unbroken_runs(recording(start_nm=5.0)) == ()
     assert unbroken_runs(recording(clock=False)) == ()
     assert unbroken_runs(recording(history="continuous")) == ()
+    assert unbroken_runs(replace(recording(), reset_between_runs=True)) == ()
     assert unbroken_runs(cs.Recording.from_arrays(LOOP, time_s=np.arange(float(len(LOOP))))) == ()
     assert unbroken_runs(cs.Recording.from_arrays([])) == ()
 

@@ -15,8 +15,8 @@ from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
 from cyclosweep.result import Between, LearnedError
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats, History, Ints
-from cyclosweep.simulation.effects.mesh_range import position_count
 from cyclosweep.simulation.model_error import (
+    SAME_POSITION_DEG,
     SAME_START,
     Direction,
     ErrorBranch,
@@ -26,11 +26,9 @@ from cyclosweep.simulation.model_error import (
 
 CELLS = 50
 """Cells of torque from zero to the largest."""
-BY_CHANCE = 1.0
+BY_CHANCE = 1.6
 """Standard errors of the correlation of errors that have nothing in common, from which they are
-taken to have: five of six stay below. Among smooth errors of two runs that had nothing in common a
-twentieth was taken for one that repeats, of those with four fifths of the variance in common
-nineteen of twenty."""
+taken to have: nineteen of twenty stay below."""
 ABOVE_NOISE = 2.0
 """Size of what is learned from a single pass over the noise, from which it is model error: noise
 that drifts along a pass looks the same as an error of the laws."""
@@ -58,13 +56,16 @@ class _Pass:
         Whether the torque rises or falls.
     from_nm : float
         Torque at which it begins [N m].
+    fresh : bool
+        Whether it is the first loading of a run.
     error_deg : ndarray, shape (2 CELLS + 1,)
-        Measured less simulated twist [deg]; NaN at torques that the branch does not pass.
+        Measured less simulated twist [deg]; NaN farther than a cell from a reading.
     """
 
     run: int
     direction: Direction
     from_nm: float
+    fresh: bool
     error_deg: Floats
 
 
@@ -77,12 +78,15 @@ class _Group:
     direction : {"rising", "falling"}
     from_nm : float
         Their mean start [N m].
+    fresh : bool
+        Whether they are first loadings.
     passes, runs : ndarray, shape (k, 2 CELLS + 1)
         Error of every pass, and the mean of each run [deg].
     """
 
     direction: Direction
     from_nm: float
+    fresh: bool
     passes: Floats
     runs: Floats
 
@@ -173,12 +177,12 @@ def _limited_by_laws(concluded: Conclusion, decision: Decision) -> bool:
 def _only_position(problem: Problem) -> float | None:
     """Position of the mesh where all fitted rows have the same one; else None [deg]."""
     crank = problem.history.crank_deg
-    if (
-        crank is None
-        or position_count(problem.history.with_state(crank_deg=crank[problem.fitted])) > 1
-    ):
+    if crank is None:
         return None
-    return float(np.median(crank[problem.fitted]))
+    turns = np.exp(1j * np.radians(crank[problem.fitted]))
+    middle = float(np.degrees(np.angle(turns.mean())))
+    away = (crank[problem.fitted] - middle + 180.0) % 360.0 - 180.0
+    return middle if np.all(np.abs(away) <= SAME_POSITION_DEG) else None
 
 
 def _passes(problem: Problem, path: History, largest_nm: float) -> Iterator[_Pass]:
@@ -212,9 +216,10 @@ def _passes(problem: Problem, path: History, largest_nm: float) -> Iterator[_Pas
         parts = _by_cell(here, place)
         at = np.array([place[part].mean() for part in parts])
         missed = np.array([np.median(error[part]) for part in parts])
-        passed = (grid >= np.round(at[0])) & (grid <= np.round(at[-1]))
-        along = np.where(passed, np.interp(grid, at, missed), np.nan)
-        yield _Pass(int(path.run[here[0]]), branch.direction, branch.from_nm, along)
+        near = np.min(np.abs(grid[:, None] - at), axis=1) <= 1.0
+        along = np.where(near, np.interp(grid, at, missed), np.nan)
+        run = int(path.run[here[0]])
+        yield _Pass(run, branch.direction, branch.from_nm, branch.fresh, along)
 
 
 def _by_cell(rows: Ints, place: Floats) -> list[Ints]:
@@ -238,18 +243,18 @@ def _groups(passes: Iterable[_Pass], near_nm: float) -> Iterator[_Group]:
     _Group
     """
     group: list[_Pass] = []
-    for each in [*sorted(passes, key=lambda p: (p.direction, p.from_nm)), None]:
+    for each in [*sorted(passes, key=lambda p: (p.direction, p.fresh, p.from_nm)), None]:
         first = group[0] if group else None
         if first is not None and (
             each is None
-            or each.direction != first.direction
+            or (each.direction, each.fresh) != (first.direction, first.fresh)
             or each.from_nm > first.from_nm + near_nm
         ):
             errors = np.array([one.error_deg for one in group])
             run = np.array([one.run for one in group])
             means = [_mean(errors[run == number]) for number in np.unique(run)]
             start = float(np.mean([one.from_nm for one in group]))
-            yield _Group(first.direction, start, errors, np.array(means))
+            yield _Group(first.direction, start, first.fresh, errors, np.array(means))
             group = []
         if each is not None:
             group.append(each)
@@ -291,26 +296,28 @@ def repeatability(groups: Iterable[Floats]) -> float | None:
         None with too few places at which curves can be compared. Zero where curves that have
         nothing in common could be as alike.
     """
-    common, size, neighbours, places, more = 0.0, 0.0, 0.0, 0, 0
+    common, size, places, more = 0.0, 0.0, 0, 0
+    alike = np.zeros(CELLS)
     for curves in groups:
         known = np.isfinite(curves)
         count = known.sum(axis=0)
         at = count >= 2
-        value = np.where(known, curves, 0.0)[:, at]
+        value = np.where(known & at, curves, 0.0)
+        count = np.maximum(count, 2)
         square = np.sum(value**2, axis=0)
-        common += float(np.sum((value.sum(axis=0) ** 2 - square) / (count[at] * (count[at] - 1))))
-        size += float(np.sum(square / count[at]))
-        neighbours += float(np.sum(value[:, 1:] * value[:, :-1] / count[at][1:]))
+        common += float(np.sum((value.sum(axis=0) ** 2 - square) / (count * (count - 1))))
+        size += float(np.sum(square / count))
+        for lag in range(1, CELLS):
+            alike[lag] += float(np.sum(value[:, lag:] * value[:, :-lag] / count[lag:]))
         places += int(at.sum())
         more += int(np.sum(count[at] - 1))
     if places < FEWEST_CELLS or size <= 0.0:
         return None
     share = common / size
-    # Neighbouring places are alike, so that they tell less than as many that are not (Bartlett's
-    # formula for the correlation of two first-order autoregressions).
-    alike = float(np.clip(neighbours / size, 0.0, 0.99)) ** 2
-    independent = more * (1.0 - alike) / (1.0 + alike)
-    return share if share > BY_CHANCE / np.sqrt(max(independent, 1e-9)) else 0.0
+    # Places along a curve are alike, so that they tell less than as many that are not (Bartlett's
+    # formula for the correlation of two series).
+    repeated = 1.0 + 2.0 * float(np.sum((alike / size) ** 2))
+    return share if share > BY_CHANCE * np.sqrt(repeated / more) else 0.0
 
 
 def _of_neighbours(groups: Iterable[Floats]) -> float:
@@ -370,4 +377,5 @@ def _branches(
             group.from_nm,
             tuple(float(f"{value:.9g}") for value in torque[known]),
             tuple(float(f"{value:.6g}") for value in error),
+            group.fresh,
         )

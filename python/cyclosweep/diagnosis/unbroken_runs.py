@@ -9,6 +9,8 @@ NEXT_READING = 3.0
 USUAL_STEP = 3.0
 """Step of the torque from run to run over the 95th percentile of all steps, up to which the load
 goes on."""
+LARGEST_STEP = 0.1
+"""The same over the range of the torque."""
 UNBROKEN = (
     "Runs follow each other without a pause in clock and torque, and each is taken to begin with "
     "fresh play and friction. If the rig was not reset between them, write "
@@ -27,10 +29,11 @@ def unbroken_runs(recording: Recording) -> tuple[str, ...]:
     -------
     tuple of str
         One sentence; empty where there is a pause after a run, no clock, a single run, or where
-        the recording says that its runs are one history.
+        the recording says that its runs are one history or that the rig was reset.
     """
     time, torque = recording.time_s, recording.torque_nm
-    if recording.history == "continuous" or time is None or len(torque) < 3:
+    answered = recording.history == "continuous" or recording.reset_between_runs
+    if answered or time is None or len(torque) < 3:
         return ()
     between = np.diff(recording.run) != 0
     lapse, step = np.diff(time), np.abs(np.diff(torque))
@@ -38,5 +41,6 @@ def unbroken_runs(recording: Recording) -> tuple[str, ...]:
     if not between.any() or not len(usual):
         return ()
     soon = (lapse > 0) & (lapse <= NEXT_READING * float(np.median(usual)))
-    goes_on = step <= USUAL_STEP * float(np.quantile(step[~between], 0.95))
+    most = USUAL_STEP * float(np.quantile(step[~between], 0.95))
+    goes_on = step <= min(most, LARGEST_STEP * float(np.ptp(torque)))
     return (UNBROKEN,) if np.all((soon & goes_on)[between]) else ()

@@ -59,6 +59,9 @@ class LoadBranch:
 def load_branches(history: History, largest_nm: float) -> list[LoadBranch]:
     """Split a load history at its turning points.
 
+    A turn is one once the torque has gone back by a twentieth of the largest: the last readings of
+    a history may still belong to the branch before.
+
     Parameters
     ----------
     history : History
@@ -104,12 +107,15 @@ class ErrorBranch:
         Torques of the table, rising [N m].
     error_deg : tuple of float
         Measured less modelled twist there [deg].
+    fresh : bool
+        Whether it is the first loading, from where play, slip and creep started afresh.
     """
 
     direction: Direction
     from_nm: float
     torque_nm: tuple[float, ...]
     error_deg: tuple[float, ...]
+    fresh: bool = False
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, DIRECTIONS)
@@ -127,6 +133,7 @@ class ErrorBranch:
         """Entry of ``model.json``."""
         return {
             "direction": self.direction,
+            "first_loading": self.fresh,
             "from_nm": self.from_nm,
             "torque_nm": list(self.torque_nm),
             "error_deg": list(self.error_deg),
@@ -160,7 +167,10 @@ class ErrorBranch:
         direction = text_of(content, "direction", "")
         one_of("direction", direction, DIRECTIONS)
         known: Direction = "falling" if direction == "falling" else "rising"
-        return cls(known, number_of(content, "from_nm"), torque, error)
+        fresh = content.get("first_loading", False)
+        if not isinstance(fresh, bool):
+            raise InputError(f"first_loading: found {fresh!r}, expected true or false")
+        return cls(known, number_of(content, "from_nm"), torque, error, fresh)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,10 +216,11 @@ class ModelError:
             In deg.
         """
         missed = np.zeros(len(history))
+        nodes = [(np.array(known.torque_nm), np.array(known.error_deg)) for known in self.branches]
         for branch in load_branches(history, self.largest_torque_nm):
             torque = history.applied_nm[branch.samples]
             gone = np.abs(torque - branch.from_nm)
-            share, known = self._along(branch, torque, gone)
+            share, known = self._along(branch, torque, gone, nodes)
             before = 0.0 if branch.fresh else missed[branch.samples.start - 1]
             held = before * np.exp(-gone / (FADE * self.largest_torque_nm))
             missed[branch.samples] = share * known + (1.0 - share) * held
@@ -218,8 +229,16 @@ class ModelError:
             missed = np.where(away <= SAME_POSITION_DEG, missed, 0.0)
         return missed
 
-    def _along(self, branch: LoadBranch, torque: Floats, gone: Floats) -> tuple[Floats, Floats]:
+    def _along(
+        self,
+        branch: LoadBranch,
+        torque: Floats,
+        gone: Floats,
+        nodes: list[tuple[Floats, Floats]],
+    ) -> tuple[Floats, Floats]:
         """How far the table knows a branch, from 0 to 1, and the error by it.
+
+        Recorded branches that began at the same place are asked alone, others where there are none.
 
         Parameters
         ----------
@@ -228,26 +247,48 @@ class ModelError:
             Torque along it [N m].
         gone : ndarray, shape (k,)
             Way since its start [N m].
+        nodes : list of (ndarray, ndarray)
+            Torques [N m] and errors [deg] of every branch of the table.
 
         Returns
         -------
         share, error : ndarray, shape (k,)
             [-] and [deg].
         """
-        top = self.largest_torque_nm
+        apart = [self._apart(branch, known) for known in self.branches]
+        nearest = min(apart, default=np.inf)
         total, weights, closest = np.zeros((3, len(torque)))
-        for known in self.branches:
-            if known.direction != branch.direction:
+        for (at, error), distance in zip(nodes, apart, strict=True):
+            if distance == np.inf or (nearest == 0.0 and distance > 0.0):
                 continue
-            nodes = np.array(known.torque_nm)
-            apart = max(abs(branch.from_nm - known.from_nm) - SAME_START * top, 0.0)
-            beyond = np.maximum(np.maximum(nodes[0] - torque, torque - nodes[-1]), 0.0)
-            forgotten = apart / (MEMORY * np.maximum(gone, 1e-9 * top))
-            weight = np.exp(-forgotten - beyond / (FADE * top))
-            total += weight * np.interp(torque, nodes, known.error_deg)
+            beyond = np.maximum(np.maximum(at[0] - torque, torque - at[-1]), 0.0)
+            forgotten = distance / (MEMORY * np.maximum(gone, 1e-9 * self.largest_torque_nm))
+            weight = np.exp(-forgotten - beyond / (FADE * self.largest_torque_nm))
+            total += weight * np.interp(torque, at, error)
             weights += weight
             closest = np.maximum(closest, weight)
         return closest, total / np.maximum(weights, 1e-300)
+
+    def _apart(self, branch: LoadBranch, known: ErrorBranch) -> float:
+        """Distance of the starts of a branch and a recorded one; zero where they are the same.
+
+        Parameters
+        ----------
+        branch : LoadBranch
+        known : ErrorBranch
+
+        Returns
+        -------
+        float
+            In N m. Infinite for the other direction. A first loading is as far from a later one as
+            the largest torque.
+        """
+        if known.direction != branch.direction:
+            return float(np.inf)
+        if known.fresh != branch.fresh:
+            return self.largest_torque_nm
+        away = abs(branch.from_nm - known.from_nm)
+        return max(away - SAME_START * self.largest_torque_nm, 0.0)
 
     def as_dict(self) -> dict[str, Any]:
         """Entry of ``model.json``."""

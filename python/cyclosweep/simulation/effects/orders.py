@@ -299,9 +299,15 @@ class MeshPeriodic(Effect):
             A shape parameter is unknown or missing, or an order is no whole number above zero.
         """
         known = super().known_shape(shape)
-        for name, value in known.items() if from_recorded_position(known) else ():
+        if not from_recorded_position(known):
+            return known
+        for name, value in known.items():
             if name != RATIO and (value < 1.0 or value != round(value)):
                 raise InputError(f"{name}: found {value:g}, expected a whole number above zero")
+        orders = orders_of(known)
+        if len(set(orders)) < len(orders):
+            found = " ".join(f"{order:g}" for order in orders)
+            raise InputError(f"order: found {found}, expected each order once")
         return known
 
     def untestable(self, history: History) -> str | None:
