@@ -1,11 +1,13 @@
 """The table of what the laws of a repaired model miss at the same state of load, and its worth."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Self
 
 import numpy as np
 
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.decide import NAMING, Conclusion
 from cyclosweep.diagnosis.identify.repetition import FEWEST_CELLS, LEAST_REPEAT
 from cyclosweep.diagnosis.identify.verdict import Decision
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -15,14 +17,16 @@ from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
 from cyclosweep.result import Between, LearnedError
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats, History, Ints
+from cyclosweep.simulation.effects.mesh_range import short_way_deg
 from cyclosweep.simulation.model_error import (
     SAME_POSITION_DEG,
     SAME_START,
-    Direction,
     ErrorBranch,
+    LoadBranch,
     ModelError,
     load_branches,
 )
+from cyclosweep.simulation.simulate import ROUNDS
 
 CELLS = 50
 """Cells of torque from zero to the largest."""
@@ -32,9 +36,7 @@ taken to have: nineteen of twenty stay below."""
 ABOVE_NOISE = 2.0
 """Size of what is learned from a single pass over the noise, from which it is model error: noise
 that drifts along a pass looks the same as an error of the laws."""
-ROUNDS = 12
-"""Most rounds in which the simulation settles, as in a forecast."""
-WITH_EFFECTS = ("IDENTIFIED", "MOSTLY_EXPLAINED", "AMBIGUOUS", "UNKNOWN_PHYSICS")
+SOMETHING_MISSING = (*NAMING, "UNKNOWN_PHYSICS")
 """Verdicts that say that something is missing."""
 BETWEEN: dict[Between, str] = {
     "runs": "between {count} runs",
@@ -50,23 +52,22 @@ class _Pass:
 
     Attributes
     ----------
+    branch : LoadBranch
     run : int
-        Run of the branch.
-    direction : {"rising", "falling"}
-        Whether the torque rises or falls.
-    from_nm : float
-        Torque at which it begins [N m].
-    fresh : bool
-        Whether it is the first loading of a run.
+        Its run.
     error_deg : ndarray, shape (2 CELLS + 1,)
         Measured less simulated twist [deg]; NaN farther than a cell from a reading.
     """
 
+    branch: LoadBranch
     run: int
-    direction: Direction
-    from_nm: float
-    fresh: bool
     error_deg: Floats
+
+    def is_like(self, other: LoadBranch, near_nm: float) -> bool:
+        """Whether another branch goes the same way and begins within a range above this one."""
+        mine = self.branch
+        alike = (mine.direction, mine.fresh) == (other.direction, other.fresh)
+        return alike and other.from_nm <= mine.from_nm + near_nm
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -75,20 +76,27 @@ class _Group:
 
     Attributes
     ----------
-    direction : {"rising", "falling"}
+    branch : LoadBranch
+        One of them.
     from_nm : float
         Their mean start [N m].
-    fresh : bool
-        Whether they are first loadings.
     passes, runs : ndarray, shape (k, 2 CELLS + 1)
         Error of every pass, and the mean of each run [deg].
     """
 
-    direction: Direction
+    branch: LoadBranch
     from_nm: float
-    fresh: bool
     passes: Floats
     runs: Floats
+
+    @classmethod
+    def of(cls, passes: Sequence[_Pass]) -> Self:
+        """Group of some passes, at least one."""
+        errors = np.array([one.error_deg for one in passes])
+        run = np.array([one.run for one in passes])
+        means = [_mean(errors[run == number]) for number in np.unique(run)]
+        start = float(np.mean([one.branch.from_nm for one in passes]))
+        return cls(passes[0].branch, start, errors, np.array(means))
 
 
 def with_error_table(
@@ -118,8 +126,7 @@ def with_error_table(
     path = predicted_path(problem, repaired.model, ROUNDS)
     used = np.isin(problem.history.run, problem.history.run[problem.fitted])
     largest = float(np.abs(path.applied_nm[used]).max())
-    passes = list(_passes(problem, path, largest))
-    groups = list(_groups(passes, SAME_START * largest))
+    groups = _groups(_passes(problem, path, largest), SAME_START * largest)
     repeats, between = _repeats(groups)
     if repeats < LEAST_REPEAT:
         return repaired
@@ -168,7 +175,7 @@ def learned_in_words(learned: LearnedError) -> str:
 
 def _limited_by_laws(concluded: Conclusion, decision: Decision) -> bool:
     """Whether something is missing, and more than noise is left beside what was accepted."""
-    if decision.verdict not in WITH_EFFECTS:
+    if decision.verdict not in SOMETHING_MISSING:
         return False
     counted = concluded.accepted.fit.noise.model_error_factor > 1.0
     return counted or concluded.search.noise.structured or decision.unexplained
@@ -181,7 +188,7 @@ def _only_position(problem: Problem) -> float | None:
         return None
     turns = np.exp(1j * np.radians(crank[problem.fitted]))
     middle = float(np.degrees(np.angle(turns.mean())))
-    away = (crank[problem.fitted] - middle + 180.0) % 360.0 - 180.0
+    away = short_way_deg(crank[problem.fitted] - middle)
     return middle if np.all(np.abs(away) <= SAME_POSITION_DEG) else None
 
 
@@ -209,8 +216,7 @@ def _passes(problem: Problem, path: History, largest_nm: float) -> Iterator[_Pas
     place = path.applied_nm / largest_nm * CELLS
     grid = np.arange(-CELLS, CELLS + 1)
     for branch in load_branches(path, largest_nm):
-        here = np.arange(len(path))[branch.samples]
-        here = here[rows[here]]
+        here = branch.samples.start + np.flatnonzero(rows[branch.samples])
         if not len(here):
             continue
         parts = _by_cell(here, place)
@@ -218,8 +224,7 @@ def _passes(problem: Problem, path: History, largest_nm: float) -> Iterator[_Pas
         missed = np.array([np.median(error[part]) for part in parts])
         near = np.min(np.abs(grid[:, None] - at), axis=1) <= 1.0
         along = np.where(near, np.interp(grid, at, missed), np.nan)
-        run = int(path.run[here[0]])
-        yield _Pass(run, branch.direction, branch.from_nm, branch.fresh, along)
+        yield _Pass(branch, int(path.run[here[0]]), along)
 
 
 def _by_cell(rows: Ints, place: Floats) -> list[Ints]:
@@ -229,7 +234,7 @@ def _by_cell(rows: Ints, place: Floats) -> list[Ints]:
     return np.split(ordered, edges)
 
 
-def _groups(passes: Iterable[_Pass], near_nm: float) -> Iterator[_Group]:
+def _groups(passes: Iterable[_Pass], near_nm: float) -> list[_Group]:
     """Passes by direction and the torque at which they begin.
 
     Parameters
@@ -238,26 +243,18 @@ def _groups(passes: Iterable[_Pass], near_nm: float) -> Iterator[_Group]:
     near_nm : float
         Range of the starts of one group [N m].
 
-    Yields
-    ------
-    _Group
+    Returns
+    -------
+    list of _Group
     """
-    group: list[_Pass] = []
-    for each in [*sorted(passes, key=lambda p: (p.direction, p.fresh, p.from_nm)), None]:
-        first = group[0] if group else None
-        if first is not None and (
-            each is None
-            or (each.direction, each.fresh) != (first.direction, first.fresh)
-            or each.from_nm > first.from_nm + near_nm
-        ):
-            errors = np.array([one.error_deg for one in group])
-            run = np.array([one.run for one in group])
-            means = [_mean(errors[run == number]) for number in np.unique(run)]
-            start = float(np.mean([one.from_nm for one in group]))
-            yield _Group(first.direction, start, first.fresh, errors, np.array(means))
-            group = []
-        if each is not None:
-            group.append(each)
+    found: list[list[_Pass]] = []
+    key = attrgetter("branch.direction", "branch.fresh", "branch.from_nm")
+    for each in sorted(passes, key=key):
+        if found and found[-1][0].is_like(each.branch, near_nm):
+            found[-1].append(each)
+        else:
+            found.append([each])
+    return [_Group.of(group) for group in found]
 
 
 def _mean(errors: Floats) -> Floats:
@@ -368,14 +365,14 @@ def _branches(
     torque = np.arange(-CELLS, CELLS + 1) * (largest_nm / CELLS)
     for group in groups:
         curves = group.passes if between == "passes" else group.runs
-        count = np.sum(np.isfinite(curves), axis=0)
-        known = count > 0
-        share = count * repeats / (1.0 + (np.maximum(count, 1) - 1) * repeats)
-        error = share[known] * _mean(curves)[known]
+        known = np.isfinite(curves).any(axis=0)
+        count = np.isfinite(curves[:, known]).sum(axis=0)
+        share = count * repeats / (1.0 + (count - 1) * repeats)
+        error = share * _mean(curves)[known]
         yield ErrorBranch(
-            group.direction,
+            group.branch.direction,
             group.from_nm,
             tuple(float(f"{value:.9g}") for value in torque[known]),
             tuple(float(f"{value:.6g}") for value in error),
-            group.fresh,
+            group.branch.fresh,
         )

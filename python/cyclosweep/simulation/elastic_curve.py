@@ -10,7 +10,7 @@ import numpy as np
 
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.json_fields import list_of, number_of
+from cyclosweep.simulation.json_fields import numbers_of
 
 if TYPE_CHECKING:
     from cyclosweep.design.torque_twist import TorqueTwist
@@ -93,13 +93,7 @@ class ElasticCurve:
             The lists do not rise, differ in length, have fewer than three points or do not pass
             through zero.
         """
-        torque, twist = (
-            tuple(
-                number_of({f"{key} {k}": value}, f"{key} {k}")
-                for k, value in enumerate(list_of(content, key), 1)
-            )
-            for key in ("torque_nm", "twist_deg")
-        )
+        torque, twist = numbers_of(content, "torque_nm"), numbers_of(content, "twist_deg")
         if len(torque) != len(twist) or len(torque) < 3:
             raise InputError(
                 f"elastic_curve: found {len(torque)} torques and {len(twist)} twists, expected as "

@@ -146,6 +146,53 @@ def list_of(content: Mapping[str, Any], key: str) -> list[Any]:
     return _of_type(content, key, [], list, "a list")
 
 
+def numbers_of(content: Mapping[str, Any], key: str) -> tuple[float, ...]:
+    """List of finite numbers under a key; empty where the key is missing.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the list.
+
+    Returns
+    -------
+    tuple of float
+
+    Raises
+    ------
+    InputError
+        The value is no list, or holds what is no finite number; its place from one is said.
+    """
+    return tuple(
+        number_of({f"{key} {place}": value}, f"{key} {place}")
+        for place, value in enumerate(list_of(content, key), 1)
+    )
+
+
+def flag_of(content: Mapping[str, Any], key: str) -> bool:
+    """Truth value under a key; false where the key is missing.
+
+    Parameters
+    ----------
+    content : mapping
+        Decoded object.
+    key : str
+        Name of the value.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InputError
+        The value is neither true nor false.
+    """
+    return _of_type(content, key, False, bool, "true or false")
+
+
 def _of_type(
     content: Mapping[str, Any], key: str, default: object, kind: type[T], expected: str
 ) -> T:

@@ -17,7 +17,15 @@ import numpy as np
 from cyclosweep.errors import InputError, one_of
 from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.json_fields import list_of, number_of, object_of, text_of
+from cyclosweep.simulation.effects.mesh_range import short_way_deg
+from cyclosweep.simulation.json_fields import (
+    flag_of,
+    list_of,
+    number_of,
+    numbers_of,
+    object_of,
+    text_of,
+)
 
 SAME_START = 0.05
 """Share of the largest torque within which branches begin at the same place."""
@@ -157,19 +165,11 @@ class ErrorBranch:
         InputError
             A key is missing or unlike what is expected; one line says which.
         """
-        torque, error = (
-            tuple(
-                number_of({f"{key} {k}": value}, f"{key} {k}")
-                for k, value in enumerate(list_of(content, key), 1)
-            )
-            for key in ("torque_nm", "error_deg")
-        )
+        torque, error = numbers_of(content, "torque_nm"), numbers_of(content, "error_deg")
         direction = text_of(content, "direction", "")
         one_of("direction", direction, DIRECTIONS)
         known: Direction = "falling" if direction == "falling" else "rising"
-        fresh = content.get("first_loading", False)
-        if not isinstance(fresh, bool):
-            raise InputError(f"first_loading: found {fresh!r}, expected true or false")
+        fresh = flag_of(content, "first_loading")
         return cls(known, number_of(content, "from_nm"), torque, error, fresh)
 
 
@@ -225,7 +225,7 @@ class ModelError:
             held = before * np.exp(-gone / (FADE * self.largest_torque_nm))
             missed[branch.samples] = share * known + (1.0 - share) * held
         if self.crank_deg is not None and history.crank_deg is not None:
-            away = np.abs((history.crank_deg - self.crank_deg + 180.0) % 360.0 - 180.0)
+            away = np.abs(short_way_deg(history.crank_deg - self.crank_deg))
             missed = np.where(away <= SAME_POSITION_DEG, missed, 0.0)
         return missed
 
@@ -256,11 +256,10 @@ class ModelError:
             [-] and [deg].
         """
         apart = [self._apart(branch, known) for known in self.branches]
-        nearest = min(apart, default=np.inf)
+        asked = [each for each in zip(nodes, apart, strict=True) if each[1] < np.inf]
+        same = [each for each in asked if each[1] == 0.0]
         total, weights, closest = np.zeros((3, len(torque)))
-        for (at, error), distance in zip(nodes, apart, strict=True):
-            if distance == np.inf or (nearest == 0.0 and distance > 0.0):
-                continue
+        for (at, error), distance in same or asked:
             beyond = np.maximum(np.maximum(at[0] - torque, torque - at[-1]), 0.0)
             forgotten = distance / (MEMORY * np.maximum(gone, 1e-9 * self.largest_torque_nm))
             weight = np.exp(-forgotten - beyond / (FADE * self.largest_torque_nm))

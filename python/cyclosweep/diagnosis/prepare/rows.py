@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
+from cyclosweep.simulation.effects.mesh_range import short_way_deg
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,7 @@ class Rows:
         if self.averaged == 1:
             return first
         ahead = degrees - np.where(self._used, first[self.row], degrees)
-        return np.asarray(first + self.mean((ahead + 180.0) % 360.0 - 180.0))
+        return np.asarray(first + self.mean(short_way_deg(ahead)))
 
     def whole_on_one_flank(self, side: Floats) -> Flags:
         """Rows whose samples are all in contact with the same flank.

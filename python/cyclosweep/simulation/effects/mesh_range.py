@@ -3,7 +3,7 @@
 import numpy as np
 
 from cyclosweep.simulation.effects.base import spread
-from cyclosweep.simulation.effects.history import History
+from cyclosweep.simulation.effects.history import Floats, History
 
 LEAST_TRAVEL_DEG = 60.0
 """Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
@@ -16,6 +16,22 @@ neighbouring ones a low order is the same as an eccentric dial."""
 LEAST_LOADS = 6
 """Different torques that are needed for these orders: with fewer, a wave along the travel is the
 same as one of the locking position and a pulsating compliance."""
+
+
+def short_way_deg(turned_deg: Floats) -> Floats:
+    """Angle between two positions the short way round, from -180 to 180.
+
+    Parameters
+    ----------
+    turned_deg : ndarray, shape (n,)
+        One position less the other [deg]; full turns do not count.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In deg.
+    """
+    return np.asarray((turned_deg + 180.0) % 360.0 - 180.0)
 
 
 def position_count(history: History) -> int:
