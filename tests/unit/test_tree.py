@@ -77,7 +77,7 @@ STAGES = {
     "change": DECIDED | {"growth", "sweeps"},
     "verification": DECIDED | {"verify", "change"},
     "effects_found": DECIDED,
-    "remainder": DECIDED | {"verify", "verification"},
+    "remainder": DECIDED | {"verify", "verification", "locate"},
     "model_error_table": DECIDED | {"verify", "verification", "repair"},
     "finish": DECIDED | {"verification", "repair"},
     "compose": DECIDED

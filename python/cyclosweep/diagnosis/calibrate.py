@@ -1,12 +1,15 @@
 """Calibration: the noise of the recording, and the published model fitted to it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.prepare.noise import Noise
+from cyclosweep.diagnosis.prepare.local_events import event_rows
+from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.simulation.effects.history import Floats
@@ -96,12 +99,22 @@ def noise_left(problem: Problem, flexible: Floats, *, all_noise: bool = False) -
     Noise
     """
     use = problem.fitted
-    return estimate_noise(
-        problem.angle_deg[use],
-        flexible,
-        problem.gap[use],
+    angle, run = problem.angle_deg[use], problem.history.run[use]
+    gap, weight = problem.gap[use], problem.weight[use]
+    row_gap = gaps(use, problem.history.run, None)[use]
+    kept = ~event_rows(angle, flexible, run)
+    if kept.all():
+        return estimate_noise(
+            angle, flexible, gap, problem.resolution_deg, weight, row_gap, all_noise=all_noise
+        )
+    beyond = np.r_[False, ~kept[:-1]]
+    noise = estimate_noise(
+        angle[kept],
+        orthonormal(flexible[kept]),
+        np.where(beyond, 0.0, gap)[kept],
         problem.resolution_deg,
-        problem.weight[use],
-        gaps(use, problem.history.run, None)[use],
+        weight[kept],
+        np.where(beyond, 0.0, row_gap)[kept],
         all_noise=all_noise,
     )
+    return replace(noise, gap=row_gap if noise.by_rows else gap)

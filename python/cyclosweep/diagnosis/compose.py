@@ -21,6 +21,7 @@ from cyclosweep.diagnosis.model_error_table import learned_in_words
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.plausibility import doubts
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.prepare.torque_noise import smoothed_in_words
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
@@ -198,6 +199,7 @@ def _noise(search: Search) -> NoiseEstimate:
         autocorrelation_upper=noise.correlation,
         tail_degrees_of_freedom=finite(noise.tail),
         resolution_deg=search.problem.resolution_deg,
+        torque_nm=search.problem.torque_noise_nm,
     )
 
 
@@ -337,10 +339,13 @@ def _findings(
     tuple of Finding
     """
     unsteady = verified.drift is not None
-    found = concluded.accepted.fit.findings(concluded.repetition, unsteady=unsteady)
-    if repaired.learned is None:
-        return found
-    return *found, Finding(topic="model error", text=learned_in_words(repaired.learned))
+    found = list(concluded.accepted.fit.findings(concluded.repetition, unsteady=unsteady))
+    noise = concluded.search.problem.torque_noise_nm
+    if noise > 0.0:
+        found.append(Finding(topic="torque noise", text=smoothed_in_words(noise)))
+    if repaired.learned is not None:
+        found.append(Finding(topic="model error", text=learned_in_words(repaired.learned)))
+    return tuple(found)
 
 
 def _rated_torque(drive: Drive, recording: Recording) -> float:

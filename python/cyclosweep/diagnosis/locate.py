@@ -1,6 +1,6 @@
 """Location: where recording and simulation differ in torque, direction, run, place and time."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 
@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.prepare.local_events import event_rows
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import recorded_runs
 from cyclosweep.result.mismatch import Direction, Region
@@ -27,6 +28,8 @@ MOST_RUNS = 60
 """Runs up to which each run is a cell."""
 MOST_POSITIONS = 40
 """Mesh positions that are cells."""
+LEAST_CHANCE = 0.002
+"""Probability that is stated of an event: noise of the size of the others makes none."""
 STRETCHES = (10, 30)
 """Numbers of equal stretches into which the recording is cut."""
 
@@ -62,9 +65,43 @@ def locate(concluded: Conclusion) -> tuple[Region, ...]:
     found: list[Region] = []
     if search.baseline.largest_excess >= search.threshold:
         found = find_regions(search, search.baseline)
-    if concluded.decision.unexplained and accepted.fit.terms:
-        found = find_regions(search, accepted) or found
+    if concluded.decision.unexplained:
+        if accepted.fit.terms:
+            found = find_regions(search, accepted) or found
+        found = (event_regions(search.problem, accepted) + found)[:MOST_REGIONS]
     return tuple(found)
+
+
+def event_regions(problem: Problem, accepted: Candidate) -> list[Region]:
+    """Regions of events: stretches of a few runs that are far off all others.
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording prepared for fitting.
+    accepted : Candidate
+        The structure beside which they stand out.
+
+    Returns
+    -------
+    list of Region
+        The largest first.
+    """
+    use, labels = np.flatnonzero(problem.fitted), recorded_runs(problem)
+    left = (problem.angle_deg - accepted.fit.mean_deg)[use]
+    run = problem.history.run[use]
+    event = np.flatnonzero(event_rows(left, np.zeros((len(left), 0)), run))
+    if not len(event):
+        return []
+    all_squares = float(left @ left)
+    found = []
+    for part in np.split(event, np.flatnonzero(np.diff(event) > 1) + 1):
+        rows = np.zeros(len(problem.fitted), dtype=bool)
+        rows[use[part]] = True
+        cell = _stretch(problem, rows, labels)
+        share = float(left[part] @ left[part]) / all_squares
+        found.append(_region(problem, cell, float(left[part].mean()), share, LEAST_CHANCE))
+    return sorted(found, key=lambda region: region.share_of_excess or 0.0, reverse=True)
 
 
 def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list[Region]:
@@ -238,21 +275,42 @@ def _position_cells(problem: Problem) -> Iterator[_Cell]:
 
 def _time_cells(problem: Problem) -> Iterator[_Cell]:
     """Stretches of the recording with equal numbers of fitted rows."""
-    history, labels = problem.history, recorded_runs(problem)
-    clock = clock_of(history)
+    labels = recorded_runs(problem)
     index = np.flatnonzero(problem.fitted)
     for parts in STRETCHES:
         edges = index[np.linspace(0, len(index) - 1, parts + 1).astype(int)]
         for first, last in pairwise(edges):
             rows = np.zeros(len(problem.fitted), dtype=bool)
             rows[first : last + 1] = True
-            span = (round(float(clock[first]), 3), round(float(clock[last]), 3))
-            yield _Cell(
-                rows=rows,
-                time=span if history.time_s is not None else None,
-                readings=None if history.time_s is not None else _readings(problem, first, last),
-                run=(labels[history.run[first]], labels[history.run[last]]),
-            )
+            yield _stretch(problem, rows, labels)
+
+
+def _stretch(problem: Problem, rows: Flags, labels: Sequence[int]) -> _Cell:
+    """Cell of a stretch of the recording.
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording prepared for fitting.
+    rows : ndarray of bool, shape (n,)
+        The stretch.
+    labels : sequence of int
+        Label of each run.
+
+    Returns
+    -------
+    _Cell
+    """
+    history = problem.history
+    first, last = np.flatnonzero(rows)[[0, -1]]
+    clock = clock_of(history)
+    span = (round(float(clock[first]), 3), round(float(clock[last]), 3))
+    return _Cell(
+        rows=rows,
+        time=span if history.time_s is not None else None,
+        readings=None if history.time_s is not None else _readings(problem, first, last),
+        run=(labels[history.run[first]], labels[history.run[last]]),
+    )
 
 
 def _readings(problem: Problem, first: int, last: int) -> tuple[int, int]:

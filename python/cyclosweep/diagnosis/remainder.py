@@ -8,6 +8,7 @@ from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
 
@@ -37,8 +38,10 @@ def remainder(
     """
     if verified.change is not None:
         return _of_change(concluded, verified.change)
-    if not verified.decision.unexplained or verified.decision.best is None:
+    if not verified.decision.unexplained:
         return None
+    if verified.decision.best is None:
+        return _of_event(concluded, regions)
     if concluded.naming.withdrawn and concluded.naming.shown:
         return _of_class(concluded)
     if verified.drift is not None:
@@ -46,6 +49,30 @@ def remainder(
     if concluded.repetition is not None:
         return _staircase(concluded.accepted, concluded.repetition)
     return _unnamed_term(concluded.best) or _unfitted(concluded, regions)
+
+
+def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | None:
+    """Describe the event that is all that remains; None where there is none.
+
+    Parameters
+    ----------
+    concluded : Conclusion
+        With the accepted structure.
+    regions : sequence of Region
+        Where the calibrated model and the recording differ.
+
+    Returns
+    -------
+    Remainder or None
+    """
+    if not event_regions(concluded.search.problem, concluded.accepted):
+        return None
+    run, size = regions[0].run, abs(regions[0].mean_residual_deg)
+    return Remainder(
+        shape="event of a single run",
+        place="" if run is None else f"in run {run[0]}, as no other shows",
+        size_deg=size,
+    )
 
 
 def _of_change(concluded: Conclusion, change: DriveChange) -> Remainder:

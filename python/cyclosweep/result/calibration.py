@@ -20,6 +20,9 @@ class NoiseEstimate(Part):
     """Degrees of freedom of Student's t where the noise has heavy tails; null where Gaussian."""
     resolution_deg: float | None = None
     """Step of the angle reading [deg]; 0 for a continuous one."""
+    torque_nm: float | None = None
+    """Standard deviation of the noise of the torque that was smoothed before anything was fitted
+    [N m]; 0 where none is seen."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.prepare.flanks import NominalLine, find_flanks
+from cyclosweep.diagnosis.prepare.flanks import Flanks, NominalLine, find_flanks
 from cyclosweep.diagnosis.prepare.neighbours import angle_by_neighbours
+from cyclosweep.diagnosis.prepare.pieces import find_pieces
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
+from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
@@ -38,6 +40,8 @@ class Problem:
         Rough width of the hysteresis loop, by which dead-zone rows were recognised [deg].
     resolution_deg : float
         Step of the angle reading [deg].
+    torque_noise_nm : float
+        Noise of the torque reading that was smoothed [N m]; zero: none that matters.
     """
 
     recording: Recording
@@ -53,6 +57,7 @@ class Problem:
     one_sided: bool
     loop_width_deg: float
     resolution_deg: float
+    torque_noise_nm: float
     nominal_compliance: float
     nominal_free_play: float
 
@@ -153,6 +158,10 @@ def prepare(
     counts = recording.counts[first] & rows.full
     scored = None if recording.unscored is None else ~recording.unscored[first]
     flanks = find_flanks(torque, angle, line, scored)
+    piece = find_pieces(recording).of_sample[first]
+    torque, torque_noise = torque_without_noise(
+        torque, angle, piece, flanks.compliance_deg_per_nm, _off_lines(flanks, torque, angle), time
+    )
     side, contact = flanks.at(torque, angle, scored)
     datum, compliance = flanks.datum_deg, flanks.compliance_deg_per_nm
     play = flanks.free_play_deg
@@ -198,9 +207,31 @@ def prepare(
         one_sided=one_sided,
         loop_width_deg=flanks.loop_width_deg,
         resolution_deg=recording.angle_resolution_deg,
+        torque_noise_nm=torque_noise,
         nominal_compliance=line.compliance_deg_per_nm,
         nominal_free_play=line.free_play_deg,
     )
+
+
+def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats) -> float:
+    """Root mean square of what straight lines on both flanks leave of the twist [deg].
+
+    Parameters
+    ----------
+    flanks : Flanks
+        The lines.
+    torque_nm, angle_deg : ndarray, shape (n,)
+        Torque [N m] and twist [deg].
+
+    Returns
+    -------
+    float
+    """
+    side, contact = flanks.at(torque_nm, angle_deg)
+    line = flanks.datum_deg + side * flanks.free_play_deg
+    line = line + flanks.compliance_deg_per_nm * torque_nm
+    left = (angle_deg - line)[contact]
+    return float(np.sqrt(np.mean(left**2))) if len(left) else 0.0
 
 
 def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:

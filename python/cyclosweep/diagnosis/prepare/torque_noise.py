@@ -1,0 +1,156 @@
+"""Torque without the noise of its sensor, where the twist says that it is noise.
+
+Between its turning points a programme changes the torque smoothly. What the reading adds to that
+is either torque, and then the twist follows it with the compliance, or noise of the sensor, and
+then the twist knows nothing of it. Left in, noise of the torque looks like drag, whose rate it
+makes, and like friction, which holds the shaft through its small reversals.
+"""
+
+import numpy as np
+
+from cyclosweep.simulation.effects.history import Floats, Ints
+
+REACHES = (2, 3, 5, 8, 12, 18, 27)
+"""Rows on each side to which a parabola is fitted; a row takes the farthest that agrees with all
+that are nearer."""
+AGREES = 1.25
+"""Standard deviations within which the parabolas of a row agree (intersection of confidence
+intervals: A. Goldenshluger, A. Nemirovski, Math. Methods Statist. 6, 1997)."""
+CORNER = 4.0
+"""Standard deviations by which a row is off the nearest parabola where the programme has a corner
+or a step: such rows are left as they were read."""
+FOLLOWS = 0.5
+"""Share of the compliance with which the twist follows what the torque does from row to row, from
+which that is torque and no noise."""
+SEEN = 1.0
+"""Noise of the torque, as twist over what scatters there and summed over all rows, from which any
+test could see it."""
+SMALL = 0.02
+"""Noise of the torque, as twist over what a straight line leaves, up to which the errors of laws
+hide what it does; the torque as read is then also what a repaired model is given."""
+SINGULAR = 1e10
+"""Condition number from which rows at too few places fix no parabola."""
+
+
+def torque_without_noise(
+    torque_nm: Floats,
+    angle_deg: Floats,
+    piece: Ints,
+    compliance_deg_per_nm: float,
+    mismatch_deg: float,
+    time_s: Floats | None = None,
+) -> tuple[Floats, float]:
+    """Smooth the torque along the pieces of the load history, where it scatters by noise.
+
+    Parameters
+    ----------
+    torque_nm, angle_deg : ndarray, shape (n,)
+        Read torque [N m] and twist [deg].
+    piece : ndarray of int, shape (n,)
+        Label of the piece of each row; equal ones are consecutive, and the programme has no turning
+        point within one.
+    compliance_deg_per_nm : float
+        Rough compliance of the drive at the measured shaft.
+    mismatch_deg : float
+        Root mean square of what a straight line on each flank leaves of the twist [deg].
+    time_s : ndarray, shape (n,), optional
+        Clock [s]; without it rows count as equally spaced.
+
+    Returns
+    -------
+    torque_nm : ndarray, shape (n,)
+        The torque as it was read where the twist follows it, or where no test could tell.
+    noise_nm : float
+        Standard deviation of the noise that was smoothed; zero where it is the torque as read.
+    """
+    place = np.arange(len(torque_nm), dtype=np.float64) if time_s is None else time_s
+    nearest, share = _parabola(torque_nm, place, piece, REACHES[0])
+    left = np.sqrt(np.maximum(1.0 - share, 0.0))
+    beyond = np.divide(torque_nm - nearest, left, out=np.zeros_like(left), where=left > 0.0)
+    if not np.any(left > 0.0):
+        return torque_nm, 0.0
+    noise = 1.4826 * float(np.median(np.abs(beyond[left > 0.0])))
+    steady = (left > 0.0) & (np.abs(beyond) <= CORNER * noise)
+    if compliance_deg_per_nm * noise <= SMALL * mismatch_deg:
+        return torque_nm, 0.0
+    smooth, angle = torque_nm.copy(), angle_deg.copy()
+    low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
+    agrees = steady
+    for reach in REACHES:
+        fitted, share = _parabola(torque_nm, place, piece, reach)
+        room = AGREES * noise * np.sqrt(share)
+        low, high = np.maximum(low, fitted - room), np.minimum(high, fitted + room)
+        agrees = agrees & (low <= high)
+        smooth[agrees] = fitted[agrees]
+        angle[agrees] = _parabola(angle_deg, place, piece, reach)[0][agrees]
+    ripple, jitter = (torque_nm - smooth)[steady], (angle_deg - angle)[steady]
+    size = 1.4826 * float(np.median(np.abs(jitter)))
+    power = float(ripple @ ripple)
+    if compliance_deg_per_nm * np.sqrt(power) <= SEEN * size:
+        return torque_nm, 0.0
+    followed = float(ripple @ np.clip(jitter, -CORNER * size, CORNER * size)) / power
+    if followed > FOLLOWS * compliance_deg_per_nm:
+        return torque_nm, 0.0
+    return smooth, noise
+
+
+def smoothed_in_words(noise_nm: float) -> str:
+    """Say how large the noise of the torque is, and what was done to it.
+
+    Parameters
+    ----------
+    noise_nm : float
+        Its standard deviation [N m].
+
+    Returns
+    -------
+    str
+    """
+    return (
+        f"The torque reading scatters by {noise_nm:.2g} N m from row to row (one standard "
+        "deviation), and the twist does not follow it: noise of the torque sensor. It is smoothed "
+        "between the turning points before anything is fitted; left in, it would look like drag "
+        "and friction."
+    )
+
+
+def _parabola(value: Floats, place: Floats, piece: Ints, reach: int) -> tuple[Floats, Floats]:
+    """Value of a parabola through the neighbours of each row in its piece, itself among them.
+
+    Parameters
+    ----------
+    value, place : ndarray, shape (n,)
+        What is smoothed, and where.
+    piece : ndarray of int, shape (n,)
+    reach : int
+        Rows on each side.
+
+    Returns
+    -------
+    smooth : ndarray, shape (n,)
+        The value itself where the piece has no more rows than a parabola takes up.
+    share : ndarray, shape (n,)
+        Variance of it over that of the noise of a row.
+    """
+    count = len(value)
+    moments, sums = np.zeros((5, count)), np.zeros((3, count))
+    for distance in range(-reach, reach + 1):
+        here = np.arange(max(0, -distance), min(count, count - distance))
+        here = here[piece[here] == piece[here + distance]]
+        away = place[here + distance] - place[here]
+        for power in range(5):
+            moments[power, here] += away**power
+        for power in range(3):
+            sums[power, here] += away**power * value[here + distance]
+    enough = np.flatnonzero((moments[0] > 3) & (moments[2] > 0.0))
+    # In units of its own spread the normal equations of a row are of order one.
+    spread = np.sqrt(moments[2, enough] / moments[0, enough])
+    order = np.add.outer(np.arange(3), np.arange(3))
+    normal = np.moveaxis(moments[order][:, :, enough] / spread ** order[:, :, None], 2, 0)
+    regular = np.linalg.cond(normal) < SINGULAR
+    enough, spread = enough[regular], spread[regular]
+    weights = np.linalg.inv(normal[regular])[:, 0, :]
+    smooth, share = value.copy(), np.ones(count)
+    smooth[enough] = np.sum(weights * (sums[:, enough] / spread ** np.arange(3)[:, None]).T, axis=1)
+    share[enough] = np.clip(weights[:, 0], 0.0, 1.0)
+    return smooth, share

@@ -1,0 +1,93 @@
+"""Noise of the torque reading is smoothed; torque that the twist follows is not."""
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
+from cyclosweep.simulation.effects.history import Floats, Ints
+
+COMPLIANCE = 2.7
+
+
+def programme(rows: int = 60, runs: int = 8) -> tuple[Floats, Ints, Floats]:
+    """Ramps up, a dwell with a corner on either side, and down; piece and clock of each row."""
+    up = np.r_[np.linspace(0.5, 15.0, rows), np.full(rows // 3, 15.0)]
+    down = np.linspace(15.0, 0.5, rows) ** 1.2 / 15.0**0.2
+    torque = np.tile(np.r_[up, down], runs)
+    piece = np.repeat(np.arange(2 * runs), np.tile([len(up), len(down)], runs))
+    return torque, piece, np.arange(len(torque), dtype=np.float64)
+
+
+def noisy(seed: int, torque: Floats, size: float) -> tuple[Floats, Floats]:
+    rng = np.random.default_rng(seed)
+    return torque + size * rng.normal(size=len(torque)), 0.1 * rng.normal(size=len(torque))
+
+
+@pytest.mark.parametrize("size", [0.01, 0.03, 0.1])
+def test_noise_that_the_twist_does_not_follow_is_smoothed(size: float) -> None:
+    torque, piece, time = programme()
+    read, scatter = noisy(1, torque, size)
+    smooth, noise = torque_without_noise(
+        read, COMPLIANCE * torque + scatter, piece, COMPLIANCE, 0.1, time
+    )
+    assert noise == pytest.approx(size, rel=0.1)
+    assert np.std(smooth - torque) < 0.5 * size
+
+
+def test_torque_that_the_twist_follows_is_left_as_it_was_read() -> None:
+    torque, piece, time = programme()
+    real, scatter = noisy(2, torque, 0.1)
+    smooth, noise = torque_without_noise(
+        real, COMPLIANCE * real + scatter, piece, COMPLIANCE, 0.1, time
+    )
+    assert noise == 0.0
+    assert smooth is real
+
+
+def test_a_clean_torque_is_left_as_it_was_read() -> None:
+    torque, piece, time = programme()
+    read = np.round(torque, 6)
+    smooth, noise = torque_without_noise(
+        read, COMPLIANCE * torque + noisy(3, torque, 0.0)[1], piece, COMPLIANCE, 0.1, time
+    )
+    assert noise == 0.0
+    assert smooth is read
+
+
+def test_noise_far_below_the_mismatch_is_left() -> None:
+    torque, piece, time = programme()
+    read, scatter = noisy(1, torque, 0.03)
+    twist = COMPLIANCE * torque + scatter
+    assert torque_without_noise(read, twist, piece, COMPLIANCE, 5.0, time)[0] is read
+    assert torque_without_noise(read, twist, piece, COMPLIANCE, 3.0, time)[0] is not read
+
+
+def test_steps_of_a_staircase_of_weights_stay() -> None:
+    rng = np.random.default_rng(4)
+    torque = np.repeat(np.r_[1.0:11.0], 6)
+    read = torque + 0.03 * rng.normal(size=len(torque))
+    twist = COMPLIANCE * torque + 0.02 * rng.normal(size=len(torque))
+    smooth, _ = torque_without_noise(read, twist, np.zeros(len(torque), np.int64), COMPLIANCE, 0.1)
+    assert np.abs(smooth - torque).max() < 0.15
+
+
+def test_the_diagnosis_stays_silent_beside_noise_of_the_torque() -> None:
+    """As read, the torque's noise was called a loop by rate in nearly every second recording."""
+    rng = np.random.default_rng(5)
+    torque = np.tile(np.r_[np.linspace(0.5, 15.0, 75), np.linspace(15.0, 0.5, 75)], 6)
+    torque = np.r_[torque, -torque]
+    run = np.repeat(np.arange(1, 13), 150)
+    angle = 28.0 * np.sign(torque) + COMPLIANCE * torque + 0.19 * rng.normal(size=len(torque))
+    recording = cs.Recording.from_arrays(
+        torque_nm=torque + 0.027 * rng.normal(size=len(torque)),
+        angle_deg=angle,
+        run=run,
+        time_s=0.4 * np.arange(len(torque)),
+        side="input",
+    )
+    found = cs.diagnose(recording, cs.Drive.reference_87())
+    assert found.verdict in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
+    assert found.answer.noise.torque_nm == pytest.approx(0.027, rel=0.15)
+    (said,) = [each.text for each in found.answer.findings if each.topic == "torque noise"]
+    assert "0.027 N m" in said or "0.026 N m" in said or "0.028 N m" in said
