@@ -266,6 +266,8 @@ def dragged(
     lapse: _Reals,
     restart: npt.NDArray[np.bool_],
     lag: float,
+    power: float = 1.0,
+    reference_rate: float = 1.0,
 ) -> _Reals: ...
 def remembered_datum(push: _Reals, memory: float) -> _Reals: ...
 def write_parquet(

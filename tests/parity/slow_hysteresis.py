@@ -142,15 +142,25 @@ def creep_state(load: Floats, time: Floats, restart: Mask, tau: float, steps: in
     return out
 
 
-def dragged(load: Floats, lapse: Floats, restart: Mask, lag: float) -> list[float]:
-    """Root of ``u - x - lag (x - before)/lapse``, found by bisection instead of division."""
+def dragged(
+    load: Floats,
+    lapse: Floats,
+    restart: Mask,
+    lag: float,
+    power: float = 1.0,
+    reference_rate: float = 1.0,
+) -> list[float]:
+    """Root of ``u = x + drag(rate)``, found by bisection instead of Newton's method."""
     out, before = [], 0.0
     for u, h, fresh in zip(load, lapse, restart, strict=True):
         before = 0.0 if fresh else before
         low, high = min(u, before) - 1.0, max(u, before) + 1.0
         for _ in range(200):
             x = 0.5 * (low + high)
-            low, high = (x, high) if u - x - lag * (x - before) / h > 0 else (low, x)
+            rate = (x - before) / h
+            drag = lag * reference_rate * (abs(rate) / reference_rate) ** power
+            beyond = u - x - (drag if rate > 0 else -drag)
+            low, high = (x, high) if beyond > 0 else (low, x)
         before = x
         out.append(x)
     return out

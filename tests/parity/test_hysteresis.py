@@ -150,15 +150,16 @@ def test_creep() -> None:
     np.testing.assert_allclose(fast, slow.creep_state(load, time, restart, 7.0), atol=2e-3)
 
 
-def test_drag() -> None:
+@pytest.mark.parametrize(("power", "rate"), [(1.0, 1.0), (0.75, 0.4), (0.5, 3.0)])
+def test_drag(power: float, rate: float) -> None:
     rng = np.random.default_rng(6)
     lapse = rng.uniform(0.2, 3.0, 60)
     load = np.cumsum(rng.normal(size=60))
     restart = np.zeros(60, dtype=bool)
     restart[30] = True
-    fast = core.dragged(load, lapse, restart, 0.7)
-    expected = slow.dragged(load, lapse, restart, 0.7)
-    np.testing.assert_allclose(fast, expected, rtol=1e-12, atol=1e-12)
+    fast = core.dragged(load, lapse, restart, 0.7, power, rate)
+    expected = slow.dragged(load, lapse, restart, 0.7, power, rate)
+    np.testing.assert_allclose(fast, expected, rtol=1e-11, atol=1e-11)
 
 
 def test_lengths_must_agree() -> None:

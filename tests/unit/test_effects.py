@@ -155,7 +155,7 @@ def test_what_hides_an_effect(effect: Effect) -> None:
 PARAMETERS = {
     "friction_hysteresis": {"slip_deg", "scatter", "skew"},
     "load_dependent_friction": {"slip_deg", "scatter", "skew"},
-    "contact_stiffening": {"turn_nm"},
+    "contact_stiffening": {"turn_nm", "squeeze_nm", "stop_nm"},
     "clearance_takeup": {"first_nm", "range_nm"},
     "overload_softening": {"onset_nm", "power"},
     "datum_drift": {"memory"},
@@ -164,7 +164,7 @@ PARAMETERS = {
     "transmission_error": {"travel_order_1"},
     "thermal_drift": {"delay_s"},
     "viscous_drag": {"power"},
-    "load_asymmetry": {"power"},
+    "load_asymmetry": {"power", "limit_nm"},
     "dial_eccentricity": set(),
 }
 """What the fit refines of each effect."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import explained_share
+from cyclosweep.diagnosis.identify.freer_laws import with_freer_laws
 from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.search import Search
@@ -121,6 +122,10 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     else:
         decision = decide(search, beyond_baseline, tolerance)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
+    freer = with_freer_laws(search, accepted)
+    if freer is not accepted:
+        decision = _with_law(decision, accepted, freer)
+        accepted = freer
     naming = names_that_hold(search, accepted, decision.best or accepted)
     if staged is not None and staged[0] is naming.part:
         explained = staged[1]
@@ -150,6 +155,24 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         excluded=frozenset(below - possible),
         explained=explained,
     )
+
+
+def _with_law(decision: Decision, accepted: Candidate, freer: Candidate) -> Decision:
+    """Verdict with the laws of one of its structures replaced by freer ones.
+
+    Parameters
+    ----------
+    decision : Decision
+    accepted, freer : Candidate
+        The structure, and the same with freer laws.
+
+    Returns
+    -------
+    Decision
+    """
+    best = freer if decision.best is accepted else decision.best
+    listed = [(freer if each is accepted else each, p) for each, p in decision.explanations]
+    return replace(decision, best=best, explanations=listed)
 
 
 def _with_names_that_hold(

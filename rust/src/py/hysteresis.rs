@@ -1,6 +1,6 @@
 //! Python bindings of the history operators.
 
-use crate::model::hysteresis::{self, HistoryError, SlipElements, Spring};
+use crate::model::hysteresis::{self, Dashpot, HistoryError, SlipElements, Spring};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -137,12 +137,15 @@ fn play<'py>(
 
 /// Input that a dashpot in parallel lets through.
 #[pyfunction]
+#[pyo3(signature = (signal, lapse, restart, lag, power=1.0, reference_rate=1.0))]
 fn dragged<'py>(
     py: Python<'py>,
     signal: Column<'py>,
     lapse: Column<'py>,
     restart: Flags<'py>,
     lag: f64,
+    power: f64,
+    reference_rate: f64,
 ) -> PyResult<Reals<'py>> {
     let n = signal.len()?;
     let mut out = vec![0.0; n];
@@ -150,7 +153,11 @@ fn dragged<'py>(
         signal.as_slice()?,
         lapse.as_slice()?,
         restart.as_slice()?,
-        lag,
+        Dashpot {
+            lag,
+            power,
+            reference_rate,
+        },
         &mut out,
     )?;
     Ok(out.into_pyarray(py))

@@ -180,4 +180,8 @@ class Candidate:
         good = [name for name in good if name not in self.names]
         first = good[:most]
         others = [name for name in good if name in named and name not in first]
-        return first + others[: max(0, least_named - sum(name in named for name in first))]
+        first += others[: max(0, least_named - sum(name in named for name in first))]
+        # Look-alikes are compared by their fits: on the grid of shapes the wrong one may be ahead.
+        family = {name: each.effect.family for name, each in named.items() if each.effect}
+        families = {family[name] for name in first if name in family}
+        return first + [n for n in others if n not in first and family[n] in families]

@@ -11,6 +11,8 @@ from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects.base import Effect, Shape
 
+MOST_BESIDE_FRICTION = 2
+"""Most shape parameters by which a law gets richer at once beside friction."""
 TRIED = 3
 """Shapes of an effect that are tried, those that explain most of the residual."""
 
@@ -52,23 +54,54 @@ def richer_structures(
         freer = freer_friction(terms[slips[0]])
         if freer is not None:
             yield _with_term(terms, slips[0], freer), 1
-    found = candidate.scan
     for k, term in enumerate(terms):
         if term.effect is None or term.slips:
             continue
-        if candidate.excesses.get(term.name, 0.0) <= threshold:
+        if candidate.excesses.get(term.name, 0.0) > threshold:
+            yield from freer_laws(candidate, library, k)
+
+
+def freer_laws(
+    candidate: Candidate, library: Library, index: int, costly: int = 1
+) -> Iterator[tuple[tuple[Term, ...], int]]:
+    """Structures in which the law of one effect has more freedom of shape.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The structure.
+    library : Library
+        All hypotheses.
+    index : int
+        Which of its terms.
+    costly : int
+        Most offers of more shape parameters beside friction, where each costs a path of the shaft
+        in every step of a fit.
+
+    Yields
+    ------
+    terms : tuple of Term
+    rank : int
+        Parameters added, at least one.
+    """
+    found, terms = candidate.scan, candidate.fit.terms
+    term = terms[index]
+    if term.effect is None or term.name not in found.groups:
+        return
+    members = found.groups[term.name]
+    each = evidence(found.observed[members], found.ranks[members])
+    slips = any(other.slips for other in terms)
+    for member in members[np.argsort(-each)][:TRIED]:
+        shape = term.effect.combined(term.shape, library.signatures[member].shape)
+        if shape is None:
             continue
-        members = found.groups[term.name]
-        each = evidence(found.observed[members], found.ranks[members])
-        for index in members[np.argsort(-each)][:TRIED]:
-            shape = term.effect.combined(term.shape, library.signatures[index].shape)
-            if shape is None:
+        before, after = (_freedom(term.effect, each) for each in (term.shape, shape))
+        if slips and after[1] > before[1]:
+            if costly == 0 or after[1] > before[1] + MOST_BESIDE_FRICTION:
                 continue
-            # Beside friction every further shape parameter costs a path of the shaft in each step.
-            before, after = (_freedom(term.effect, each) for each in (term.shape, shape))
-            if slips and after[1] > before[1]:
-                continue
-            yield _with_term(terms, k, replace(term, shape=shape)), max(sum(after) - sum(before), 1)
+            costly -= 1
+        freer = _with_term(terms, index, replace(term, shape=shape))
+        yield freer, max(sum(after) - sum(before), 1)
 
 
 def freer_friction(term: Term) -> Term | None:

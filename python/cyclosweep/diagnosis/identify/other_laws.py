@@ -6,6 +6,8 @@ of one class of behaviour differ. Once everything else is known the difference s
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import share_class
@@ -14,6 +16,12 @@ from cyclosweep.diagnosis.identify.terms import Term
 
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
+
+LEAST_LEFT = 0.1
+"""What is left beyond the noise counts from this share of the noise."""
+FAR_LESS = 0.5
+"""What another law leaves beyond the noise, over what the accepted one leaves, from which it takes
+its place although the error of models that is allowed for makes both alike."""
 
 
 def with_better_laws(search: Search) -> FittedStructure:
@@ -39,10 +47,15 @@ def with_better_laws(search: Search) -> FittedStructure:
         parent = search.refit(others, fitted) if others else search.baseline
         own = _extended(search, parent, name)
         tried = [child for each in rivals if (child := _extended(search, parent, each)) is not None]
+        if own is not None and own.fit.chi2 < fitted.chi2 - 2.0 * CLEARLY:
+            # Beside everything else the accepted law has been given more freedom.
+            fitted = own.fit
         best = max(tried, key=lambda child: child.score, default=None)
         if best is None or not best.all_recognised or best.fit.chi2 >= fitted.chi2:
             continue
-        if best.score > _score(own) + CLEARLY:
+        ahead = best.score - _score(own)
+        leaves_less = _left(best.fit) < FAR_LESS * _left(fitted)
+        if ahead > CLEARLY or (leaves_less and ahead > -CLEARLY):
             fitted = best.fit
     return fitted
 
@@ -62,6 +75,12 @@ def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:
     Candidate or None
     """
     return search.extend(parent, name) if name in parent.scan.groups else None
+
+
+def _left(fitted: FittedStructure) -> float:
+    """Root mean square of what a structure leaves beyond the noise [deg]."""
+    noise = fitted.noise.spread_deg
+    return float(np.sqrt(max(fitted.rmse_deg**2 - noise**2, (LEAST_LEFT * noise) ** 2)))
 
 
 def _score(candidate: Candidate | None) -> float:

@@ -1,6 +1,6 @@
 """Search for the set of effects that explains a recording, each refitted with the baseline."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -293,6 +293,24 @@ class Search:
             suffices=self.suffices(candidate),
             accepted=self.start.names,
         )
+        return self.first_better(candidate, offers)
+
+    def first_better(
+        self, candidate: Candidate, offers: Iterable[tuple[tuple[Term, ...], int]]
+    ) -> Candidate | None:
+        """First of some richer structures that the evidence prefers to a poorer one.
+
+        Parameters
+        ----------
+        candidate : Candidate
+            The poorer one.
+        offers : iterable of (terms, rank)
+            Richer ones, each with the number of parameters added.
+
+        Returns
+        -------
+        Candidate or None
+        """
         for terms, rank in offers:
             rounds = USUAL_ROUNDS if any(term.slips for term in terms) else RICH_ROUNDS
             joint = fit(self.problem, self.noise, terms, candidate.fit, rounds=rounds)

@@ -14,6 +14,8 @@ from cyclosweep.simulation.effects import Shape
 
 DENSE = frozenset({"saturation at the end of the range", "bump at a load"})
 """Unnamed shapes whose grid stands for what is believed beforehand."""
+OTHER_LAW = 0.9
+"""Evidence of another law of an effect over that of the best one, from which it is tried too."""
 MOST_CHOICE_PENALTY = 1.5
 """What the choice of a shape is charged at most where the grid of shapes is coarse [nat]."""
 
@@ -55,11 +57,15 @@ def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, f
     most = np.inf if dense else MOST_CHOICE_PENALTY
     choice = float(np.clip(each[rank[0]] - average, 0.0, most))
     slips = first.effect is not None and first.effect.slips
-    tried = 0
-    for index in order:
+    tried, laws = 0, {frozenset(first.shape)}
+    for index, value in zip(order, each[rank], strict=True):
         signature = found.library.signatures[index]
-        if tried and not (slips and _far_apart(signature, first)):
+        law = frozenset(signature.shape)
+        # Between the shapes of a grid a law that was not the best on it may fit best.
+        other_law = dense and law not in laws and value >= OTHER_LAW * each[rank[0]]
+        if tried and not (other_law or (slips and _far_apart(signature, first))):
             continue
+        laws.add(law)
         amplitude = _amplitude(found, signature) if slips else 0.0
         shapes: Sequence[Shape] = [signature.shape]
         if signature.effect is not None and not tried:
@@ -68,7 +74,7 @@ def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, f
             term = Term(signature.effect, shape, signature.unnamed, amplitude)
             yield term, float(found.ranks[index]), choice
         tried += 1
-        if tried >= (2 if slips else 1):
+        if slips and tried >= 2:
             return
 
 

@@ -8,13 +8,19 @@ import numpy as np
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
+LOADS = {"turn_nm": (0.02, 0.25, 7), "squeeze_nm": (0.05, 0.35, 4), "stop_nm": (0.1, 0.9, 6)}
+"""Loads of the laws over the largest load: the least and most that are looked for, and how many."""
+
 
 class ContactStiffening(Effect):
-    """Extra compliance ``dC/(1 + |T|/T0)`` or a Hertzian power of the load, alike on both flanks.
+    """Compliance that falls smoothly with the load, alike on both flanks, by one of four laws.
 
-    `turn_nm` is the load at which half of the extra compliance is gone; a Hertzian contact
-    (``T**(2/3)``) lies within the range of shapes after calibration of the linear part. A contact
-    is stiff long before the largest load, so `turn_nm` stays below a quarter of it.
+    * A contact in parallel with softer ones, ``dC/(1 + |T|/T0)``: half of the extra compliance is
+      gone at `turn_nm`. Such a contact is stiff long before the largest load: `turn_nm` stays below
+      a quarter of it.
+    * A Hertzian power of the load (``T**(2/3)``), after calibration of the linear part.
+    * A soft layer that is squeezed out, ``dC exp(-|T|/T0)`` with `squeeze_nm`.
+    * A soft part that comes to a stop, twist ``dC T0 tanh(|T|/T0)`` with `stop_nm`.
     """
 
     name = "contact_stiffening"
@@ -30,19 +36,25 @@ class ContactStiffening(Effect):
     dense = True
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
+        Parameter("squeeze_nm", "N m", "load that squeezes a soft layer out", 1e-6, 1e6, True),
+        Parameter("stop_nm", "N m", "load that brings a soft part to its stop", 1e-6, 1e6, True),
     )
-    forms = (ShapeForm(("turn_nm",)), ShapeForm(("power",)))
+    forms = tuple(ShapeForm((key,)) for key in ("turn_nm", "power", "squeeze_nm", "stop_nm"))
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Power laws around that of Hertz, and turning loads up to a quarter of the largest."""
+        """Power laws around that of Hertz, and the other laws by their loads."""
         top = history.largest_torque_nm
         powers: list[Shape] = [{"power": float(p)} for p in np.linspace(1 / 2, 5 / 6, 7)]
-        return powers + [{"turn_nm": float(t) * top} for t in np.geomspace(0.02, 0.25, 7)]
+        return powers + [
+            {name: float(share) * top}
+            for name, (lowest, highest, count) in LOADS.items()
+            for share in np.geomspace(lowest, highest, count)
+        ]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Keep the turning load to a quarter of the largest load."""
+        """Keep each load to its share of the largest one."""
         top = history.largest_torque_nm
-        return replace(parameter, lower=1e-3 * top, upper=0.25 * top)
+        return replace(parameter, lower=1e-3 * top, upper=LOADS[parameter.name][1] * top)
 
     def usual_start(
         self, history: History, limit_share: float, slip_share: float
@@ -54,10 +66,15 @@ class ContactStiffening(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""
         load = history.load_nm
-        if "power" in shape:
-            curve = load ** shape["power"]
+        ((name, value),) = shape.items()
+        if name == "power":
+            curve = load**value
+        elif name == "turn_nm":
+            curve = value * np.log1p(load / value)
+        elif name == "squeeze_nm":
+            curve = -value * np.expm1(-load / value)
         else:
-            curve = shape["turn_nm"] * np.log1p(load / shape["turn_nm"])
+            curve = value * np.tanh(load / value)
         return (history.side * curve)[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:

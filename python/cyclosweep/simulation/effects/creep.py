@@ -1,6 +1,7 @@
 """Delayed elasticity under held or changing load."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from cyclosweep.simulation.effects.base import (
     spread,
 )
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+
+LONGEST = 3.0
+"""Longest time constant over the longest run."""
 
 
 class Creep(Effect):
@@ -40,10 +44,7 @@ class Creep(Effect):
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Time constants from a few samples to the length of the longest run."""
-        assert history.time_s is not None
-        starts = history.run_starts
-        stops = np.r_[starts[1:], len(history)]
-        longest = max(spread(history.time_s[a:b]) for a, b in zip(starts, stops, strict=True))
+        longest = _longest_run_s(history)
         shortest = min(max(FEWEST_STEPS * history.usual_step_s, longest / 2000.0), longest / 4.0)
         if not longest > 0:
             return []
@@ -55,6 +56,12 @@ class Creep(Effect):
         return single + [
             {f"tau_{k}_s": float(t) for k, t in enumerate(spectrum, 1)} for spectrum in spectra
         ]
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Keep a time constant to a few runs: a slower one shows as a rate only."""
+        bounded = super().shape_bounds(parameter, history)
+        most = max(LONGEST * _longest_run_s(history), 2.0 * bounded.lower)
+        return replace(bounded, upper=min(bounded.upper, most))
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Delayed twist for a delayed compliance of 1 deg/(N m) [deg]."""
@@ -84,3 +91,11 @@ class Creep(Effect):
             Parameter(f"delayed_compliance_{k}", "deg/(N m)", f"compliance after {tau:.3g} s", 0.0)
             for k, tau in enumerate(shape.values(), 1)
         )
+
+
+def _longest_run_s(history: History) -> float:
+    """Length of the longest run [s]."""
+    assert history.time_s is not None
+    starts = history.run_starts
+    stops = np.r_[starts[1:], len(history)]
+    return max(spread(history.time_s[a:b]) for a, b in zip(starts, stops, strict=True))

@@ -1,15 +1,22 @@
 """Side load or misalignment: the response differs between the directions."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
+STOPS = (0.06, 0.5)
+"""Least and largest load of a stop over the largest load."""
+
 
 class LoadAsymmetry(Effect):
-    """Twist even in torque, ``a |T|^p``: one direction is softer than the other."""
+    """Twist even in torque: one direction is softer than the other.
+
+    It is ``a |T|^p``, or with `limit_nm` ``a T0 tanh(|T|/T0)`` where what yields comes to a stop.
+    """
 
     name = "load_asymmetry"
     physics = (
@@ -22,8 +29,11 @@ class LoadAsymmetry(Effect):
     family = "even curve"
     elastic = True
     dense = True
-    shape_parameters = (Parameter("power", "", "power of the load", 0.4, 3.0),)
-    forms = (ShapeForm(("power",)),)
+    shape_parameters = (
+        Parameter("power", "", "power of the load", 0.4, 3.0),
+        Parameter("limit_nm", "N m", "load at which what yields comes to a stop", 1e-6, 1e6, True),
+    )
+    forms = (ShapeForm(("power",)), ShapeForm(("limit_nm",)))
 
     def untestable(self, history: History) -> str | None:
         """Need both directions."""
@@ -32,8 +42,17 @@ class LoadAsymmetry(Effect):
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """From a square root to a square of the load."""
-        return [{"power": float(power)} for power in np.linspace(0.6, 2.0, 8)]
+        """From a square root to a square of the load, and four loads of a stop."""
+        powers: list[Shape] = [{"power": float(power)} for power in np.linspace(0.6, 2.0, 8)]
+        stops = history.largest_torque_nm * np.geomspace(*STOPS, 4)
+        return powers + [{"limit_nm": float(stop)} for stop in stops]
+
+    def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
+        """Keep a stop below the largest load."""
+        if parameter.name != "limit_nm":
+            return super().shape_bounds(parameter, history)
+        least, most = (share * history.largest_torque_nm for share in STOPS)
+        return replace(parameter, lower=0.5 * least, upper=most)
 
     def usual_start(
         self, history: History, limit_share: float, slip_share: float
@@ -42,9 +61,13 @@ class LoadAsymmetry(Effect):
         return {"power": 1.0}, 1e-3
 
     def columns(self, history: History, shape: Shape) -> Floats:
-        """Even twist, one at a load of 10 N m [deg]."""
+        """Even twist, one at a load of 10 N m [deg]; with a stop, one far beyond it."""
+        if "limit_nm" in shape:
+            return np.tanh(history.load_nm / shape["limit_nm"])[:, None]
         return ((history.load_nm / 10.0) ** shape["power"])[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
-        """Even twist at 10 N m."""
+        """Even twist at 10 N m, or at the stop."""
+        if "limit_nm" in shape:
+            return (Parameter("even_twist_deg", "deg", "difference of the directions, half"),)
         return (Parameter("even_twist_deg", "deg", "difference of the directions at 10 N m, half"),)

@@ -16,7 +16,8 @@ class ViscousDrag(Effect):
     """Drag torque ``D (rate)^n`` against the motion, with n between 0.5 and 1.
 
     The rate is that of the twist itself, which lags behind the torque:
-    ``T = theta/C + D dtheta/dt`` has the time constant ``lag_s = D C``, which shows at reversals.
+    ``T = theta/C + D (dtheta/dt)^n``, which shows at reversals. `lag_s` is the time constant, the
+    drag over the rate and times the compliance, at the usual rate of the recording.
     """
 
     name = "viscous_drag"
@@ -39,20 +40,26 @@ class ViscousDrag(Effect):
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
-        rate = history.compliance_deg_per_nm * np.diff(history.applied_nm) / history.usual_step_s
-        usual = max(float(np.sqrt(np.mean(rate**2))), 1e-12)
-        drag = max(float(amplitudes[0]), 0.0) * usual ** (shape["power"] - 1.0)
+        drag = max(float(amplitudes[0]), 0.0) * _usual_rate(history) ** (shape["power"] - 1.0)
         shortest = SHORTEST_LAG * history.rate_step_s
         return {**shape, "lag_s": max(drag * history.compliance_deg_per_nm, shortest)}
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist taken away by a drag of 1 N m at 1 deg/s [deg]."""
-        lag, compliance = float(shape["lag_s"]), history.compliance_deg_per_nm
-        carried = _core.dragged(history.elastic_nm, history.lapse_s, history.restart, lag)
-        rate = compliance * (history.elastic_nm - carried) / lag
-        drag = np.sign(rate) * np.abs(rate) ** shape["power"]
-        return (-compliance * drag)[:, None]
+        lag, power = float(shape["lag_s"]), float(shape["power"])
+        compliance, usual = history.compliance_deg_per_nm, _usual_rate(history)
+        torque, rate_nm = history.elastic_nm, usual / compliance
+        carried = _core.dragged(torque, history.lapse_s, history.restart, lag, power, rate_nm)
+        # What is not carried is drag: lag times the usual rate where the twist moves at that rate.
+        resisted = (torque - carried) / (lag * rate_nm)
+        return np.asarray(-compliance * usual**power * resisted)[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Drag torque at a rate of 1 deg/s."""
         return (Parameter("drag_nm", "N m", "drag torque at 1 deg/s", 0.0),)
+
+
+def _usual_rate(history: History) -> float:
+    """Root mean square rate of the elastic twist [deg/s]."""
+    rate = history.compliance_deg_per_nm * np.diff(history.applied_nm) / history.usual_step_s
+    return max(float(np.sqrt(np.mean(rate**2))), 1e-12)

@@ -11,6 +11,6 @@ mod tests;
 
 pub use checks::HistoryError;
 pub use elements::SlipElements;
-pub use operators::{creep_state, dragged, play, remembered_datum};
+pub use operators::{Dashpot, creep_state, dragged, play, remembered_datum};
 pub use slip::{slip_state, solve_slip};
 pub use spring::Spring;

@@ -56,10 +56,49 @@ fn creep_reaches_the_load_and_a_ramp_lags_by_the_time_constant() {
 fn drag_delays_a_ramp_by_its_lag() {
     let ramp: Vec<f64> = (1..=400).map(|k| f64::from(k) * 0.1).collect();
     let mut out = vec![0.0; ramp.len()];
-    dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 2.0, &mut out).expect("lengths");
-    assert!((ramp[399] - out[399] - 2.0).abs() < 1e-6);
-    dragged(&ramp, &vec![0.1; 400], &vec![false; 400], 0.0, &mut out).expect("lengths");
-    assert_eq!(ramp, out);
+    let mut let_through = |dashpot| {
+        dragged(&ramp, &vec![0.1; 400], &vec![false; 400], dashpot, &mut out).expect("lengths");
+        ramp[399] - out[399]
+    };
+    let newtonian = |lag| Dashpot {
+        lag,
+        power: 1.0,
+        reference_rate: 4.0,
+    };
+    assert!((let_through(newtonian(2.0)) - 2.0).abs() < 1e-6);
+    assert!(let_through(newtonian(0.0)).abs() < 1e-9);
+    // At a rate of 1, a drag of 2 at the rate of 4 that grows with the root of the rate is 1.
+    let thinning = Dashpot {
+        lag: 0.5,
+        power: 0.5,
+        reference_rate: 4.0,
+    };
+    assert!((let_through(thinning) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_dashpot_holds_the_balance_of_torques() {
+    let input: Vec<f64> = (0..300).map(|k| (f64::from(k) * 0.1).sin() * 7.0).collect();
+    let (lag, power, rate, lapse) = (0.8, 0.6, 2.5, 0.2);
+    let dashpot = Dashpot {
+        lag,
+        power,
+        reference_rate: rate,
+    };
+    let mut out = vec![0.0; input.len()];
+    dragged(
+        &input,
+        &vec![lapse; 300],
+        &vec![false; 300],
+        dashpot,
+        &mut out,
+    )
+    .expect("lengths");
+    for i in 1..input.len() {
+        let speed = (out[i] - out[i - 1]) / lapse;
+        let drag = speed.signum() * lag * rate * (speed.abs() / rate).powf(power);
+        assert!((input[i] - out[i] - drag).abs() < 1e-9, "row {i}");
+    }
 }
 
 #[test]

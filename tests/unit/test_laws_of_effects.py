@@ -1,0 +1,83 @@
+"""Laws of effects that others use are in the library, and are preferred to their look-alikes."""
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.simulation.effects import effects
+from cyclosweep.simulation.effects.history import Floats
+from tests.unit.test_effects import history
+
+BY_NAME = {effect.name: effect for effect in effects()}
+TOP = 20.0
+
+
+def slope(effect: str, shape: dict[str, float], load: Floats) -> Floats:
+    """Compliance of an effect's curve at some loads, by differences."""
+
+    def twist(at: Floats) -> Floats:
+        row, none = np.arange(len(at)), {"time_s": None, "crank_deg": None, "temperature_c": None}
+        known = {"applied_nm": at, "elastic_nm": at, "angle_deg": at, "side": np.ones(len(at))}
+        one_run = {"run": np.zeros(len(at), np.int64), "restart": row == 0}
+        return BY_NAME[effect].columns(history(**known, **one_run, **none), shape)[:, 0]
+
+    return np.asarray((twist(load + 1e-6) - twist(load)) / 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "half_at"), [("turn_nm", 1.0), ("squeeze_nm", np.log(2.0)), ("stop_nm", 0.8814)]
+)
+def test_compliance_of_a_contact_falls_from_one_to_nothing(name: str, half_at: float) -> None:
+    load = np.array([1e-6, half_at * 3.0, 1000.0])
+    found = slope("contact_stiffening", {name: 3.0}, load)
+    np.testing.assert_allclose(found, [1.0, 0.5, 0.0], atol=4e-3)
+
+
+def made(curve: Floats, torque: Floats, run: Floats) -> cs.Diagnosis:
+    rng = np.random.default_rng(3)
+    angle = 28.0 * np.sign(torque) + 2.7 * torque + curve + 0.05 * rng.normal(size=len(torque))
+    recording = cs.Recording.from_arrays(
+        torque, angle, run=run, time_s=0.5 * np.arange(len(torque)), side="input"
+    )
+    return cs.diagnose(recording, cs.Drive.reference_87(), full=False)
+
+
+@pytest.fixture(scope="module")
+def programme() -> tuple[Floats, Floats]:
+    up = np.r_[np.linspace(0.5, TOP, 60), np.linspace(TOP, 0.5, 60)]
+    return np.tile(np.r_[up, -up], 6), np.repeat(np.arange(1, 7), 240)
+
+
+@pytest.mark.parametrize("law", ["layer", "stop"])
+def test_a_soft_layer_is_stiffening_and_no_takeup(
+    programme: tuple[Floats, Floats], law: str
+) -> None:
+    """The stop was called take-up before, whose kinks follow any curve that stiffens."""
+    torque, run = programme
+    load = np.abs(torque)
+    curve = 4.0 * (1.0 - np.exp(-load / 4.0)) if law == "layer" else 8.0 * np.tanh(load / 8.0)
+    found = made(0.3 * np.sign(torque) * curve, torque, run)
+    assert [effect["name"] for effect in found.effects] == ["contact_stiffening"]
+
+
+def test_a_side_load_that_comes_to_a_stop_is_a_side_load(programme: tuple[Floats, Floats]) -> None:
+    """It was unknown before: a power of the load does not saturate."""
+    torque, run = programme
+    found = made(0.8 * np.tanh(np.abs(torque) / 4.0), torque, run)
+    assert [effect["name"] for effect in found.effects] == ["load_asymmetry"]
+
+
+def test_pins_that_engage_stay_takeup(programme: tuple[Floats, Floats]) -> None:
+    torque, run = programme
+    load = np.abs(torque)
+    curve = sum(0.3 * np.maximum(load - kink, 0.0) for kink in (5.0, 12.0))
+    found = made(-np.sign(torque) * curve, torque, run)
+    assert [effect["name"] for effect in found.effects] == ["clearance_takeup"]
+
+
+def test_creep_is_no_slower_than_a_few_runs() -> None:
+    h = history()
+    assert h.time_s is not None
+    longest = max(np.ptp(h.time_s[h.run == run]) for run in np.unique(h.run))
+    (parameter,) = BY_NAME["creep"].shape_parameters
+    assert BY_NAME["creep"].shape_bounds(parameter, h).upper <= 3.0 * longest + 1e-9
