@@ -94,7 +94,7 @@ impl Dashpot {
         for _ in 0..60 {
             let way = y.powf(inverse);
             let step = (way + factor * y - size) / (inverse * way / y + factor);
-            if !(step > 1e-14 * y) {
+            if step <= 1e-14 * y {
                 break;
             }
             y -= step;
