@@ -28,6 +28,9 @@ CLEAR = 100.0
 stages at once: against the noise alone the error of a large effect's law hides what is smaller."""
 FEW_PIECES = 5.0
 """Independent pieces below which what remains unexplained is no noise but error of the model."""
+LARGER_THAN_LEFT = 2.0
+"""Noise over what a structure leaves, from which it is none: an autoregression near one describes
+the slow errors of a model as noise of any size."""
 SAME_NOISE = 0.04
 """Change of correlation, and of the logarithm of the size, up to which noise is the same."""
 
@@ -106,7 +109,8 @@ def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Se
     staged = search_in_stages(search, flexible, say)
     if staged.start is not staged.baseline:
         noise = noise_beyond(search.problem, search.library, staged.start.fit)
-        if not noise.structured and not _is_same(noise, search.noise):
+        believed = noise.spread_deg <= LARGER_THAN_LEFT * staged.start.fit.rmse_deg
+        if believed and not noise.structured and not _is_same(noise, search.noise):
             say("starting over with better-known noise")
             again = Search(search.problem, noise, search.library, search.seed)
             staged = search_in_stages(again, flexible, say, staged.start.fit)

@@ -82,8 +82,12 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     # alone do not tell them from friction.
     few = search.problem.run_count <= FEW_RUNS
     kept = [term for term in best.terms if term.slips or few]
-    found = fit(search.problem, search.noise, _settled(kept), best, rounds=CONVERGED)
-    return found if _explains_most(found, baseline) else None
+    for own in (search.noise, noise):
+        found = fit(search.problem, own, _settled(kept), best, rounds=CONVERGED)
+        if _explains_most(found, baseline):
+            return found
+        # Where friction was taken for slow noise, a fit against that noise forgets the loop.
+    return None
 
 
 def _drags(search: Search) -> list[list[Term]]:

@@ -8,10 +8,12 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.identify.alarm import Alarm
+from cyclosweep.diagnosis.identify.candidate import EXTRA_TERM_PENALTY as FURTHER
 from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty, shape_penalty
 from cyclosweep.diagnosis.identify.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.freer_part import freer_part
 from cyclosweep.diagnosis.identify.scan import (
     Scan,
     evidence,
@@ -26,8 +28,6 @@ from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.history import Floats
 
-EXTRA_TERM_PENALTY = 6.0
-"""Log prior odds against every further effect."""
 SHAPE_ERROR = 0.05
 """Share of an effect's own visibility below which a remainder is taken for error of its shape:
 no model of an effect is exact, and large effects show it."""
@@ -97,7 +97,7 @@ class Search:
         rng = np.random.default_rng([seed, 1])
         self.alarm = Alarm.calibrate(self._scan(base), rng)
         self.threshold = self.alarm.threshold
-        self.baseline = self._candidate(base, 0.0, 0.0)
+        self.baseline = self.judged(base, 0.0, 0.0)
         self.start = self.baseline
         self.visited: dict[frozenset[str], Candidate] = {}
         if accepted is not None and accepted.terms:
@@ -112,10 +112,7 @@ class Search:
         self.rivals_of_start: list[tuple[Candidate, float]] = []
 
     def run(self, progress: Callable[[str], None] = lambda text: None) -> None:
-        """Visit structures: in breadth up to three terms, then along the best one.
-
-        ``progress`` is called with a few words before each fit.
-        """
+        """Visit structures: in breadth up to three terms, then along the best; say which."""
         if self.start.largest_excess < self.threshold:
             return
         front = [self.start]
@@ -176,17 +173,17 @@ class Search:
         -------
         Candidate
         """
-        candidate = self._candidate(fitted, gain, 0.0)
+        candidate = self.judged(fitted, gain, 0.0)
         self.visited[candidate.names] = candidate
         return candidate
 
     def refit(self, terms: tuple[Term, ...], before: FittedStructure) -> Candidate:
         """Fit a structure that was not visited on its own, from a fit with more terms."""
-        return self._candidate(fit(self.problem, self.noise, terms, before), 0.0, 0.0)
+        return self.judged(fit(self.problem, self.noise, terms, before), 0.0, 0.0)
 
     def looked_through(self, fitted: FittedStructure) -> Candidate:
         """Look for hypotheses in the residual of a structure that was fitted elsewhere."""
-        return self._candidate(fitted, 0.0, 0.0)
+        return self.judged(fitted, 0.0, 0.0)
 
     def extend(self, parent: Candidate, hypothesis: str) -> Candidate | None:
         """Add one hypothesis to a structure and refit.
@@ -211,10 +208,10 @@ class Search:
                 # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue
             added = self._added(parent, joint, rank, penalty)
-            prior = parent.prior - (EXTRA_TERM_PENALTY if parent.fit.terms else 0.0)
+            prior = parent.prior - (FURTHER if parent.fit.terms else 0.0)
             prior -= prior_penalty(term.name, term.effect, term.shape)
             if best is None or parent.gain + added > best.gain:
-                best = self._candidate(joint, parent.gain + added, prior)
+                best = self.judged(joint, parent.gain + added, prior)
         for _ in range(MOST_ENRICHED):
             richer = None if best is None else self._enriched(best)
             if richer is None:
@@ -242,7 +239,7 @@ class Search:
             self._excess(fitted),
         )
 
-    def _candidate(self, fitted: FittedStructure, gain: float, prior: float) -> Candidate:
+    def judged(self, fitted: FittedStructure, gain: float, prior: float) -> Candidate:
         """Candidate of a fitted structure, its residual looked through.
 
         Parameters
@@ -319,7 +316,7 @@ class Search:
                 continue
             added = float(evidence(self.gain(candidate.fit, signed), rank))
             if added > 1.0:
-                return self._candidate(signed, candidate.gain + added, candidate.prior)
+                return self.judged(signed, candidate.gain + added, candidate.prior)
         return None
 
     def _added(
@@ -361,6 +358,9 @@ class Search:
                 continue
             for left_out in added:
                 self._visit([name for name in added if name != left_out])
+                known = self.visited.get(part := candidate.names - {left_out})
+                if known is not None:
+                    self.visited[part] = freer_part(self, candidate, left_out, known) or known
 
     def _visit(self, names: Sequence[str]) -> None:
         """Fit a structure of these terms, one after the other, unless it was visited."""

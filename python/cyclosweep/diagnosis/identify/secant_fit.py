@@ -195,4 +195,8 @@ def _damped(curvature: Floats, gradient: Floats, free: Flags, damping: float) ->
     part = curvature[np.ix_(free, free)]
     along = np.diag(part)
     held = damping * np.maximum(along, 1e-6 * float(along.max(initial=0.0)) + 1e-300)
-    return np.asarray(np.linalg.solve(part + np.diag(held), -gradient[free]))
+    try:
+        return np.asarray(np.linalg.solve(part + np.diag(held), -gradient[free]))
+    except np.linalg.LinAlgError:
+        # Two parameters that do the same, undamped: the shortest of the steps.
+        return np.asarray(np.linalg.lstsq(part + np.diag(held), -gradient[free], rcond=None)[0])

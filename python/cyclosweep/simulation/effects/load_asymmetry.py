@@ -15,7 +15,8 @@ STOPS = (0.06, 0.5)
 class LoadAsymmetry(Effect):
     """Twist even in torque: one direction is softer than the other.
 
-    It is ``a |T|^p``, or with `limit_nm` ``a T0 tanh(|T|/T0)`` where what yields comes to a stop.
+    It is ``a |T|^p``, or with `limit_nm` ``a tanh(|T|/T0)`` where what yields comes to a stop, or
+    with two `orders` ``a |T| + b T^2``, the beginning of any even curve.
     """
 
     name = "load_asymmetry"
@@ -33,7 +34,7 @@ class LoadAsymmetry(Effect):
         Parameter("power", "", "power of the load", 0.4, 3.0),
         Parameter("limit_nm", "N m", "load at which what yields comes to a stop", 1e-6, 1e6, True),
     )
-    forms = (ShapeForm(("power",)), ShapeForm(("limit_nm",)))
+    forms = (ShapeForm(("power",)), ShapeForm(("limit_nm",)), ShapeForm(("orders",)))
 
     def untestable(self, history: History) -> str | None:
         """Need both directions."""
@@ -45,7 +46,7 @@ class LoadAsymmetry(Effect):
         """From a square root to a square of the load, and four loads of a stop."""
         powers: list[Shape] = [{"power": float(power)} for power in np.linspace(0.6, 2.0, 8)]
         stops = history.largest_torque_nm * np.geomspace(*STOPS, 4)
-        return powers + [{"limit_nm": float(stop)} for stop in stops]
+        return [*powers, *({"limit_nm": float(stop)} for stop in stops), {"orders": 2.0}]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep a stop below the largest load."""
@@ -62,12 +63,21 @@ class LoadAsymmetry(Effect):
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Even twist, one at a load of 10 N m [deg]; with a stop, one far beyond it."""
+        if "orders" in shape:
+            load = history.load_nm / 10.0
+            return np.column_stack([load, load**2])
         if "limit_nm" in shape:
             return np.tanh(history.load_nm / shape["limit_nm"])[:, None]
         return ((history.load_nm / 10.0) ** shape["power"])[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
-        """Even twist at 10 N m, or at the stop."""
+        """Even twist at 10 N m, in two parts where it has two orders, or at the stop."""
+        if "orders" in shape:
+            parts = ("in proportion to the load", "with the square of the load")
+            return tuple(
+                Parameter(f"even_twist_{k}_deg", "deg", f"half of the difference at 10 N m {part}")
+                for k, part in enumerate(parts, 1)
+            )
         if "limit_nm" in shape:
             return (Parameter("even_twist_deg", "deg", "difference of the directions, half"),)
         return (Parameter("even_twist_deg", "deg", "difference of the directions at 10 N m, half"),)
