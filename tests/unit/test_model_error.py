@@ -220,7 +220,11 @@ def test_what_repeats_is_learned_and_forecasts_a_run_that_was_held_out() -> None
     assert learned is not None
     assert learned.repeats > 0.9
     assert (learned.between, learned.compared) == ("runs", 3)
-    assert learned.rms_deg == pytest.approx(0.4, rel=0.3)
+    # What of the error the named laws take up is theirs; the table holds what they leave.
+    left_deg = found.answer.repaired.rmse_deg
+    assert left_deg is not None
+    assert learned.rms_deg == pytest.approx(left_deg, rel=0.1)
+    assert 0.15 < left_deg < 0.5
     assert learned.holdout_rmse_deg is not None
     assert learned.holdout_without_deg is not None
     assert learned.holdout_rmse_deg < 0.5 * learned.holdout_without_deg

@@ -358,9 +358,10 @@ class Search:
                 continue
             for left_out in added:
                 self._visit([name for name in added if name != left_out])
-                known = self.visited.get(part := candidate.names - {left_out})
-                if known is not None:
-                    self.visited[part] = freer_part(self, candidate, left_out, known) or known
+                known = self.visited.get(candidate.names - {left_out})
+                gain, noise = self.gain, self.noise
+                if known and (freer := freer_part(candidate, left_out, known, noise, gain)):
+                    self.visited[known.names] = self.judged(*freer)
 
     def _visit(self, names: Sequence[str]) -> None:
         """Fit a structure of these terms, one after the other, unless it was visited."""
