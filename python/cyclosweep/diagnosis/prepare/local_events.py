@@ -50,8 +50,8 @@ def event_rows(angle: Floats, basis: Floats, run: Ints) -> Flags:
     found = none
     for _ in range(ROUNDS if basis.shape[1] else 1):
         median = _medians(left, block)
-        size = 1.4826 * float(np.median(np.abs(median - np.median(median))))
-        apart = np.abs(median - np.median(median)) / max(size, 1e-300)
+        apart = np.abs(median - np.median(median))
+        apart /= max(1.4826 * float(np.median(apart)), 1e-300)
         far = apart > FAR
         beside = np.r_[far[1:], False] | np.r_[False, far[:-1]]
         now = (far | (beside & (apart > EDGE)))[block]

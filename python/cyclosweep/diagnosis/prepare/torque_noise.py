@@ -64,7 +64,8 @@ def torque_without_noise(
         Standard deviation of the noise that was smoothed; zero where it is the torque as read.
     """
     place = np.arange(len(torque_nm), dtype=np.float64) if time_s is None else time_s
-    nearest, share = _parabola(torque_nm, place, piece, REACHES[0])
+    both = np.vstack([torque_nm, angle_deg])
+    (nearest, _), share = _parabolas(both, place, piece, REACHES[0])
     left = np.sqrt(np.maximum(1.0 - share, 0.0))
     beyond = np.divide(torque_nm - nearest, left, out=np.zeros_like(left), where=left > 0.0)
     if not np.any(left > 0.0):
@@ -73,17 +74,16 @@ def torque_without_noise(
     steady = (left > 0.0) & (np.abs(beyond) <= CORNER * noise)
     if compliance_deg_per_nm * noise <= SMALL * mismatch_deg:
         return torque_nm, 0.0
-    smooth, angle = torque_nm.copy(), angle_deg.copy()
+    smooth = both.copy()
     low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
     agrees = steady
     for reach in REACHES:
-        fitted, share = _parabola(torque_nm, place, piece, reach)
+        fitted, share = _parabolas(both, place, piece, reach)
         room = AGREES * noise * np.sqrt(share)
-        low, high = np.maximum(low, fitted - room), np.minimum(high, fitted + room)
+        low, high = np.maximum(low, fitted[0] - room), np.minimum(high, fitted[0] + room)
         agrees = agrees & (low <= high)
-        smooth[agrees] = fitted[agrees]
-        angle[agrees] = _parabola(angle_deg, place, piece, reach)[0][agrees]
-    ripple, jitter = (torque_nm - smooth)[steady], (angle_deg - angle)[steady]
+        smooth[:, agrees] = fitted[:, agrees]
+    ripple, jitter = (both - smooth)[:, steady]
     size = 1.4826 * float(np.median(np.abs(jitter)))
     power = float(ripple @ ripple)
     if compliance_deg_per_nm * np.sqrt(power) <= SEEN * size:
@@ -91,7 +91,7 @@ def torque_without_noise(
     followed = float(ripple @ np.clip(jitter, -CORNER * size, CORNER * size)) / power
     if followed > FOLLOWS * compliance_deg_per_nm:
         return torque_nm, 0.0
-    return smooth, noise
+    return smooth[0], noise
 
 
 def smoothed_in_words(noise_nm: float) -> str:
@@ -114,26 +114,28 @@ def smoothed_in_words(noise_nm: float) -> str:
     )
 
 
-def _parabola(value: Floats, place: Floats, piece: Ints, reach: int) -> tuple[Floats, Floats]:
-    """Value of a parabola through the neighbours of each row in its piece, itself among them.
+def _parabolas(values: Floats, place: Floats, piece: Ints, reach: int) -> tuple[Floats, Floats]:
+    """Values of parabolas through the neighbours of each row in its piece, itself among them.
 
     Parameters
     ----------
-    value, place : ndarray, shape (n,)
-        What is smoothed, and where.
+    values : ndarray, shape (k, n)
+        What is smoothed.
+    place : ndarray, shape (n,)
+        Where.
     piece : ndarray of int, shape (n,)
     reach : int
         Rows on each side.
 
     Returns
     -------
-    smooth : ndarray, shape (n,)
-        The value itself where the piece has no more rows than a parabola takes up.
+    smooth : ndarray, shape (k, n)
+        The values themselves where the piece has no more rows than a parabola takes up.
     share : ndarray, shape (n,)
-        Variance of it over that of the noise of a row.
+        Variance of them over that of the noise of a row.
     """
-    count = len(value)
-    moments, sums = np.zeros((5, count)), np.zeros((3, count))
+    count = len(place)
+    moments, sums = np.zeros((5, count)), np.zeros((3, *values.shape))
     for distance in range(-reach, reach + 1):
         here = np.arange(max(0, -distance), min(count, count - distance))
         here = here[piece[here] == piece[here + distance]]
@@ -141,7 +143,7 @@ def _parabola(value: Floats, place: Floats, piece: Ints, reach: int) -> tuple[Fl
         for power in range(5):
             moments[power, here] += away**power
         for power in range(3):
-            sums[power, here] += away**power * value[here + distance]
+            sums[power][:, here] += away**power * values[:, here + distance]
     enough = np.flatnonzero((moments[0] > 3) & (moments[2] > 0.0))
     # In units of its own spread the normal equations of a row are of order one.
     spread = np.sqrt(moments[2, enough] / moments[0, enough])
@@ -149,8 +151,9 @@ def _parabola(value: Floats, place: Floats, piece: Ints, reach: int) -> tuple[Fl
     normal = np.moveaxis(moments[order][:, :, enough] / spread ** order[:, :, None], 2, 0)
     regular = np.linalg.cond(normal) < SINGULAR
     enough, spread = enough[regular], spread[regular]
-    weights = np.linalg.inv(normal[regular])[:, 0, :]
-    smooth, share = value.copy(), np.ones(count)
-    smooth[enough] = np.sum(weights * (sums[:, enough] / spread ** np.arange(3)[:, None]).T, axis=1)
-    share[enough] = np.clip(weights[:, 0], 0.0, 1.0)
+    weights = np.linalg.inv(normal[regular])[:, 0, :].T
+    smooth, share = values.copy(), np.ones(count)
+    scaled = sums[:, :, enough] / (spread ** np.arange(3)[:, None])[:, None, :]
+    smooth[:, enough] = np.sum(weights[:, None, :] * scaled, axis=0)
+    share[enough] = np.clip(weights[0], 0.0, 1.0)
     return smooth, share
