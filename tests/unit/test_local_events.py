@@ -17,7 +17,7 @@ def material() -> tuple[Floats, Ints]:
 
 
 def autoregression(rng: np.random.Generator, rho: float) -> Floats:
-    out = np.sqrt(1.0 - rho**2) * rng.normal(size=ROWS * RUNS)
+    out: Floats = np.sqrt(1.0 - rho**2) * rng.normal(size=ROWS * RUNS)
     for row in range(1, len(out)):
         out[row] += rho * out[row - 1]
     return out
