@@ -70,7 +70,7 @@ def test_friction_keeps_its_name_where_the_curve_beside_it_loses_its_own(
         return (*held, *(() if stand_ins else (WITHDRAWN,)))
 
     monkeypatch.setattr(naming, "check_laws", without_curve)
-    candidate = searched.looked_through(whole)
+    candidate = searched.judged(whole, 0.0, 0.0)
     found = naming.names_that_hold(searched, candidate, candidate)
     assert found.names == {"friction_hysteresis"}
     assert [each.name for each in found.withdrawn] == ["contact_stiffening"]

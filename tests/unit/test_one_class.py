@@ -39,7 +39,7 @@ CREEP = EffectValue("creep", {"lag_s": 20.0}, (0.1,))
 def fitted(search: Search, terms: Sequence[Term]) -> Candidate:
     """Candidate of terms fitted jointly."""
     found = fit(search.problem, search.noise, tuple(terms), search.baseline.fit, rounds=20)
-    return search.looked_through(found)
+    return search.judged(found, 0.0, 0.0)
 
 
 def held(checks: Sequence[LawCheck]) -> set[str]:
@@ -157,7 +157,7 @@ def test_friction_is_judged_without_a_curve_that_has_taken_the_place_of_the_line
         )
 
     monkeypatch.setattr(naming, "check_laws", without_friction)
-    candidate = search.looked_through(moved)
+    candidate = search.judged(moved, 0.0, 0.0)
     found = names_that_hold(search, candidate, candidate)
     assert found.names == {"friction_hysteresis"}
     assert [each.name for each in found.withdrawn] == ["contact_stiffening"]
@@ -211,7 +211,7 @@ def test_bounds_of_a_structure_are_counted_by_its_own_noise() -> None:
     wider = fit(search.problem, search.noise.with_model_error(5.0), ())
 
     def estimate(fitted: FittedStructure) -> float:
-        bounds = bounds_of.testability(search, search.looked_through(fitted), {})
+        bounds = bounds_of.testability(search, search.judged(fitted, 0.0, 0.0), {})
         return next(each.estimate_deg for each in bounds if each.name == "contact_stiffening")
 
     assert estimate(wider) == pytest.approx(estimate(search.baseline.fit), rel=0.2)

@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.verdict import (
     Decision,
     decide,
     decide_in_stages,
+    named_if_close,
     no_more_than_fits,
 )
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
@@ -121,12 +122,18 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         decision = decide_in_stages(search, staged[1].share or 0.0)
     else:
         decision = decide(search, beyond_baseline, tolerance)
+        if search.problem.count <= FEW_READINGS:
+            decision = named_if_close(search, decision)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
     freer = with_freer_laws(search, accepted)
     if freer is not accepted:
         decision = _with_law(decision, accepted, freer)
         accepted = freer
     naming = names_that_hold(search, accepted, decision.best or accepted)
+    if staged is not None and naming.withdrawn and _is_enough(search, naming.part):
+        # What was withdrawn explains nothing that the others do not explain.
+        accepted, naming = naming.part, naming.without_withdrawn()
+        decision = Decision("IDENTIFIED", accepted, [(accepted, 1.0)], False)
     if staged is not None and staged[0] is naming.part:
         explained = staged[1]
     else:
@@ -154,6 +161,28 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         beyond_accepted=beyond_accepted,
         excluded=frozenset(below - possible),
         explained=explained,
+    )
+
+
+def _is_enough(search: Search, part: Candidate) -> bool:
+    """Whether named effects alone leave nothing but noise, no model error allowed for.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    part : Candidate
+        Structure of the named effects.
+
+    Returns
+    -------
+    bool
+    """
+    return bool(
+        part.fit.terms
+        and part.fit.independent_share == 1.0
+        and part.fit.noise.model_error_factor == 1.0
+        and search.suffices(part)
     )
 
 

@@ -24,6 +24,7 @@ from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvid
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
     FURTHER_LAW,
+    LEAST_SUM,
     LawBeside,
     LawCheck,
     amplitude_count,
@@ -65,8 +66,6 @@ no law is exact to a hundredth."""
 WITHIN = 0.25
 """What offsets of all runs may leave, over what they explain, as root mean squares, for any law of
 the datum to stand: what changes within the runs is no zero that moves from run to run."""
-LEAST_SUM = 0.6
-"""Size of the sum of laws in one class over that of the largest, below which they are not named."""
 CLEAR = 6.0
 """Log evidence from which a residual shows a class [nat]."""
 MOST_CLASSES = 4

@@ -9,7 +9,7 @@ from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.simulation.effects.base import Effect, Shape
+from cyclosweep.simulation.effects.base import Shape
 
 MOST_BESIDE_FRICTION = 2
 """Most shape parameters by which a law gets richer at once beside friction."""
@@ -57,12 +57,19 @@ def richer_structures(
     for k, term in enumerate(terms):
         if term.effect is None or term.slips:
             continue
-        if candidate.excesses.get(term.name, 0.0) > threshold:
+        # The shapes of a vector are all in its fit, so that the residual shows none of its own.
+        asked = candidate.excesses.get(term.name, 0.0) > threshold
+        if asked or (term.effect.vector and not suffices):
             yield from freer_laws(candidate, library, k)
 
 
 def freer_laws(
-    candidate: Candidate, library: Library, index: int, costly: int = 1
+    candidate: Candidate,
+    library: Library,
+    index: int,
+    costly: int = 1,
+    *,
+    whole_class: bool = False,
 ) -> Iterator[tuple[tuple[Term, ...], int]]:
     """Structures in which the law of one effect has more freedom of shape.
 
@@ -77,6 +84,8 @@ def freer_laws(
     costly : int
         Most offers of more shape parameters beside friction, where each costs a path of the shaft
         in every step of a fit.
+    whole_class : bool
+        Whether free offsets of the runs are offered, too, which hold their whole class.
 
     Yields
     ------
@@ -86,16 +95,28 @@ def freer_laws(
     """
     found, terms = candidate.scan, candidate.fit.terms
     term = terms[index]
-    if term.effect is None or term.name not in found.groups:
+    if term.effect is None:
         return
-    members = found.groups[term.name]
-    each = evidence(found.observed[members], found.ranks[members])
+    if term.name in found.groups:
+        members = found.groups[term.name]
+        each = evidence(found.observed[members], found.ranks[members])
+        members = members[np.argsort(-each)]
+    else:
+        # The term explains whatever its other shapes on the grid could.
+        own = [signature.hypothesis == term.name for signature in library.signatures]
+        members = np.flatnonzero(own)
     slips = any(other.slips for other in terms)
-    for member in members[np.argsort(-each)][:TRIED]:
+    tried: list[Shape] = []
+    for member in members:
         shape = term.effect.combined(term.shape, library.signatures[member].shape)
-        if shape is None:
+        if shape is None or shape in tried:
             continue
-        before, after = (_freedom(term.effect, each) for each in (term.shape, shape))
+        if term.effect.penalty(shape) > 0.0 and not whole_class:
+            continue
+        if len(tried) == TRIED:
+            return
+        tried.append(shape)
+        before, after = (_freedom(term, each, candidate) for each in (term.shape, shape))
         if slips and after[1] > before[1]:
             if costly == 0 or after[1] > before[1] + MOST_BESIDE_FRICTION:
                 continue
@@ -110,20 +131,26 @@ def freer_friction(term: Term) -> Term | None:
     return None if shape is None else replace(term, shape=shape)
 
 
-def _freedom(effect: Effect, shape: Shape) -> tuple[int, int]:
+def _freedom(term: Term, shape: Shape, candidate: Candidate) -> tuple[int, int]:
     """Numbers of amplitudes and of shape parameters that are fitted.
 
     Parameters
     ----------
-    effect : Effect
+    term : Term
+        Of a named effect.
     shape : mapping
+        Shape that it is to have.
+    candidate : Candidate
+        Structure with the term.
 
     Returns
     -------
     tuple of int
     """
-    shapes = sum(parameter.name in shape for parameter in effect.shape_parameters)
-    return len(effect.amplitudes(shape)), shapes
+    assert term.effect is not None
+    shapes = sum(parameter.name in shape for parameter in term.effect.shape_parameters)
+    columns = replace(term, shape=shape).columns(candidate.fit.history)
+    return columns.shape[1], shapes
 
 
 def _with_term(terms: tuple[Term, ...], index: int, term: Term) -> tuple[Term, ...]:

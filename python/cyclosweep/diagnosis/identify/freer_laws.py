@@ -7,6 +7,8 @@ misses may be too little to ask for it, and still be a part of its class that is
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.enrichment import TRIED, freer_laws
+from cyclosweep.diagnosis.identify.free_offsets import with_free_offsets
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck, own_classes
 from cyclosweep.diagnosis.identify.search import Search
 
 ROUNDS = 2
@@ -34,10 +36,38 @@ def with_freer_laws(search: Search, accepted: Candidate) -> Candidate:
         found = None
         for check in check_laws(accepted.fit):
             if not check.holds and found is None:
-                index = accepted.fit.names.index(check.name)
-                offers = freer_laws(accepted, search.library, index, TRIED)
-                found = search.first_better(accepted, offers)
+                found = _with_freer(search, accepted, check)
         if found is None:
             break
         accepted = found
-    return accepted
+    return with_free_offsets(search, accepted)
+
+
+def _with_freer(search: Search, accepted: Candidate, check: LawCheck) -> Candidate | None:
+    """Give a law more freedom that does not stand for its class, or the law it takes after.
+
+    What one law leaves of its class another one fills: the one that fails is then not its own.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    accepted : Candidate
+        Structure of effects.
+    check : LawCheck
+        Of the law that fails.
+
+    Returns
+    -------
+    Candidate or None
+        None where no law with more freedom is preferred by the evidence.
+    """
+    terms = accepted.fit.terms
+    alike = [k for k, term in enumerate(terms) if check.behaviour in own_classes(term)]
+    own = accepted.fit.names.index(check.name)
+    for index in dict.fromkeys([own, *alike]):
+        offers = freer_laws(accepted, search.library, index, TRIED, whole_class=True)
+        found = search.first_better(accepted, offers)
+        if found is not None:
+            return found
+    return None

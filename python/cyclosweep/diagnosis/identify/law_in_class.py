@@ -23,6 +23,9 @@ FURTHER_LAW = 6.0
 LEAST_OF_CLASS = 0.25
 """Size of an effect over that of a larger one of its class from which it is its own: a smaller
 law takes up what the larger one's law misses, and leaves nothing of it."""
+LEAST_SUM = 0.6
+"""Size of the sum of laws in one class over that of the largest, below which they cancel each other
+and are not named."""
 LEAST_LEFT = 3.0
 """Log evidence that has to be left of a law beside a class that explains more [nat]."""
 LEFT_BESIDE = 0.1

@@ -47,6 +47,10 @@ class Naming:
         """The laws that may not be named."""
         return tuple(check for check in self.checks if not check.holds)
 
+    def without_withdrawn(self) -> "Naming":
+        """The same where the effects that may be named are all there is."""
+        return Naming(self.part, tuple(check for check in self.checks if check.holds), ())
+
 
 def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Naming:
     """Withdraw laws that do not stand for their class, until those that are left do.
@@ -204,5 +208,5 @@ def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
     part = accepted
     if withdrawn:
         alone = accepted.fit.only({check.name for check in checks}) if checks else None
-        part = search.baseline if alone is None else search.looked_through(alone)
+        part = search.baseline if alone is None else search.judged(alone, 0.0, 0.0)
     return Naming(part, (*checks, *withdrawn), shown_classes(part.fit))

@@ -54,7 +54,7 @@ def with_better_laws(search: Search) -> FittedStructure:
         if best is None or not best.all_recognised or best.fit.chi2 >= fitted.chi2:
             continue
         ahead = best.score - _score(own)
-        leaves_less = _left(best.fit) < FAR_LESS * _left(fitted)
+        leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
         if ahead > CLEARLY or (leaves_less and ahead > -CLEARLY):
             fitted = best.fit
     return fitted
@@ -77,8 +77,18 @@ def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:
     return search.extend(parent, name) if name in parent.scan.groups else None
 
 
-def _left(fitted: FittedStructure) -> float:
-    """Root mean square of what a structure leaves beyond the noise [deg]."""
+def left_beyond_noise(fitted: FittedStructure) -> float:
+    """Root mean square of what a structure leaves beyond the noise, or a tenth of the noise.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+
+    Returns
+    -------
+    float
+        In deg.
+    """
     noise = fitted.noise.spread_deg
     return float(np.sqrt(max(fitted.rmse_deg**2 - noise**2, (LEAST_LEFT * noise) ** 2)))
 

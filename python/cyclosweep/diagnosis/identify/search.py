@@ -181,10 +181,6 @@ class Search:
         """Fit a structure that was not visited on its own, from a fit with more terms."""
         return self.judged(fit(self.problem, self.noise, terms, before), 0.0, 0.0)
 
-    def looked_through(self, fitted: FittedStructure) -> Candidate:
-        """Look for hypotheses in the residual of a structure that was fitted elsewhere."""
-        return self.judged(fitted, 0.0, 0.0)
-
     def extend(self, parent: Candidate, hypothesis: str) -> Candidate | None:
         """Add one hypothesis to a structure and refit.
 
@@ -315,8 +311,11 @@ class Search:
             if signed is None:
                 continue
             added = float(evidence(self.gain(candidate.fit, signed), rank))
-            if added > 1.0:
-                return self.judged(signed, candidate.gain + added, candidate.prior)
+            if added <= 1.0:
+                continue
+            richer = self.judged(signed, candidate.gain + added, candidate.prior)
+            if richer.all_recognised or not candidate.all_recognised:
+                return richer
         return None
 
     def _added(

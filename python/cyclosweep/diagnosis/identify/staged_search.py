@@ -11,16 +11,18 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.freer_laws import with_freer_laws
 from cyclosweep.diagnosis.identify.friction_first import (
     CONVERGED,
     PARAMETER_CHARGE,
     friction_first,
     from_better_start,
 )
-from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, share_class
+from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, LEAST_SUM, share_class
 from cyclosweep.diagnosis.identify.other_laws import with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
@@ -157,7 +159,7 @@ def search_in_stages(
         if decision.unexplained:
             doubtful = _doubtful(search, best, searched.noise.spread_deg)
             found = tuple(term for term in found if term.name not in doubtful)
-        if len(found) == len(accepted):
+        if {term.name for term in found} == {term.name for term in accepted}:
             break
         if not decision.unexplained:
             so_far = 1.0 - sum(share for _, share in rivals)
@@ -171,6 +173,9 @@ def search_in_stages(
         other = with_better_laws(last)
         if other is not last.start.fit:
             last = _stage(searched, error_factor(visibility(other, flexible)), other)
+        freer = with_freer_laws(last, last.start).fit
+        if freer is not last.start.fit:
+            last = _stage(searched, error_factor(visibility(freer, flexible)), freer)
     last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
 
@@ -263,17 +268,44 @@ def _without_model_error(
     tuple of Term
     """
     before = {term.name for term in accepted}
-    size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
+    twist = [size_of(fitted, k) for k in range(len(fitted.terms))]
+    size = [float(np.std(each)) for each in twist]
     left = _beyond_noise(fitted, noise_deg)
     errors = errors_of_larger(fitted)
     kept = []
     for k, term in enumerate(fitted.terms):
         others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
         family = max((s for s, each in others if each.family == term.family), default=0.0)
-        alike = max((s for s, each in others if share_class(each, term)), default=0.0)
+        alike = max((s for s, each in others if _are_alike(each, term)), default=0.0)
+        mates = [
+            (size[j], twist[j])
+            for j, each in enumerate(fitted.terms)
+            if j != k and share_class(each, term)
+        ]
         least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
-        if term.name in before or stands_out:
+        # Any curve is a difference of larger ones.
+        total = float(np.std(twist[k] + sum(w for _, w in mates)))
+        cancels = bool(mates) and total < LEAST_SUM * max(size[k], *(s for s, _ in mates))
+        largest = max((s for s, _ in mates), default=0.0)
+        replaced = size[k] < min(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_CLASS * largest)
+        if (term.name in before and not replaced) or (stands_out and not cancels):
             kept.append(term)
     return tuple(kept)
+
+
+def _are_alike(one: Term, other: Term) -> bool:
+    """Whether one of two effects may hold what the law of the other misses.
+
+    Parameters
+    ----------
+    one : Term
+    other : Term
+
+    Returns
+    -------
+    bool
+        For effects of one class, and for those that give every run an offset.
+    """
+    return share_class(one, other) or {one.name, other.name} <= set(CLASSES_OF_EFFECT)

@@ -27,9 +27,10 @@ FEWEST_FOR_LAW = 8
 """Runs from which a law is believed of free offsets that go to and fro."""
 UNEXPLAINED = 0.1
 """Share of the offsets of the runs up to which the laws that explain the rest are believed."""
-TO_AND_FRO = 1.0
+TO_AND_FRO, OF_MANY = 1.0, 0.5
 """Mean square of the steps from run to run over that of the offsets (von Neumann's ratio) from
-which a datum goes to and fro; 2 where every run has an offset of its own, near zero for a drift."""
+which a datum goes to and fro, and from which where the runs are enough for a law; 2 where every run
+has an offset of its own, near zero for a drift."""
 LEAST_SWING = 0.3
 """Share of the range of the offsets by which the datum must both rise and fall."""
 OTHER_CAUSE = 0.25
@@ -115,6 +116,10 @@ class DatumDrift(Effect):
             return True
         offsets = _offsets(amplitudes)
         return _law_of(history, offsets) is not None or _erratic(history, offsets)
+
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
+        """Free offsets hold every law."""
+        return dict(found) if "each_run" in found and "each_run" not in shape else None
 
     def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
         """Say which law fits, or by how much the datum moves without one."""
@@ -214,7 +219,8 @@ def _erratic(history: History, offsets: Floats) -> bool:
     fall = float(np.max(np.maximum.accumulate(offsets) - offsets))
     if not total > 0 or min(rise, fall) < LEAST_SWING * span:
         return False
-    if float(np.sum(np.diff(offsets) ** 2)) < TO_AND_FRO * total:
+    least = OF_MANY if len(offsets) >= FEWEST_FOR_LAW else TO_AND_FRO
+    if float(np.sum(np.diff(offsets) ** 2)) < least * total:
         return False
     return not _by_temperature(history, centred) and not _by_place(history, centred)
 
