@@ -81,3 +81,21 @@ def test_creep_is_no_slower_than_a_few_runs() -> None:
     longest = max(np.ptp(h.time_s[h.run == run]) for run in np.unique(h.run))
     (parameter,) = BY_NAME["creep"].shape_parameters
     assert BY_NAME["creep"].shape_bounds(parameter, h).upper <= 3.0 * longest + 1e-9
+
+
+def test_a_tilted_dial_errs_twice_a_turn(programme: tuple[Floats, Floats]) -> None:
+    """With one error a turn alone it was unknown, or a side load."""
+    torque, run = programme
+    angle = np.radians(28.0 * np.sign(torque) + 2.7 * torque)
+    found = made(0.4 * np.cos(angle - 1.0) + 0.8 * np.cos(2.0 * angle + 0.4), torque, run)
+    assert [effect["name"] for effect in found.effects] == ["dial_eccentricity"]
+    assert found.verdict == "IDENTIFIED"
+    parameters = found.effects[0]["parameters"]
+    twice = np.hypot(parameters["cos_2_deg"]["estimate"], parameters["sin_2_deg"]["estimate"])
+    assert twice == pytest.approx(0.8, abs=0.05)
+
+
+def test_a_side_load_is_no_tilted_dial(programme: tuple[Floats, Floats]) -> None:
+    torque, run = programme
+    found = made(2.0 * (np.abs(torque) / TOP) ** 2, torque, run)
+    assert [effect["name"] for effect in found.effects] == ["load_asymmetry"]

@@ -125,7 +125,8 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         if search.problem.count <= FEW_READINGS:
             decision = named_if_close(search, decision)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
-    freer = with_freer_laws(search, accepted)
+    # What was accepted in stages has been given its freedom there.
+    freer = with_freer_laws(search, accepted) if staged is None else accepted
     if freer is not accepted:
         decision = _with_law(decision, accepted, freer)
         accepted = freer

@@ -91,9 +91,8 @@ def shape_choice_penalty(information: Floats, ranges: Floats) -> float:
 def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
     """Twice the log-likelihood gained by taking chi-squared away from an excess over pure noise.
 
-    The noise is known with so many degrees of freedom only, so gains count by the logarithm, above
-    what noise explains and below. They add up over nested models, whatever the order, until noise
-    is left.
+    The noise is known with so many degrees of freedom only, so gains count by the logarithm; they
+    add up over nested models, whatever the order.
 
     Parameters
     ----------
@@ -109,10 +108,9 @@ def likelihood_gain(chi2: Floats, excess: float, freedom: float) -> Floats:
     ndarray
         Of the shape of `chi2`.
     """
-    before = np.log1p(excess / freedom)
+    before = np.log1p(np.maximum(excess, chi2) / freedom)
     after = np.log1p(np.maximum(excess - chi2, 0.0) / freedom)
-    below = np.log1p(np.maximum(chi2 - excess, 0.0) / freedom)
-    return np.asarray(freedom * (before - after + below))
+    return np.asarray(freedom * (before - after))
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.friction_first import FEW_RUNS
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.split import whole_stretches
 from cyclosweep.diagnosis.whole_loop.forecast import (
@@ -27,12 +28,16 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import (
     DECIDED,
     better,
     cost,
+    pruned,
     shows_torque_zero,
     usual_structure,
 )
 
 LEAST_GAIN = 0.15
 """Share of the error on left-out stretches that a structure must take away."""
+SMALL = 0.25
+"""Size of an effect over that of the largest, as root mean squares, below which a simulation must
+gain more by it than its parameters are charged."""
 MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
 all rows is taken instead; and error of that structure, simulated on all rows, over that of the
@@ -116,7 +121,9 @@ def _found(search: Search, simulated_deg: float) -> Forecast | None:
     if first.error_deg > simulated_deg:
         # A staircase so steep that the shaft jumps has no settled path from which to fit further.
         return first
-    return better(first, refit(first, most=10, blur=BLUR))
+    sizes = {term.name: float(np.std(size_of(fitted, k))) for k, term in enumerate(fitted.terms)}
+    small = [name for name, size in sizes.items() if size < SMALL * max(sizes.values())]
+    return pruned(problem, better(first, refit(first, most=10, blur=BLUR)), small)
 
 
 def _simulation_error(search: Search) -> float:

@@ -4,6 +4,7 @@ From several starts, then pruned, extended and freed, each as far as it gains mo
 parameters are charged.
 """
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -48,7 +49,7 @@ def usual_structure(search: Search, base: Forecast) -> Forecast | None:
     usual = _usual(search, base)
     if usual is None:
         return None
-    best = _prune(problem, refit(usual, most=10, blur=BLUR))
+    best = pruned(problem, refit(usual, most=10, blur=BLUR))
     return freer_where_it_pays(problem, _extend(search, best))
 
 
@@ -83,7 +84,7 @@ def _usual(search: Search, base: Forecast) -> Forecast | None:
     return found
 
 
-def _prune(problem: Problem, best: Forecast) -> Forecast:
+def pruned(problem: Problem, best: Forecast, names: Collection[str] | None = None) -> Forecast:
     """Leave out what gains less than its parameters are charged.
 
     Parameters
@@ -91,12 +92,14 @@ def _prune(problem: Problem, best: Forecast) -> Forecast:
     problem : Problem
     best : Forecast
         The best simulation so far.
+    names : collection of str, optional
+        Effects that are asked; default: all.
 
     Returns
     -------
     Forecast
     """
-    for name in sorted(best.names):
+    for name in sorted(best.names if names is None else names):
         kept = [k for k, term in enumerate(best.terms) if term.name != name]
         if not kept:
             continue

@@ -1,4 +1,4 @@
-"""Angle sensor mounted off centre: an error periodic in the indicated angle itself."""
+"""Angle sensor mounted off centre or tilted: an error periodic in the indicated angle itself."""
 
 from collections.abc import Sequence
 
@@ -13,20 +13,27 @@ negative."""
 
 BOTH: Shape = {"order": 1.0, "order_2": 2.0}
 """Errors once and twice a turn."""
+LEAST_PART = 0.03
+"""Even over odd part, or odd over even, from which an error is neither."""
 
 
 class DialEccentricity(Effect):
     """Error ``a cos(angle) + b sin(angle)`` of the indicated angle.
 
     A disc that is tilted errs twice a turn: with `order_2` the same of twice the angle is added.
+    Over part of a turn these make many curves. They are called by this name only where the error
+    has an even and an odd part: what is nearly even is a side load, what is nearly odd a contact.
     """
 
     name = "dial_eccentricity"
     physics = (
         "A dial or encoder disc mounted off centre reads too much on one side and too little on "
-        "the other. The error repeats with every turn of the dial."
+        "the other. The error repeats with every turn of the dial, twice where the disc is tilted."
     )
-    source = "geometry: a circle read from a point off its centre"
+    source = (
+        "geometry: a circle read from a point off its centre; once and twice a turn: Lu, Trumper, "
+        "CIRP Ann. 56, 2007"
+    )
     tell_tale = "periodic in the indicated angle itself"
     shown_by = "twists over a good part of a turn of the dial"
     family = "dial"
@@ -57,6 +64,14 @@ class DialEccentricity(Effect):
         """Once and twice a turn."""
         return None if "order_2" in shape else BOTH
 
+    def is_recognised(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
+        """Whether an error of two orders is neither an even nor an odd curve of the torque."""
+        if "order_2" not in shape:
+            return True
+        error = self.columns(history, shape) @ amplitudes
+        even, odd = _even_and_odd(error, history.load_nm, history.side)
+        return min(even, odd) >= LEAST_PART * max(even, odd)
+
     def columns(self, history: History, shape: Shape) -> Floats:
         """Error for unit amplitudes [deg]."""
         turns = np.radians(history.angle_deg)
@@ -84,3 +99,29 @@ class DialEccentricity(Effect):
             Parameter("cos_2_deg", "deg", "error in phase with the cosine of twice the angle"),
             Parameter("sin_2_deg", "deg", "error in phase with the sine of twice the angle"),
         )
+
+
+def _even_and_odd(error: Floats, load_nm: Floats, side: Floats) -> tuple[float, float]:
+    """Root mean squares of the even and of the odd part of a curve, its straight lines taken out.
+
+    Parameters
+    ----------
+    error : ndarray, shape (n,)
+        The curve [deg].
+    load_nm : ndarray, shape (n,)
+        Magnitude of the torque [N m].
+    side : ndarray, shape (n,)
+        Sign of the flank.
+
+    Returns
+    -------
+    even, odd : float
+        In deg.
+    """
+    part = load_nm / max(float(load_nm.max()), 1e-300)
+    powers = np.column_stack([part**k for k in range(5)])
+    odd_powers = side[:, None] * powers
+    found = np.linalg.lstsq(np.column_stack([powers, odd_powers]), error, rcond=None)[0]
+    even, odd = powers @ found[:5], odd_powers @ found[5:]
+    line = np.linalg.lstsq(odd_powers[:, :2], odd, rcond=None)[0]
+    return float(np.std(even)), float(np.sqrt(np.mean((odd - odd_powers[:, :2] @ line) ** 2)))
