@@ -107,6 +107,19 @@ def test_datum_that_comes_back_slowly_is_erratic(seed: int) -> None:
     assert names(diagnose(recorded(wandering(seed), loops(tops), seed))) == ["datum_drift"]
 
 
+@pytest.mark.parametrize("seed", [4, 5])
+def test_loud_datum_is_not_shared_with_a_transmission_error(seed: int) -> None:
+    # Three orders made nearly all offsets of a few positions: a transmission error was named.
+    places = [10.0, 130.0, 250.0, 10.0, 70.0, 130.0, 190.0, 310.0, 250.0]
+    rng = np.random.default_rng(seed)
+    load = loops(rng.uniform(12.0, 24.0, 9), crank_deg=places)
+    angle = cs.simulate(cs.Drive.reference_87(), load).angle_deg
+    assert angle is not None
+    offsets = 0.5 * wandering(seed, 9)[load.run - 1]
+    found = diagnose(load.with_angle(angle + offsets + 0.01 * rng.standard_normal(len(load))))
+    assert names(found) == ["datum_drift"]
+
+
 def test_datum_that_drifts_one_way_and_back_is_not_erratic() -> None:
     slow = 4.0 * np.sin(np.linspace(0.0, 2.0 * np.pi, 12))
     tops = np.random.default_rng(9).uniform(12.0, 24.0, 12)

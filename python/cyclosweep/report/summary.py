@@ -4,7 +4,7 @@ from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
-from cyclosweep.result.words import degrees, listed, readable, with_article
+from cyclosweep.result.words import degrees, listed, readable, shape_in_words
 
 NEARLY_ALL = 0.995
 """Share of the mismatch that would be written as all of it, though something is left."""
@@ -121,7 +121,7 @@ def _rest(answer: Answer) -> str:
     rest = answer.unknown
     if rest is None:
         return ""
-    what = f"{with_article(rest.shape)} of {rest.size_deg:.2g} deg"
+    what = f"{shape_in_words(rest.shape)} of {rest.size_deg:.2g} deg"
     if answer.effects:
         return f"{space}What is left, {what}, no listed effect explains."
     text = f"The model misses something that no listed effect explains: {what}."

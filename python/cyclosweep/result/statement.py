@@ -7,7 +7,14 @@ from cyclosweep.result.calibration import Thinning
 from cyclosweep.result.calibration_words import calibration_words, change_words, play_words
 from cyclosweep.result.effects import Explanation
 from cyclosweep.result.proof import HeldOutBlock
-from cyclosweep.result.words import degrees, listed, place_of, readable, with_article
+from cyclosweep.result.words import (
+    degrees,
+    listed,
+    place_of,
+    readable,
+    shape_in_words,
+    with_article,
+)
 
 SPREAD = 3
 """Classes of behaviour from which something belongs to none of them."""
@@ -116,7 +123,7 @@ def _mostly_explained(answer: Answer) -> str:
             share += f" (95 %: {100 * low:.3g} to {100 * high:.3g})"
     remains = "something without a name"
     if answer.unknown is not None:
-        remains = f"{with_article(answer.unknown.shape)} of {degrees(answer.unknown.size_deg)}"
+        remains = f"{shape_in_words(answer.unknown.shape)} of {degrees(answer.unknown.size_deg)}"
         remains += f", {answer.unknown.place}"
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
@@ -136,7 +143,7 @@ def _unknown(answer: Answer) -> str:
     remains = ""
     if answer.unknown is not None:
         size = f"{answer.unknown.size_deg:.2g} deg"
-        remains = f": {with_article(answer.unknown.shape)} of {size}, {answer.unknown.place}"
+        remains = f": {shape_in_words(answer.unknown.shape)} of {size}, {answer.unknown.place}"
     calibration = _calibration(answer)
     if answer.drift is not None and answer.change is None:
         remains = ": a drift from run to run"
@@ -190,7 +197,8 @@ def _classes(answer: Answer) -> str:
             words.append(text)
             continue
         if each.stand_ins:
-            text += f", of which {listed(each.stand_ins)} is only a stand-in"
+            only = "is only a stand-in" if len(each.stand_ins) == 1 else "are only stand-ins"
+            text += f", of which {listed(each.stand_ins)} {only}"
         others = [name for name in each.candidates if name not in each.stand_ins]
         if others:
             text += f" (listed effects of this class: {listed(others)})"
