@@ -57,8 +57,9 @@ class DialEccentricity(Effect):
         ]
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Sine and cosine together, whatever phase fits best; beside twice a turn also once."""
-        return [{"order": 1.0} if shape["order"] == 1.0 else BOTH]
+        """Sine and cosine together, whatever phase fits best; twice a turn only beside once."""
+        once: Shape = {"order": 1.0}
+        return [once] if shape["order"] == 1.0 else [once, BOTH]
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Once and twice a turn."""
