@@ -128,13 +128,14 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     # What was accepted in stages has been given its freedom there.
     freer = with_freer_laws(search, accepted) if staged is None else accepted
     if freer is not accepted:
-        decision = _with_law(decision, accepted, freer)
+        decision = _with_structure(decision, accepted, freer)
         accepted = freer
     naming = names_that_hold(search, accepted, decision.best or accepted)
     if staged is not None and naming.withdrawn and _is_enough(search, naming.part):
         # What was withdrawn explains nothing that the others do not explain.
+        decision = _with_structure(decision, accepted, naming.part)
+        decision = replace(decision, verdict="IDENTIFIED", unexplained=False)
         accepted, naming = naming.part, naming.without_withdrawn()
-        decision = Decision("IDENTIFIED", accepted, [(accepted, 1.0)], False)
     if staged is not None and staged[0] is naming.part:
         explained = staged[1]
     else:
@@ -187,21 +188,21 @@ def _is_enough(search: Search, part: Candidate) -> bool:
     )
 
 
-def _with_law(decision: Decision, accepted: Candidate, freer: Candidate) -> Decision:
-    """Verdict with the laws of one of its structures replaced by freer ones.
+def _with_structure(decision: Decision, accepted: Candidate, other: Candidate) -> Decision:
+    """Verdict with one of its structures replaced by another.
 
     Parameters
     ----------
     decision : Decision
-    accepted, freer : Candidate
-        The structure, and the same with freer laws.
+    accepted, other : Candidate
+        The structure, and the same with freer laws, or without those that it does not need.
 
     Returns
     -------
     Decision
     """
-    best = freer if decision.best is accepted else decision.best
-    listed = [(freer if each is accepted else each, p) for each, p in decision.explanations]
+    best = other if decision.best is accepted else decision.best
+    listed = [(other if each is accepted else each, p) for each, p in decision.explanations]
     return replace(decision, best=best, explanations=listed)
 
 

@@ -62,8 +62,11 @@ def _with_freer(search: Search, accepted: Candidate, check: LawCheck) -> Candida
     Candidate or None
         None where no law with more freedom is preferred by the evidence.
     """
-    terms = accepted.fit.terms
-    alike = [k for k, term in enumerate(terms) if check.behaviour in own_classes(term)]
+    alike = [
+        k
+        for k, term in enumerate(accepted.fit.terms)
+        if term.effect is not None and check.behaviour in own_classes(term)
+    ]
     own = accepted.fit.names.index(check.name)
     for index in dict.fromkeys([own, *alike]):
         offers = freer_laws(accepted, search.library, index, TRIED, whole_class=True)
