@@ -83,16 +83,23 @@ def test_creep_is_no_slower_than_a_few_runs() -> None:
     assert BY_NAME["creep"].shape_bounds(parameter, h).upper <= 3.0 * longest + 1e-9
 
 
-def test_a_tilted_dial_errs_twice_a_turn(programme: tuple[Floats, Floats]) -> None:
-    """With one error a turn alone it was unknown, or a side load."""
-    torque, run = programme
-    angle = np.radians(28.0 * np.sign(torque) + 2.7 * torque)
-    found = made(0.4 * np.cos(angle - 1.0) + 0.8 * np.cos(2.0 * angle + 0.4), torque, run)
-    assert [effect["name"] for effect in found.effects] == ["dial_eccentricity"]
-    assert found.verdict == "IDENTIFIED"
-    parameters = found.effects[0]["parameters"]
-    twice = np.hypot(parameters["cos_2_deg"]["estimate"], parameters["sin_2_deg"]["estimate"])
-    assert twice == pytest.approx(0.8, abs=0.05)
+def test_a_tilted_dial_errs_twice_a_turn() -> None:
+    load = np.tile(np.linspace(0.1, TOP, 40), 2)
+    side = np.repeat([1.0, -1.0], 40)
+    row, none = np.arange(80), {"time_s": None, "crank_deg": None, "temperature_c": None}
+    angle = 28.0 * side + 2.7 * side * load
+    known = {"applied_nm": side * load, "elastic_nm": side * load, "angle_deg": angle, "side": side}
+    recorded = history(**known, run=np.zeros(80, np.int64), restart=row == 0, **none)
+    dial = BY_NAME["dial_eccentricity"]
+    both = dial.combined({"order": 1.0}, {"order": 1.0, "phase_deg": 15.0})
+    assert both is not None
+    columns = dial.columns(recorded, both)
+    np.testing.assert_allclose(columns[:, 2], np.cos(2.0 * np.radians(angle)))
+    assert dial.combined(both, {"order": 1.0, "phase_deg": 15.0}) is None
+    # Nearly odd is a contact and nearly even a side load; a dial of any direction is neither.
+    assert not dial.is_recognised(recorded, both, np.array([0.0, 1.0, 0.0, 0.5]))
+    assert not dial.is_recognised(recorded, both, np.array([1.0, 0.0, 0.5, 0.0]))
+    assert dial.is_recognised(recorded, both, np.array([1.0, 1.0, 0.5, 0.0]))
 
 
 def test_a_side_load_is_no_tilted_dial(programme: tuple[Floats, Floats]) -> None:

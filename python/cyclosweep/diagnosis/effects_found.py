@@ -12,8 +12,12 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.testability import Testability, size_of, spread_of_size
-from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.identify.testability import (
+    Testability,
+    size_of,
+    spread_of_size,
+    strength_of,
+)
 from cyclosweep.result import (
     BehaviourClass,
     EffectParameter,
@@ -74,7 +78,7 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
     assert effect is not None
     twist = size_of(fitted, index)
     size = float(np.max(np.abs(twist), initial=0.0))
-    strength = _strength(search, fitted, index)
+    strength = strength_of(search, fitted, index)
     if fitted.follows_path(index):
         spread = size / max(strength, 1e-9)
     else:
@@ -141,36 +145,6 @@ def _p_value(search: Search, accepted: Candidate, name: str) -> float:
     if without is None:
         return 1.0 / (DRAWS + 1)
     return search.alarm.p_value(without.excesses.get(name, 0.0))
-
-
-def _strength(search: Search, fitted: FittedStructure, index: int) -> float:
-    """Projected signal-to-noise of a term, the other terms and the calibration taken out.
-
-    Parameters
-    ----------
-    search : Search
-        Search of the recording.
-    fitted : FittedStructure
-        Structure fitted jointly with the calibration.
-    index : int
-        Which of the structure's terms.
-
-    Returns
-    -------
-    float
-        In units of the noise.
-    """
-    signal = fitted.whitened_contribution(index, search.noise)
-    known = list(range(search.problem.line_columns))
-    for k, term in enumerate(fitted.terms):
-        if k != index and not term.slips:
-            known += fitted.amplitude_places(k)
-    for k, nonlinear in enumerate(fitted.fit_parameters):
-        if nonlinear.term != index:
-            known.append(len(fitted.beta) + k)
-    basis = orthonormal(fitted.sensitivity[:, known], 1e-8)
-    left = signal - basis @ (basis.T @ signal)
-    return float(np.linalg.norm(left)) * float(np.sqrt(fitted.independent_share))
 
 
 def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParameter]:

@@ -57,9 +57,7 @@ def richer_structures(
     for k, term in enumerate(terms):
         if term.effect is None or term.slips:
             continue
-        # The shapes of a vector are all in its fit, so that the residual shows none of its own.
-        asked = candidate.excesses.get(term.name, 0.0) > threshold
-        if asked or (term.effect.vector and not suffices):
+        if candidate.excesses.get(term.name, 0.0) > threshold:
             yield from freer_laws(candidate, library, k)
 
 
@@ -85,7 +83,8 @@ def freer_laws(
         Most offers of more shape parameters beside friction, where each costs a path of the shaft
         in every step of a fit.
     whole_class : bool
-        Whether free offsets of the runs are offered, too, which hold their whole class.
+        Whether shapes are offered, too, that hold nearly their whole class, such as free offsets
+        of the runs.
 
     Yields
     ------

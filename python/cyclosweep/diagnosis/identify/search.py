@@ -37,8 +37,6 @@ MOST_ENRICHED = 2
 """Times an effect is given more freedom of shape."""
 USUAL_ROUNDS, RICH_ROUNDS = 6, 20
 """Most iterations of the fit of an effect with more freedom, beside friction and otherwise."""
-TIE = 0.01
-"""Evidence by which a later start must be ahead: the simpler one is tried first [nat]."""
 MOST_TERMS = 3
 """Effects up to which alternatives are searched in breadth; beyond, the best is followed."""
 MOST_FOLLOWED = 7
@@ -208,7 +206,7 @@ class Search:
             added = self._added(parent, joint, rank, penalty)
             prior = parent.prior - (FURTHER if parent.fit.terms else 0.0)
             prior -= prior_penalty(term.name, term.effect, term.shape)
-            if best is None or parent.gain + added > best.gain + TIE:
+            if best is None or parent.gain + added > best.gain:
                 best = self.judged(joint, parent.gain + added, prior)
         for _ in range(MOST_ENRICHED):
             richer = None if best is None else self._enriched(best)

@@ -190,3 +190,33 @@ def hidden_effects(search: Search) -> list[Untestable]:
             for name, reason in hidden.items()
         ),
     ]
+
+
+def strength_of(search: Search, fitted: FittedStructure, index: int) -> float:
+    """Projected signal-to-noise of a term, the other terms and the calibration taken out.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    fitted : FittedStructure
+        Structure fitted jointly with the calibration.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    float
+        In units of the noise.
+    """
+    signal = fitted.whitened_contribution(index, search.noise)
+    known = list(range(search.problem.line_columns))
+    for k, term in enumerate(fitted.terms):
+        if k != index and not term.slips:
+            known += fitted.amplitude_places(k)
+    for k, nonlinear in enumerate(fitted.fit_parameters):
+        if nonlinear.term != index:
+            known.append(len(fitted.beta) + k)
+    basis = orthonormal(fitted.sensitivity[:, known], 1e-8)
+    left = signal - basis @ (basis.T @ signal)
+    return float(np.linalg.norm(left)) * float(np.sqrt(fitted.independent_share))

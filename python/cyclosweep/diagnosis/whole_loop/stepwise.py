@@ -12,7 +12,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.friction_first import FEW_RUNS
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import strength_of
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.split import whole_stretches
 from cyclosweep.diagnosis.whole_loop.forecast import (
@@ -23,7 +23,7 @@ from cyclosweep.diagnosis.whole_loop.forecast import (
     refit,
     starting_model,
 )
-from cyclosweep.diagnosis.whole_loop.known_flank import noise_beside, whole_loop_fit
+from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, noise_beside, whole_loop_fit
 from cyclosweep.diagnosis.whole_loop.usual_loop import (
     DECIDED,
     better,
@@ -35,9 +35,9 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import (
 
 LEAST_GAIN = 0.15
 """Share of the error on left-out stretches that a structure must take away."""
-SMALL = 0.25
-"""Size of an effect over that of the largest, as root mean squares, below which a simulation must
-gain more by it than its parameters are charged."""
+LEAST_STRENGTH = 2.0
+"""Size of an effect over its standard error below which a simulation keeps it only where it gains
+more by it than its parameters are charged."""
 MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
 all rows is taken instead; and error of that structure, simulated on all rows, over that of the
@@ -72,6 +72,7 @@ def whole_loop_structure(search: Search) -> Candidate | None:
         for each in fits
         if each is not None and each.terms
     ]
+    offered = [_without_the_weak(search, base, *pair) for pair in offered]
     room = MOST_WORSE * search.start.fit.rmse_deg
     clear = simulated_deg / MOST_WORSE
     offered = [
@@ -93,6 +94,36 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     best, fitted = close[first]
     gain = INDEPENDENT_PIECES * float(np.log(base.error_deg / best.error_deg))
     return search.add(fitted, gain)
+
+
+def _without_the_weak(
+    search: Search, base: Forecast, model: Forecast, fitted: WholeLoopFit
+) -> tuple[Forecast, WholeLoopFit]:
+    """Leave effects out of a simulation that are within their error and are not worth their charge.
+
+    Parameters
+    ----------
+    search : Search
+    base : Forecast
+        That of the published model alone.
+    model : Forecast
+        The simulation.
+    fitted : WholeLoopFit
+        The same as a fit.
+
+    Returns
+    -------
+    model, fitted : Forecast, WholeLoopFit
+    """
+    weak = [
+        term.name
+        for k, term in enumerate(fitted.terms)
+        if not term.slips and strength_of(search, fitted, k) < LEAST_STRENGTH
+    ]
+    kept = pruned(search.problem, model, weak)
+    if kept is model:
+        return model, fitted
+    return kept, whole_loop_fit(kept, base, noise_beside(kept, search.noise))
 
 
 def _found(search: Search, simulated_deg: float) -> Forecast | None:
@@ -121,9 +152,7 @@ def _found(search: Search, simulated_deg: float) -> Forecast | None:
     if first.error_deg > simulated_deg:
         # A staircase so steep that the shaft jumps has no settled path from which to fit further.
         return first
-    sizes = {term.name: float(np.std(size_of(fitted, k))) for k, term in enumerate(fitted.terms)}
-    small = [name for name, size in sizes.items() if size < SMALL * max(sizes.values())]
-    return pruned(problem, better(first, refit(first, most=10, blur=BLUR)), small)
+    return better(first, refit(first, most=10, blur=BLUR))
 
 
 def _simulation_error(search: Search) -> float:

@@ -13,6 +13,8 @@ negative."""
 
 BOTH: Shape = {"order": 1.0, "order_2": 2.0}
 """Errors once and twice a turn."""
+TWO_ORDERS = 6.0
+"""Log prior odds against an error twice a turn beside that once a turn [nat]."""
 LEAST_PART = 0.03
 """Even over odd part, or odd over even, from which an error is neither."""
 
@@ -47,23 +49,24 @@ class DialEccentricity(Effect):
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Sinusoids of one and of two periods a turn of the dial, at phases all round.
+        """Sinusoids of one period a turn of the dial, at phases all round.
 
         Sine and cosine together would claim a freedom that the recording may not have: over part
         of a turn the calibration takes up nearly all of the sine.
         """
-        return [
-            {"order": order, "phase_deg": phase} for order in (1.0, 2.0) for phase in PHASES_DEG
-        ]
+        return [{"order": 1.0, "phase_deg": phase} for phase in PHASES_DEG]
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Sine and cosine together, whatever phase fits best; twice a turn only beside once."""
-        once: Shape = {"order": 1.0}
-        return [once] if shape["order"] == 1.0 else [once, BOTH]
+        """Sine and cosine together, whatever phase fits best."""
+        return [{"order": shape["order"]}]
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Once and twice a turn."""
         return None if "order_2" in shape else BOTH
+
+    def penalty(self, shape: Shape) -> float:
+        """Two orders hold many curves: they cost what a further law costs."""
+        return TWO_ORDERS if "order_2" in shape else 0.0
 
     def is_recognised(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
         """Whether an error of two orders is neither an even nor an odd curve of the torque."""
