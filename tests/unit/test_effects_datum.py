@@ -37,12 +37,14 @@ def loops(tops: Sequence[float] | Floats, **known: npt.ArrayLike) -> cs.Recordin
     return cs.Recording.from_arrays(np.concatenate(runs), run=run, **columns)
 
 
-def recorded(offsets: npt.ArrayLike, load: cs.Recording, seed: int = 0) -> cs.Recording:
-    """What a rig with a datum at these offsets reads, noise of 0.3 deg."""
+def recorded(
+    offsets: npt.ArrayLike, load: cs.Recording, seed: int = 0, noise_deg: float = 0.3
+) -> cs.Recording:
+    """What a rig with a datum at these offsets reads."""
     rng = np.random.default_rng(seed)
     angle = cs.simulate(cs.Drive.reference_87(), load).angle_deg
     assert angle is not None
-    noise = 0.3 * rng.standard_normal(len(load))
+    noise = noise_deg * rng.standard_normal(len(load))
     return load.with_angle(angle + np.asarray(offsets)[load.run - 1] + noise)
 
 
@@ -111,12 +113,8 @@ def test_datum_that_comes_back_slowly_is_erratic(seed: int) -> None:
 def test_loud_datum_is_not_shared_with_a_transmission_error(seed: int) -> None:
     # Three orders made nearly all offsets of a few positions: a transmission error was named.
     places = [10.0, 130.0, 250.0, 10.0, 70.0, 130.0, 190.0, 310.0, 250.0]
-    rng = np.random.default_rng(seed)
-    load = loops(rng.uniform(12.0, 24.0, 9), crank_deg=places)
-    angle = cs.simulate(cs.Drive.reference_87(), load).angle_deg
-    assert angle is not None
-    offsets = 0.5 * wandering(seed, 9)[load.run - 1]
-    found = diagnose(load.with_angle(angle + offsets + 0.01 * rng.standard_normal(len(load))))
+    load = loops(np.random.default_rng(seed).uniform(12.0, 24.0, 9), crank_deg=places)
+    found = diagnose(recorded(0.5 * wandering(seed, 9), load, seed, noise_deg=0.01))
     assert names(found) == ["datum_drift"]
 
 

@@ -5,21 +5,26 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.simulation.effects import effects
-from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.effects.history import Floats, History
 from tests.unit.test_effects import history
 
 BY_NAME = {effect.name: effect for effect in effects()}
 TOP = 20.0
 
 
+def one_run(torque: Floats, angle: Floats) -> History:
+    """History of one run without clock, position and temperature."""
+    row, none = np.arange(len(torque)), {"time_s": None, "crank_deg": None, "temperature_c": None}
+    known = {"applied_nm": torque, "elastic_nm": torque, "angle_deg": angle}
+    run = np.zeros(len(torque), np.int64)
+    return history(**known, side=np.sign(torque), run=run, restart=row == 0, **none)
+
+
 def slope(effect: str, shape: dict[str, float], load: Floats) -> Floats:
     """Compliance of an effect's curve at some loads, by differences."""
 
     def twist(at: Floats) -> Floats:
-        row, none = np.arange(len(at)), {"time_s": None, "crank_deg": None, "temperature_c": None}
-        known = {"applied_nm": at, "elastic_nm": at, "angle_deg": at, "side": np.ones(len(at))}
-        one_run = {"run": np.zeros(len(at), np.int64), "restart": row == 0}
-        return BY_NAME[effect].columns(history(**known, **one_run, **none), shape)[:, 0]
+        return BY_NAME[effect].columns(one_run(at, at), shape)[:, 0]
 
     return np.asarray((twist(load + 1e-6) - twist(load)) / 1e-6)
 
@@ -86,10 +91,8 @@ def test_creep_is_no_slower_than_a_few_runs() -> None:
 def test_a_tilted_dial_errs_twice_a_turn() -> None:
     load = np.tile(np.linspace(0.1, TOP, 40), 2)
     side = np.repeat([1.0, -1.0], 40)
-    row, none = np.arange(80), {"time_s": None, "crank_deg": None, "temperature_c": None}
     angle = 28.0 * side + 2.7 * side * load
-    known = {"applied_nm": side * load, "elastic_nm": side * load, "angle_deg": angle, "side": side}
-    recorded = history(**known, run=np.zeros(80, np.int64), restart=row == 0, **none)
+    recorded = one_run(side * load, angle)
     dial = BY_NAME["dial_eccentricity"]
     both = dial.combined({"order": 1.0}, {"order": 1.0, "phase_deg": 15.0})
     assert both is not None

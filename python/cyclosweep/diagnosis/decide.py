@@ -127,9 +127,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
     # What was accepted in stages has been given its freedom there.
     freer = with_freer_laws(search, accepted) if staged is None else accepted
-    if freer is not accepted:
-        decision = _with_structure(decision, accepted, freer)
-        accepted = freer
+    decision, accepted = _with_structure(decision, accepted, freer), freer
     naming = names_that_hold(search, accepted, decision.best or accepted)
     if staged is not None and naming.withdrawn and _is_enough(search, naming.part):
         # What was withdrawn explains nothing that the others do not explain.

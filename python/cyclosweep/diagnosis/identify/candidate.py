@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import Scan, shape_choice_penalty
 from cyclosweep.simulation.effects import Effect, Shape
 
-EXTRA_TERM_PENALTY = 6.0
+FURTHER = 6.0
 """Log prior odds against every further effect."""
 UNNAMED_PENALTY = 4.0
 """Log prior odds against an unnamed shape."""

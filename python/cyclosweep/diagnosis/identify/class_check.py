@@ -20,10 +20,10 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     RUN,
 )
 from cyclosweep.diagnosis.hypotheses.library import Library
+from cyclosweep.diagnosis.identify.candidate import FURTHER
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvidence
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
-    FURTHER_LAW,
     LEAST_SUM,
     LawBeside,
     LawCheck,
@@ -255,7 +255,7 @@ def _check(
     }
     family = [name for name in every if name in own]
     rivals = [name for name in every if name not in own]
-    by_law -= FURTHER_LAW * (len(indices) - 1)
+    by_law -= FURTHER * (len(indices) - 1)
     deficit = max((every[name].evidence for name in family), default=-np.inf) - by_law
     left = [classes.evidence(k, tangent, whole_residual) for k in family]
     missed = max((each.explained for each in left), default=0.0)

@@ -105,6 +105,7 @@ def freer_laws(
         own = [signature.hypothesis == term.name for signature in library.signatures]
         members = np.flatnonzero(own)
     slips = any(other.slips for other in terms)
+    before = _freedom(term, term.shape, candidate)
     tried: list[Shape] = []
     for member in members:
         shape = term.effect.combined(term.shape, library.signatures[member].shape)
@@ -115,7 +116,7 @@ def freer_laws(
         if len(tried) == TRIED:
             return
         tried.append(shape)
-        before, after = (_freedom(term, each, candidate) for each in (term.shape, shape))
+        after = _freedom(term, shape, candidate)
         if slips and after[1] > before[1]:
             if costly == 0 or after[1] > before[1] + MOST_BESIDE_FRICTION:
                 continue

@@ -50,3 +50,18 @@ def explained_share(before: FittedStructure, after: FittedStructure, seed: int) 
         share=float(share(first.sum(keepdims=True), second.sum(keepdims=True))[0]),
         ci95=(float(low), float(high)),
     )
+
+
+def beyond_noise_deg(fitted: FittedStructure) -> float:
+    """Root mean square of what a structure leaves beyond the noise.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+
+    Returns
+    -------
+    float
+        In deg.
+    """
+    return float(np.sqrt(max(fitted.rmse_deg**2 - fitted.noise.spread_deg**2, 0.0)))

@@ -6,6 +6,7 @@ takes up what the law of the datum misses: a few orders make any offsets of a fe
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.law_in_class import amplitude_count
 from cyclosweep.diagnosis.identify.other_laws import FAR_LESS, left_beyond_noise
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
@@ -45,9 +46,9 @@ def with_free_offsets(search: Search, accepted: Candidate) -> Candidate:
     found = with_right_signs(fit(search.problem, search.noise, terms, accepted.fit))
     if found is None:
         return accepted
-    history = accepted.fit.history
-    amplitudes = sum(term.columns(history).shape[1] for term in shared)
-    most = NO_MORE if amplitudes >= history.run_count - 1 else FAR_LESS
+    places = (k for k, term in enumerate(accepted.fit.terms) if term.name in SHARED)
+    amplitudes = sum(amplitude_count(accepted.fit, place) for place in places)
+    most = NO_MORE if amplitudes >= accepted.fit.history.run_count - 1 else FAR_LESS
     if left_beyond_noise(found) > most * left_beyond_noise(accepted.fit):
         return accepted
     free = search.judged(found, accepted.gain, accepted.prior)

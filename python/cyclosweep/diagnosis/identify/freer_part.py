@@ -6,7 +6,7 @@ not to the effect. The part without the effect is therefore fitted with that fre
 
 from collections.abc import Callable
 
-from cyclosweep.diagnosis.identify.candidate import EXTRA_TERM_PENALTY, Candidate, prior_penalty
+from cyclosweep.diagnosis.identify.candidate import FURTHER, Candidate, prior_penalty
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import evidence
@@ -51,7 +51,7 @@ def freer_part(
     (term,) = (each for each in whole.fit.terms if each.name == left_out)
     amplitudes = 1 if term.effect is None else len(term.effect.amplitudes(term.shape))
     evidence_of_part = whole.gain - float(evidence(gain(found, whole.fit), amplitudes))
-    prior = whole.prior + EXTRA_TERM_PENALTY + prior_penalty(term.name, term.effect, term.shape)
+    prior = whole.prior + FURTHER + prior_penalty(term.name, term.effect, term.shape)
     if evidence_of_part + prior <= known.score:
         return None
     return found, evidence_of_part, prior

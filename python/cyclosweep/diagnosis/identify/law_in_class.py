@@ -18,8 +18,6 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
-FURTHER_LAW = 6.0
-"""Log prior odds against each further law [nat], as in the search."""
 LEAST_OF_CLASS = 0.25
 """Size of an effect over that of a larger one of its class from which it is its own: a smaller
 law takes up what the larger one's law misses, and leaves nothing of it."""

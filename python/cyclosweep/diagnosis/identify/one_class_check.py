@@ -7,10 +7,10 @@ between them. The flexible group of the one class then explains as much with few
 from collections.abc import Sequence
 from dataclasses import replace
 
+from cyclosweep.diagnosis.identify.candidate import FURTHER
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
-    FURTHER_LAW,
     LawBeside,
     LawCheck,
     own_classes,
@@ -43,7 +43,7 @@ def without_laws_of_one_class(
         name: classes.evidence(name, laws.known, laws.residual).evidence for name in classes.columns
     }
     best = max(found, key=lambda name: found[name])
-    if found[best] <= laws.evidence - FURTHER_LAW * (len(indices) - 1):
+    if found[best] <= laws.evidence - FURTHER * (len(indices) - 1):
         return tuple(checks)
     own = {fitted.terms[index].name: own_classes(fitted.terms[index]) for index in indices}
     return tuple(

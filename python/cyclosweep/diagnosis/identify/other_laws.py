@@ -6,9 +6,8 @@ of one class of behaviour differ. Once everything else is known the difference s
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import share_class
 from cyclosweep.diagnosis.identify.search import Search
@@ -89,8 +88,7 @@ def left_beyond_noise(fitted: FittedStructure) -> float:
     float
         In deg.
     """
-    noise = fitted.noise.spread_deg
-    return float(np.sqrt(max(fitted.rmse_deg**2 - noise**2, (LEAST_LEFT * noise) ** 2)))
+    return max(beyond_noise_deg(fitted), LEAST_LEFT * fitted.noise.spread_deg)
 
 
 def _score(candidate: Candidate | None) -> float:

@@ -8,8 +8,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.identify.alarm import Alarm
-from cyclosweep.diagnosis.identify.candidate import EXTRA_TERM_PENALTY as FURTHER
-from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty, shape_penalty
+from cyclosweep.diagnosis.identify.candidate import FURTHER, Candidate, prior_penalty, shape_penalty
 from cyclosweep.diagnosis.identify.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure

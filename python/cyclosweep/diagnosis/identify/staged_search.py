@@ -13,6 +13,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.freer_laws import with_freer_laws
@@ -112,6 +113,10 @@ def search_in_stages(
         The search of the last stage, which starts from everything that the stages before it
         accepted; the one given where they accepted nothing.
     """
+
+    def stage_from(begun: FittedStructure) -> Search:
+        return _stage(searched, error_factor(visibility(begun, flexible)), begun)
+
     rivals: list[tuple[Candidate, float]] = []
     last = searched
     fitted: FittedStructure = searched.baseline.fit
@@ -155,9 +160,9 @@ def search_in_stages(
                 fitted = fit(searched.problem, searched.noise, needed, best.fit, rounds=CONVERGED)
             accepted = fitted.terms
             continue
-        found = _without_model_error(best.fit, accepted, mismatch, searched.noise.spread_deg)
+        found = _without_model_error(best.fit, accepted, mismatch)
         if decision.unexplained:
-            doubtful = _doubtful(search, best, searched.noise.spread_deg)
+            doubtful = _doubtful(search, best)
             found = tuple(term for term in found if term.name not in doubtful)
         if {term.name for term in found} == {term.name for term in accepted}:
             break
@@ -168,14 +173,14 @@ def search_in_stages(
         fitted = fit(searched.problem, searched.noise, found, best.fit, rounds=CONVERGED)
         accepted = fitted.terms
     if len(last.start.fit.terms) < len(accepted):
-        last = _stage(searched, error_factor(visibility(fitted, flexible)), fitted)
+        last = stage_from(fitted)
     if accepted:
         other = with_better_laws(last)
         if other is not last.start.fit:
-            last = _stage(searched, error_factor(visibility(other, flexible)), other)
+            last = stage_from(other)
         freer = with_freer_laws(last, last.start).fit
         if freer is not last.start.fit:
-            last = _stage(searched, error_factor(visibility(freer, flexible)), freer)
+            last = stage_from(freer)
     last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
 
@@ -200,7 +205,7 @@ def _stage(searched: Search, factor: float, accepted: FittedStructure) -> Search
     return Search(searched.problem, noise, searched.library, searched.seed, accepted)
 
 
-def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[str]:
+def _doubtful(search: Search, best: Candidate) -> frozenset[str]:
     """Terms that are not to be accepted of a structure that leaves something, or holds the unnamed.
 
     Parameters
@@ -209,8 +214,6 @@ def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[st
         Search of the stage.
     best : Candidate
         Its best structure.
-    noise_deg : float
-        Standard deviation of the noise [deg].
 
     Returns
     -------
@@ -218,7 +221,7 @@ def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[st
         Names of the terms without a name, and of those that do not stand out from what is left.
     """
     fitted = best.fit
-    left = _beyond_noise(fitted, noise_deg)
+    left = beyond_noise_deg(fitted)
     found = set[str]()
     for k, (term, recognised) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
         if term.name in search.start.names:
@@ -229,26 +232,8 @@ def _doubtful(search: Search, best: Candidate, noise_deg: float) -> frozenset[st
     return frozenset(found)
 
 
-def _beyond_noise(fitted: FittedStructure, noise_deg: float) -> float:
-    """Root mean square of what a structure leaves beyond the noise.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    noise_deg : float
-        Standard deviation of the noise [deg].
-
-    Returns
-    -------
-    float
-        In deg.
-    """
-    return float(np.sqrt(max(fitted.rmse_deg**2 - noise_deg**2, 0.0)))
-
-
 def _without_model_error(
-    fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float, noise_deg: float
+    fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float
 ) -> tuple[Term, ...]:
     """Terms of a structure but those that may be model error of a term accepted before.
 
@@ -260,8 +245,6 @@ def _without_model_error(
         The terms accepted before.
     mismatch_deg : float
         Root mean square error of the calibrated model without effects [deg].
-    noise_deg : float
-        Standard deviation of the noise [deg].
 
     Returns
     -------
@@ -270,7 +253,7 @@ def _without_model_error(
     before = {term.name for term in accepted}
     twist = [size_of(fitted, k) for k in range(len(fitted.terms))]
     size = [float(np.std(each)) for each in twist]
-    left = _beyond_noise(fitted, noise_deg)
+    left = beyond_noise_deg(fitted)
     errors = errors_of_larger(fitted)
     kept = []
     for k, term in enumerate(fitted.terms):
@@ -286,9 +269,9 @@ def _without_model_error(
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
         # Any curve is a difference of larger ones.
-        total = float(np.std(twist[k] + sum(w for _, w in mates)))
-        cancels = bool(mates) and total < LEAST_SUM * max(size[k], *(s for s, _ in mates))
         largest = max((s for s, _ in mates), default=0.0)
+        total = float(np.std(twist[k] + sum(w for _, w in mates)))
+        cancels = total < LEAST_SUM * max(size[k], largest)
         replaced = size[k] < min(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_CLASS * largest)
         if (term.name in before and not replaced) or (stands_out and not cancels):
             kept.append(term)
