@@ -56,7 +56,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         flexible = flexible_basis(search.problem, search.library, None)
     search, flexible = without_hidden_friction(search, flexible)
     calibrated = search.noise
-    mismatch = visibility(search.baseline.fit, flexible)
+    mismatch = visibility(search.baseline.fit, calibrated, flexible)
     if calibrated.structured or mismatch > LOUD:
         return _by_size(search, flexible, say)
     for _ in range(RESTARTS):

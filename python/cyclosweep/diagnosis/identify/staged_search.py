@@ -31,7 +31,7 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
-from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
 MODEL_ERROR_SHARE = 0.3
@@ -51,13 +51,15 @@ TIMES_WHAT_IS_LEFT = 3.0
 model error in any case: laws that err by as much as the effect would leave more."""
 
 
-def visibility(fitted: FittedStructure, flexible: Floats) -> float:
+def visibility(fitted: FittedStructure, noise: Noise, flexible: Floats) -> float:
     """Signal-to-noise ratio of what a structure leaves and a flexible model takes up.
 
     Parameters
     ----------
     fitted : FittedStructure
-        The structure.
+        The structure, by whatever noise it was fitted.
+    noise : Noise
+        Noise of the recording, without model error.
     flexible : ndarray, shape (fitted, k)
         Columns of the flexible model. What it cannot take up, outliers among it, does not count.
 
@@ -65,7 +67,7 @@ def visibility(fitted: FittedStructure, flexible: Floats) -> float:
     -------
     float
     """
-    noise = fitted.noise.plain
+    noise = noise.plain
     use = fitted.problem.fitted
     left, weight = noise.residual(fitted.problem.angle_deg[use], fitted.mean_deg[use])
     basis = orthonormal(noise.design(flexible, weight))
@@ -114,14 +116,17 @@ def search_in_stages(
         accepted; the one given where they accepted nothing.
     """
 
+    def factor_of(left_by: FittedStructure) -> float:
+        return error_factor(visibility(left_by, searched.noise, flexible))
+
     def stage_from(begun: FittedStructure) -> Search:
-        return _stage(searched, error_factor(visibility(begun, flexible)), begun)
+        return _stage(searched, factor_of(begun), begun)
 
     rivals: list[tuple[Candidate, float]] = []
     last = searched
     fitted: FittedStructure = searched.baseline.fit
     mismatch = fitted.rmse_deg
-    factor = error_factor(visibility(fitted, flexible))
+    factor = factor_of(fitted)
     if begun is not None:
         fitted = fit(searched.problem, searched.noise, begun.terms, begun, rounds=CONVERGED)
     elif factor > 1.0:
@@ -129,7 +134,7 @@ def search_in_stages(
     accepted = fitted.terms
     restarted = shed = False
     for _ in range(MOST_STAGES):
-        factor = error_factor(visibility(fitted, flexible))
+        factor = factor_of(fitted)
         if not accepted and factor == 1.0:
             break
         search = _stage(searched, factor, fitted)
