@@ -23,7 +23,12 @@ from cyclosweep.diagnosis.identify.friction_first import (
     friction_first,
     from_better_start,
 )
-from cyclosweep.diagnosis.identify.law_in_class import LEAST_OF_CLASS, LEAST_SUM, share_class
+from cyclosweep.diagnosis.identify.law_in_class import (
+    LEAST_OF_CLASS,
+    LEAST_SUM,
+    amplitude_count,
+    share_class,
+)
 from cyclosweep.diagnosis.identify.other_laws import with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
@@ -46,6 +51,8 @@ of the calibrated model."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
+BY_CHANCE = 1e-4
+"""Probability of a law of run offsets, found among a hundred, up to which it is no chance."""
 TIMES_WHAT_IS_LEFT = 3.0
 """Size of an effect over what the whole structure leaves beyond the noise, from which it is no
 model error in any case: laws that err by as much as the effect would leave more."""
@@ -264,7 +271,10 @@ def _without_model_error(
     for k, term in enumerate(fitted.terms):
         others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
         family = max((s for s, each in others if each.family == term.family), default=0.0)
-        alike = max((s for s, each in others if _are_alike(each, term)), default=0.0)
+        alike = max((s for s, each in others if share_class(each, term)), default=0.0)
+        if term.name in CLASSES_OF_EFFECT and _may_be_chance(fitted, k, size[k], left):
+            beside = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
+            alike = max(alike, *beside, 0.0)
         mates = [
             (size[j], twist[j])
             for j, each in enumerate(fitted.terms)
@@ -283,17 +293,29 @@ def _without_model_error(
     return tuple(kept)
 
 
-def _are_alike(one: Term, other: Term) -> bool:
-    """Whether one of two effects may hold what the law of the other misses.
+def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
+    """Whether a law of run offsets may by chance hold what another one misses of them.
+
+    Offsets of runs are a few numbers. Of what is left of them, k columns drawn at random leave less
+    than a share s of the mean square with probability s to the half of their number less k.
 
     Parameters
     ----------
-    one : Term
-    other : Term
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Place of the law's term.
+    size : float
+        Root mean square of its twist [deg].
+    left : float
+        Root mean square of what the whole structure leaves beyond the noise [deg].
 
     Returns
     -------
     bool
-        For effects of one class, and for those that give every run an offset.
     """
-    return share_class(one, other) or {one.name, other.name} <= set(CLASSES_OF_EFFECT)
+    offsets = [k for k, term in enumerate(fitted.terms) if term.name in CLASSES_OF_EFFECT]
+    counted = sum(amplitude_count(fitted, k) for k in offsets)
+    free = fitted.history.run_count - 1 - counted
+    share = left**2 / max(left**2 + size**2, 1e-300)
+    return free <= 0 or share ** (0.5 * free) > BY_CHANCE

@@ -78,7 +78,7 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    unrecorded = isinstance(effect, MeshPeriodic) and not from_recorded_position(shape)
+    unrecorded = isinstance(effect, MeshPeriodic) and ORDER.format(1) in shape
     return () if unrecorded else effect.needs
 
 
@@ -256,10 +256,10 @@ class MeshPeriodic(Effect):
         return Parameter(parameter.name, parameter.unit, parameter.meaning, lower, upper)
 
     def expected(self, history: History, shape: Shape) -> Floats | None:
-        """Amplitudes that fall with the square of the order, as those of smooth shapes do.
+        """Amplitudes that fall with the square of the order, from the lowest on.
 
-        A few positions leave combinations of orders open, which would swing between them. A wave
-        along an unrecorded travel leaves nothing open.
+        A few positions leave combinations of orders open, which would swing between them; a single
+        order has none. A wave along an unrecorded travel leaves nothing open.
 
         Parameters
         ----------
@@ -279,7 +279,7 @@ class MeshPeriodic(Effect):
         # The orders of the pins are no harmonics of a turn but first orders of their own.
         pins = history.output_pin_count
         own = np.where(orders % pins == 0, orders / pins, orders)
-        return np.asarray(self.largest(history) / own**2)
+        return np.asarray(self.largest(history) / (own / own.min()) ** 2)
 
     def known_shape(self, shape: Shape) -> Shape:
         """Return a shape with its parameters in order; orders of a recorded position are whole.
