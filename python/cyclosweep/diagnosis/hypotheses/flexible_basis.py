@@ -5,6 +5,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.library import Library, Signature
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.simulation.effects.datum_drift import FEWEST_RUNS, MOST_RUNS
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.effects.orders import from_recorded_position, travels
 
@@ -58,7 +59,8 @@ def flexible_basis(problem: Problem, library: Library, extra: Floats | None = No
     if not wanted:
         return inner
     index = np.concatenate([np.arange(s.first, s.stop) for s in wanted])
-    rest = library.columns[:, index] / np.sqrt(len(inner))
+    columns = np.column_stack([library.columns[:, index], _run_offsets(problem, library)])
+    rest = columns / np.sqrt(len(inner))
     rest = rest - inner @ (inner.T @ rest)
     # Directions by the small matrix of inner products: what is kept lies far above its rounding.
     size, mix = np.linalg.eigh(rest.T @ rest)
@@ -68,6 +70,29 @@ def flexible_basis(problem: Problem, library: Library, extra: Floats | None = No
     strongest = strongest[:most]
     kept = rest @ (mix[:, strongest] / np.sqrt(size[strongest]))
     return _with_clear_waves(problem, library, np.column_stack([inner, kept]))
+
+
+def _run_offsets(problem: Problem, library: Library) -> Floats:
+    """An offset of each run, where no effect of the library gives one.
+
+    Runs that begin elsewhere are no noise, whatever moves them; as noise they would be slow and as
+    large as they are.
+
+    Parameters
+    ----------
+    problem : Problem
+        The recording, n rows of which are fitted.
+    library : Library
+        Signatures of all hypotheses.
+
+    Returns
+    -------
+    ndarray, shape (n, runs or 0)
+    """
+    run, count = problem.history.run[problem.fitted], problem.history.run_count
+    known = any("each_run" in s.shape for s in library.signatures)
+    runs = np.arange(count if not known and FEWEST_RUNS <= count <= MOST_RUNS else 0)
+    return np.asarray(run[:, None] == runs, np.float64)
 
 
 def _with_clear_waves(problem: Problem, library: Library, basis: Floats) -> Floats:

@@ -269,9 +269,13 @@ def _check(
     follows = bool(own) and set(own) <= set(ONE_CAUSE)
     # Where the class itself says what the twist follows, it is the class that has to be beaten.
     beaten = max([by_law, *(every[name].evidence for name in family if follows)])
+    beside = LawBeside(known, law, residual, charged, by_law)
+    # Friction with a presliding as long as the range is a curve of the torque, and no loop.
+    if any(fitted.terms[index].slips for index in indices) and ODD_CURVE in classes.columns:
+        replaced = beside.is_replaced(classes, ODD_CURVE)
     # A class that the recording does not show replaces no law.
     if rival is not None and every[rival].evidence > max(beaten + close, CLEAR):
-        replaced = LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
+        replaced |= beside.is_replaced(classes, rival)
     # A law is judged by its class no closer than to the error that much larger ones leave there.
     error = ERROR_OF_OTHERS * size_of_others
     little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))

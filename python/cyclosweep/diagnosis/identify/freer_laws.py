@@ -4,13 +4,28 @@ A search gives a law more freedom where its residual asks for it. Beside a large
 misses may be too little to ask for it, and still be a part of its class that is too large to leave.
 """
 
-from cyclosweep.diagnosis.identify.candidate import Candidate
+import numpy as np
+
+from cyclosweep.diagnosis.identify.candidate import FURTHER, Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.enrichment import TRIED, freer_laws
+from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.free_offsets import with_free_offsets
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck, own_classes
+from cyclosweep.diagnosis.identify.law_in_class import (
+    LawCheck,
+    amplitude_count,
+    cancels,
+    own_classes,
+)
+from cyclosweep.diagnosis.identify.other_laws import left_beyond_noise
+from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.signs import with_right_signs
+from cyclosweep.diagnosis.identify.testability import size_of
 
+MOST_GROWTH = 1.5
+"""Size of a law in its freer form over its size before, from which it has taken the place of other
+effects."""
 ROUNDS = 2
 """Times a law is given more freedom."""
 
@@ -41,6 +56,58 @@ def with_freer_laws(search: Search, accepted: Candidate) -> Candidate:
             break
         accepted = found
     return with_free_offsets(search, accepted)
+
+
+def freer_instead_of_others(
+    search: Search, best: Candidate, acceptable: Candidate
+) -> Candidate | None:
+    """One law in a form that holds nearly its whole class, where further effects cost more.
+
+    What a dial misses that is tilted as well, a side load and a softening take up between them.
+
+    Parameters
+    ----------
+    search : Search
+        Search of a stage, run.
+    best : Candidate
+        Its best structure.
+    acceptable : Candidate
+        The part of it that can be accepted; where that is nothing, the law has to leave no more
+        than the best structure does.
+
+    Returns
+    -------
+    Candidate or None
+        The law beside what was accepted before. None where no law of the best structure has such a
+        form, or where the evidence prefers the part.
+    """
+    start, left_by_best = search.start, left_beyond_noise(best.fit)
+    for index, term in enumerate(best.fit.terms):
+        if term.effect is None or term.slips:
+            continue
+        others = tuple(t for t in best.fit.terms if t.name in start.names and t is not term)
+        same = [k for k, each in enumerate(start.fit.terms) if each.name == term.name]
+        known = sum(amplitude_count(start.fit, k) for k in same)
+        before = size_of(start.fit, same[0]) if same else size_of(best.fit, index)
+        for terms, _ in freer_laws(best, search.library, index, whole_class=True):
+            charge = term.effect.penalty(terms[index].shape)
+            if charge <= term.effect.penalty(term.shape):
+                continue
+            joint = with_right_signs(
+                fit(search.problem, search.noise, (*others, terms[index]), best.fit)
+            )
+            if joint is None or cancels(joint, len(others)):
+                continue
+            if np.std(size_of(joint, len(others))) > MOST_GROWTH * np.std(before):
+                continue
+            rank = amplitude_count(joint, len(others)) - known
+            added = float(evidence(search.gain(start.fit, joint), rank))
+            further = FURTHER if start.fit.terms and not known else 0.0
+            found = search.judged(joint, start.gain + added, start.prior - charge - further)
+            enough = acceptable is not start or left_beyond_noise(joint) <= left_by_best
+            if enough and found.all_recognised and found.score > acceptable.score:
+                return found
+    return None
 
 
 def _with_freer(search: Search, accepted: Candidate, check: LawCheck) -> Candidate | None:

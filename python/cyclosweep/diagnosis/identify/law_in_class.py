@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import evidence, likelihood_gain
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
@@ -92,6 +93,30 @@ def share_class(one: Term, other: Term) -> bool:
     if one.effect is None or other.effect is None:
         return False
     return bool(set(own_classes(one)) & set(own_classes(other)))
+
+
+def cancels(fitted: FittedStructure, index: int) -> bool:
+    """Whether a term and others of its class mostly cancel, as any curve is a difference.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Which of the structure's terms.
+
+    Returns
+    -------
+    bool
+    """
+    own = size_of(fitted, index)
+    others = [
+        size_of(fitted, k)
+        for k, each in enumerate(fitted.terms)
+        if k != index and share_class(each, fitted.terms[index])
+    ]
+    largest = max(float(np.std(each)) for each in [own, *others])
+    return float(np.std(own + sum(others))) < LEAST_SUM * largest
 
 
 def law_places(fitted: FittedStructure, index: int) -> list[int]:

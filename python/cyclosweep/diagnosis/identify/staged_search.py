@@ -16,7 +16,10 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.freer_laws import with_freer_laws
+from cyclosweep.diagnosis.identify.freer_laws import (
+    freer_instead_of_others,
+    with_freer_laws,
+)
 from cyclosweep.diagnosis.identify.friction_first import (
     CONVERGED,
     PARAMETER_CHARGE,
@@ -25,8 +28,8 @@ from cyclosweep.diagnosis.identify.friction_first import (
 )
 from cyclosweep.diagnosis.identify.law_in_class import (
     LEAST_OF_CLASS,
-    LEAST_SUM,
     amplitude_count,
+    cancels,
     share_class,
 )
 from cyclosweep.diagnosis.identify.other_laws import with_better_laws
@@ -176,6 +179,19 @@ def search_in_stages(
         if decision.unexplained:
             doubtful = _doubtful(search, best)
             found = tuple(term for term in found if term.name not in doubtful)
+        part = search.visited.get(frozenset(term.name for term in found), search.start)
+        freer_form = freer_instead_of_others(search, best, part)
+        if freer_form is not None:
+            fitted = fit(
+                searched.problem,
+                searched.noise,
+                freer_form.fit.terms,
+                freer_form.fit,
+                rounds=CONVERGED,
+            )
+            accepted, last = fitted.terms, stage_from(fitted)
+            rivals.clear()
+            continue
         if {term.name for term in found} == {term.name for term in accepted}:
             break
         if not decision.unexplained:
@@ -263,8 +279,7 @@ def _without_model_error(
     tuple of Term
     """
     before = {term.name for term in accepted}
-    twist = [size_of(fitted, k) for k in range(len(fitted.terms))]
-    size = [float(np.std(each)) for each in twist]
+    size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
     left = beyond_noise_deg(fitted)
     errors = errors_of_larger(fitted)
     kept = []
@@ -275,20 +290,14 @@ def _without_model_error(
         if term.name in CLASSES_OF_EFFECT and _may_be_chance(fitted, k, size[k], left):
             beside = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
             alike = max(alike, *beside, 0.0)
-        mates = [
-            (size[j], twist[j])
-            for j, each in enumerate(fitted.terms)
-            if j != k and share_class(each, term)
-        ]
+        mates = [j for j, each in enumerate(fitted.terms) if j != k and share_class(each, term)]
         least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
-        # Any curve is a difference of larger ones.
-        largest = max((s for s, _ in mates), default=0.0)
-        total = float(np.std(twist[k] + sum(w for _, w in mates)))
-        cancels = total < LEAST_SUM * max(size[k], largest)
-        replaced = size[k] < min(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_CLASS * largest)
-        if (term.name in before and not replaced) or (stands_out and not cancels):
+        largest = max((size[j] for j in mates), default=0.0)
+        small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
+        replaced = small and (size[k] < LEAST_OF_CLASS * largest or term.name in errors)
+        if (term.name in before and not replaced) or (stands_out and not cancels(fitted, k)):
             kept.append(term)
     return tuple(kept)
 
