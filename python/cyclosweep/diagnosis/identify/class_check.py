@@ -271,7 +271,8 @@ def _check(
     beaten = max([by_law, *(every[name].evidence for name in family if follows)])
     beside = LawBeside(known, law, residual, charged, by_law)
     # Friction with a presliding as long as the range is a curve of the torque, and no loop.
-    if any(fitted.terms[index].slips for index in indices) and ODD_CURVE in classes.columns:
+    slips = any(fitted.terms[index].slips for index in indices)
+    if slips and by_law > CLEAR and ODD_CURVE in classes.columns:
         replaced = beside.is_replaced(classes, ODD_CURVE)
     # A class that the recording does not show replaces no law.
     if rival is not None and every[rival].evidence > max(beaten + close, CLEAR):
