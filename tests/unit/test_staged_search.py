@@ -1,14 +1,48 @@
-"""Stages of a search: how large what a structure leaves is, against the noise alone."""
+"""Stages of a search: how large what a structure leaves is, what is accepted, freer laws."""
 
+import numpy as np
 import pytest
 
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
+from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.staged_search import FAINT, visibility
+from cyclosweep.diagnosis.identify.freer_laws import freer_instead_of_others
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.staged_search import (
+    FAINT,
+    visibility,
+    without_model_error,
+)
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.searches import search_of
 
 CREEP = EffectValue("creep", {"lag_s": 20.0}, (2.0,))
+WARM = EffectValue("thermal_drift", {"datum": 1.0}, (0.6,))
+SHIFTED = EffectValue("transmission_error", {"order_1": 2.0}, (0.15, 0.1))
+LOADED = {
+    "slip_deg": 1.0,
+    "scatter": 0.6,
+    "skew": 0.0,
+    "slack": 0.0,
+    "growth": 0.8,
+    "reference_nm": 9.0,
+}
+BOTH_ORDERS = {"order": 1.0, "order_2": 2.0}
+TILTED = EffectValue("dial_eccentricity", BOTH_ORDERS, (1.5, 0.5, 0.4, -0.3))
+
+
+def structure(search: Search, *terms: Term) -> Candidate:
+    """Candidate of terms fitted jointly."""
+    found = fit(search.problem, search.noise, terms, search.baseline.fit, rounds=20)
+    return search.judged(found, 0.0, 0.0)
+
+
+def term_of(value: EffectValue) -> Term:
+    return Term(find(value.name), dict(value.shape))
 
 
 def test_what_is_left_is_measured_against_the_noise_alone_however_it_was_fitted() -> None:
@@ -22,3 +56,81 @@ def test_what_is_left_is_measured_against_the_noise_alone_however_it_was_fitted(
     left = visibility(by_noise, search.noise, flexible)
     assert left > 3.0 * FAINT
     assert visibility(by_both, search.noise, flexible) == pytest.approx(left, rel=0.01)
+
+
+def test_a_small_law_of_run_offsets_that_leaves_nothing_is_no_error_of_a_larger_one() -> None:
+    # Below a quarter of the drift with temperature, by size alone it was taken for its error.
+    search = search_of(WARM, SHIFTED)
+    found = structure(search, term_of(WARM), term_of(SHIFTED)).fit
+    kept = without_model_error(found, found.terms[:1], search.baseline.fit.rmse_deg)
+    assert {term.name for term in kept} == {"thermal_drift", "transmission_error"}
+
+
+def test_a_small_law_of_run_offsets_as_free_as_the_runs_is_not_accepted() -> None:
+    search = search_of(WARM, SHIFTED)
+    orders = {"order_1": 1.0, "order_2": 2.0, "order_3": 3.0}
+    free = Term(find("transmission_error"), orders)
+    drift = Term(find("datum_drift"), {"push": 1.0, "memory": 0.4})
+    found = structure(search, term_of(WARM), drift, free).fit
+    kept = without_model_error(found, found.terms[:1], search.baseline.fit.rmse_deg)
+    assert "transmission_error" not in {term.name for term in kept}
+
+
+def test_what_was_accepted_and_has_shrunk_to_an_error_of_another_law_goes() -> None:
+    search = search_of(CREEP)
+    creep = term_of(CREEP)
+    shape = {"slip_deg": 2.5, "scatter": 0.6, "skew": 0.0, "slack": 0.0}
+    friction = Term(find("friction_hysteresis"), shape, None, 1e-3)
+    found = structure(search, friction, creep).fit
+    kept = without_model_error(found, (friction,), search.baseline.fit.rmse_deg)
+    assert {term.name for term in kept} == {"creep"}
+
+
+def test_friction_that_is_a_curve_of_the_torque_is_not_named() -> None:
+    # A presliding longer than the range makes a loop of no width, which stood for stiffening.
+    search = search_of(EffectValue("contact_stiffening", {"turn_nm": 3.0}, (0.6,)))
+    shape = LOADED | {"slip_deg": 38.0, "scatter": 0.11, "skew": -0.99}
+    found = structure(search, Term(find("load_dependent_friction"), shape, None, 0.2))
+    assert found.fit.rmse_deg < 0.7 * search.baseline.fit.rmse_deg
+    (check,) = check_laws(found.fit)
+    assert not check.holds
+
+
+def test_friction_whose_loop_shows_is_named() -> None:
+    search = search_of(EffectValue("load_dependent_friction", LOADED, (0.1,)))
+    found = structure(search, Term(find("load_dependent_friction"), LOADED, None, 0.1))
+    (check,) = check_laws(found.fit)
+    assert check.holds
+
+
+def test_a_tilted_dial_is_one_law_and_no_side_load_beside_a_dial() -> None:
+    search = search_of(TILTED)
+    once = Term(find("dial_eccentricity"), {"order": 1.0})
+    loaded = Term(find("load_asymmetry"), {"power": 2.0})
+    best = structure(search, once, loaded)
+    found = freer_instead_of_others(search, best, search.start)
+    assert found is not None
+    assert [dict(term.shape) for term in found.fit.terms] == [BOTH_ORDERS]
+    assert found.fit.rmse_deg < best.fit.rmse_deg
+
+
+def test_a_plain_dial_beside_a_side_load_stays_two_effects() -> None:
+    value = EffectValue("load_asymmetry", {"power": 0.7}, (0.2,))
+    search = search_of(EffectValue("dial_eccentricity", {"order": 1.0}, (1.0, 0.3)), value)
+    search.run()
+    best = search.best()
+    assert best is not None
+    assert freer_instead_of_others(search, best, best) is None
+
+
+def test_offsets_of_runs_are_no_noise_where_no_effect_of_the_library_gives_them() -> None:
+    # As noise they were slow, of any size, and hid everything: the answer was that data are short.
+    search = search_of()
+    problem = search.problem
+    known = tuple(each for each in effects() if each.name != "datum_drift")
+    basis = flexible_basis(problem, build_library(problem.history, problem.fitted, known))
+    run = problem.history.run[problem.fitted]
+    for number in range(problem.history.run_count):
+        offset = (run == number).astype(np.float64)
+        left = offset - basis @ (basis.T @ offset)
+        assert np.linalg.norm(left) < 0.05 * np.linalg.norm(offset)

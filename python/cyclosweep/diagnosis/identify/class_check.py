@@ -33,6 +33,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     law_places,
     own_classes,
 )
+from cyclosweep.diagnosis.identify.loop_check import is_without_loop
 from cyclosweep.diagnosis.identify.run_offsets_check import without_leftovers
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -260,7 +261,6 @@ def _check(
     left = [classes.evidence(k, tangent, whole_residual) for k in family]
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))
-    replaced = False
     loose = _is_loose(own)
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
     close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
@@ -269,13 +269,10 @@ def _check(
     follows = bool(own) and set(own) <= set(ONE_CAUSE)
     # Where the class itself says what the twist follows, it is the class that has to be beaten.
     beaten = max([by_law, *(every[name].evidence for name in family if follows)])
-    beside = LawBeside(known, law, residual, charged, by_law)
-    # Friction with a presliding as long as the range is a curve of the torque, and no loop.
-    slips = any(fitted.terms[index].slips for index in indices)
-    if slips and by_law > CLEAR and ODD_CURVE in classes.columns:
-        replaced = beside.is_replaced(classes, ODD_CURVE)
+    replaced = any(fitted.terms[k].slips and is_without_loop(fitted, k) for k in indices)
     # A class that the recording does not show replaces no law.
     if rival is not None and every[rival].evidence > max(beaten + close, CLEAR):
+        beside = LawBeside(known, law, residual, charged, by_law)
         replaced |= beside.is_replaced(classes, rival)
     # A law is judged by its class no closer than to the error that much larger ones leave there.
     error = ERROR_OF_OTHERS * size_of_others

@@ -175,7 +175,7 @@ def search_in_stages(
                 fitted = fit(searched.problem, searched.noise, needed, best.fit, rounds=CONVERGED)
             accepted = fitted.terms
             continue
-        found = _without_model_error(best.fit, accepted, mismatch)
+        found = without_model_error(best.fit, accepted, mismatch)
         if decision.unexplained:
             doubtful = _doubtful(search, best)
             found = tuple(term for term in found if term.name not in doubtful)
@@ -260,7 +260,7 @@ def _doubtful(search: Search, best: Candidate) -> frozenset[str]:
     return frozenset(found)
 
 
-def _without_model_error(
+def without_model_error(
     fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float
 ) -> tuple[Term, ...]:
     """Terms of a structure but those that may be model error of a term accepted before.

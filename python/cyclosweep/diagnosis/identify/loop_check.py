@@ -1,0 +1,45 @@
+"""Whether a recording shows the loop of a friction that was fitted to it.
+
+A friction whose presliding is as long as the range of the twist is a curve of the torque that no
+loop goes with. It stands in for a stiffening that is on no list.
+"""
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import smooth_columns
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.prepare.problem import line_design
+
+VISIBLE = 30.0
+"""Signal-to-noise ratio of a friction from which its loop has to show: below it the many directions
+of a curve take up as much noise as the loop is large."""
+
+
+def is_without_loop(fitted: FittedStructure, index: int) -> bool:
+    """Whether a curve of the torque leaves no more than a structure with friction.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Which of its terms is the friction.
+
+    Returns
+    -------
+    bool
+        False where the friction is faint.
+    """
+    problem = fitted.problem
+    use, history = problem.fitted, problem.history
+    size = float(np.linalg.norm(size_of(fitted, index)))
+    if size < VISIBLE * fitted.noise.spread_deg:
+        return False
+    line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
+    load = np.clip(history.load_nm / history.largest_torque_nm, 0.0, 1.0)
+    others = [fitted.contribution(k) for k, term in enumerate(fitted.terms) if not term.slips]
+    columns = np.column_stack([line, history.side[:, None] * smooth_columns(load), *others])[use]
+    angle = problem.angle_deg[use]
+    left = angle - columns @ np.linalg.lstsq(columns, angle, rcond=None)[0]
+    return float(np.sqrt(np.mean(left**2))) <= fitted.rmse_deg
