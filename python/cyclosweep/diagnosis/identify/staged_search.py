@@ -129,6 +129,9 @@ def search_in_stages(
     def factor_of(left_by: FittedStructure) -> float:
         return error_factor(visibility(left_by, searched.noise, flexible))
 
+    def refitted(terms: tuple[Term, ...], near: FittedStructure) -> FittedStructure:
+        return fit(searched.problem, searched.noise, terms, near, rounds=CONVERGED)
+
     def stage_from(begun: FittedStructure) -> Search:
         return _stage(searched, factor_of(begun), begun)
 
@@ -138,7 +141,7 @@ def search_in_stages(
     mismatch = fitted.rmse_deg
     factor = factor_of(fitted)
     if begun is not None:
-        fitted = fit(searched.problem, searched.noise, begun.terms, begun, rounds=CONVERGED)
+        fitted = refitted(begun.terms, begun)
     elif factor > 1.0:
         fitted = friction_first(searched, searched.noise.with_model_error(factor)) or fitted
     accepted = fitted.terms
@@ -163,7 +166,7 @@ def search_in_stages(
                 restarted = True
                 before = {term.name for term in accepted}
                 kept = tuple(term for term in turned.terms if term.name in before)
-                fitted = fit(searched.problem, searched.noise, kept, turned, rounds=CONVERGED)
+                fitted = refitted(kept, turned)
                 accepted = fitted.terms
                 continue
         needed = accepted if shed else still_needed(search, best, accepted)
@@ -172,7 +175,7 @@ def search_in_stages(
             shed, last, fitted = True, searched, searched.baseline.fit
             rivals.clear()
             if needed:
-                fitted = fit(searched.problem, searched.noise, needed, best.fit, rounds=CONVERGED)
+                fitted = refitted(needed, best.fit)
             accepted = fitted.terms
             continue
         found = without_model_error(best.fit, accepted, mismatch)
@@ -182,13 +185,7 @@ def search_in_stages(
         part = search.visited.get(frozenset(term.name for term in found), search.start)
         freer_form = freer_instead_of_others(search, best, part)
         if freer_form is not None:
-            fitted = fit(
-                searched.problem,
-                searched.noise,
-                freer_form.fit.terms,
-                freer_form.fit,
-                rounds=CONVERGED,
-            )
+            fitted = refitted(freer_form.fit.terms, freer_form.fit)
             accepted, last = fitted.terms, stage_from(fitted)
             rivals.clear()
             continue
@@ -198,7 +195,7 @@ def search_in_stages(
             so_far = 1.0 - sum(share for _, share in rivals)
             others = [each for each in decision.explanations if each[0] is not best]
             rivals += [(candidate, so_far * share) for candidate, share in others]
-        fitted = fit(searched.problem, searched.noise, found, best.fit, rounds=CONVERGED)
+        fitted = refitted(found, best.fit)
         accepted = fitted.terms
     if len(last.start.fit.terms) < len(accepted):
         last = stage_from(fitted)
