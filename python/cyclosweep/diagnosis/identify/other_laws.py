@@ -19,8 +19,8 @@ from cyclosweep.diagnosis.identify.testability import size_of
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
 LOUD = 100.0
-"""Signal-to-noise ratio of an effect from which this does not count: no law is exact to a hundredth,
-and the one that errs less need not be the right one."""
+"""Signal-to-noise ratio of an effect from which this does not count: no law is exact to a
+hundredth, and the one that errs less need not be the right one."""
 
 LEAST_LEFT = 0.1
 """What is left beyond the noise counts from this share of the noise."""
