@@ -59,8 +59,10 @@ def flexible_basis(problem: Problem, library: Library, extra: Floats | None = No
     if not wanted:
         return inner
     index = np.concatenate([np.arange(s.first, s.stop) for s in wanted])
-    columns = np.column_stack([library.columns[:, index], _run_offsets(problem, library)])
-    rest = columns / np.sqrt(len(inner))
+    rest = library.columns[:, index] / np.sqrt(len(inner))
+    offsets = _run_offsets(problem, library)
+    if offsets.shape[1]:
+        rest = np.column_stack([rest, offsets / np.sqrt(len(inner))])
     rest = rest - inner @ (inner.T @ rest)
     # Directions by the small matrix of inner products: what is kept lies far above its rounding.
     size, mix = np.linalg.eigh(rest.T @ rest)
