@@ -6,21 +6,18 @@ of one class of behaviour differ. Once everything else is known the difference s
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import share_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
 
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
-LOUD = 100.0
-"""Signal-to-noise ratio of an effect from which this does not count: no law is exact to a
-hundredth, and the one that errs less need not be the right one."""
+ERROR_OF_LAWS = 0.05
+"""The same as a share of the evidence of the accepted one: no law is exact, and of two of a loud
+effect the one that errs less need not be the right one."""
 
 LEAST_LEFT = 0.1
 """What is left beyond the noise counts from this share of the noise."""
@@ -60,9 +57,8 @@ def with_better_laws(search: Search) -> FittedStructure:
             continue
         ahead = best.score - _score(own)
         leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
-        size = float(np.linalg.norm(size_of(fitted, fitted.names.index(name))))
-        counts = size < LOUD * fitted.noise.spread_deg
-        if (counts and ahead > CLEARLY) or (leaves_less and ahead > -CLEARLY):
+        clearly = max(CLEARLY, ERROR_OF_LAWS * _score(own))
+        if ahead > clearly or (leaves_less and ahead > -CLEARLY):
             fitted = best.fit
     return fitted
 
