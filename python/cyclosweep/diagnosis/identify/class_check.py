@@ -272,8 +272,7 @@ def _check(
     replaced = any(fitted.terms[k].slips and is_without_loop(fitted, k) for k in indices)
     # A class that the recording does not show replaces no law.
     if rival is not None and every[rival].evidence > max(beaten + close, CLEAR):
-        beside = LawBeside(known, law, residual, charged, by_law)
-        replaced |= beside.is_replaced(classes, rival)
+        replaced |= LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
     # A law is judged by its class no closer than to the error that much larger ones leave there.
     error = ERROR_OF_OTHERS * size_of_others
     little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))

@@ -78,7 +78,7 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    unrecorded = isinstance(effect, MeshPeriodic) and ORDER.format(1) in shape
+    unrecorded = isinstance(effect, MeshPeriodic) and not from_recorded_position(shape)
     return () if unrecorded else effect.needs
 
 
