@@ -8,8 +8,11 @@ import numpy as np
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
-LOADS = {"turn_nm": (0.02, 0.25, 7), "squeeze_nm": (0.05, 0.35, 4), "stop_nm": (0.1, 0.9, 6)}
+LOADS = {"turn_nm": (0.02, 0.25, 7), "squeeze_nm": (0.05, 0.35, 4), "cubic_nm": (0.5, 2.0, 3)}
 """Loads of the laws over the largest load: the least and most that are looked for, and how many."""
+
+POWERS = (0.5, 0.9, 9)
+"""Powers of the load: 2/3 is a point contact (Hertz), 0.9 a roller (Palmgren)."""
 
 
 class ContactStiffening(Effect):
@@ -18,9 +21,14 @@ class ContactStiffening(Effect):
     * A contact in parallel with softer ones, ``dC/(1 + |T|/T0)``: half of the extra compliance is
       gone at `turn_nm`. Such a contact is stiff long before the largest load: `turn_nm` stays below
       a quarter of it.
-    * A Hertzian power of the load (``T**(2/3)``), after calibration of the linear part.
+    * A power of the load, after calibration of the linear part: 2/3 of a point contact, 0.9 of a
+      roller.
     * A soft layer that is squeezed out, ``dC exp(-|T|/T0)`` with `squeeze_nm`.
-    * A soft part that comes to a stop, twist ``dC T0 tanh(|T|/T0)`` with `stop_nm`.
+    * A cubic spring, ``|T| = x/dC + (x/dC)^3/T0^2`` with `cubic_nm`, at most four times as stiff at
+      the largest load as at none.
+
+    The first three are softest at zero load and lose compliance fastest there. A part that is
+    as soft at small loads as at none and then comes to a stop is a clearance that is taken up.
     """
 
     name = "contact_stiffening"
@@ -28,7 +36,7 @@ class ContactStiffening(Effect):
         "Contacts of rollers, pins and disc grow under load, so they are soft near zero load and "
         "stiffen smoothly (Hertz). The rest of the drive stays linear."
     )
-    source = "Johnson, Contact Mechanics, 1985, ch. 4 (Hertz)"
+    source = "Johnson, Contact Mechanics, 1985, ch. 4 (Hertz); Palmgren 1959 (rollers)"
     tell_tale = "steep near zero load, flatter above; both directions alike"
     shown_by = "more samples at small load"
     family = "smooth odd curve"
@@ -37,14 +45,14 @@ class ContactStiffening(Effect):
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
         Parameter("squeeze_nm", "N m", "load that squeezes a soft layer out", 1e-6, 1e6, True),
-        Parameter("stop_nm", "N m", "load that brings a soft part to its stop", 1e-6, 1e6, True),
+        Parameter("cubic_nm", "N m", "load of a cubic spring", 1e-6, 1e6, True),
     )
-    forms = tuple(ShapeForm((key,)) for key in ("turn_nm", "power", "squeeze_nm", "stop_nm"))
+    forms = tuple(ShapeForm((key,)) for key in ("turn_nm", "power", "squeeze_nm", "cubic_nm"))
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Power laws around that of Hertz, and the other laws by their loads."""
+        """Power laws from beyond a point contact to a roller, and the other laws by their loads."""
         top = history.largest_torque_nm
-        powers: list[Shape] = [{"power": float(p)} for p in np.linspace(1 / 2, 5 / 6, 7)]
+        powers: list[Shape] = [{"power": float(p)} for p in np.linspace(*POWERS)]
         return powers + [
             {name: float(share) * top}
             for name, (lowest, highest, count) in LOADS.items()
@@ -54,7 +62,9 @@ class ContactStiffening(Effect):
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep each load to its share of the largest one."""
         top = history.largest_torque_nm
-        return replace(parameter, lower=1e-3 * top, upper=LOADS[parameter.name][1] * top)
+        lowest, highest, _ = LOADS[parameter.name]
+        least = lowest if parameter.name == "cubic_nm" else 1e-3
+        return replace(parameter, lower=least * top, upper=highest * top)
 
     def usual_start(
         self, history: History, limit_share: float, slip_share: float
@@ -74,7 +84,9 @@ class ContactStiffening(Effect):
         elif name == "squeeze_nm":
             curve = -value * np.expm1(-load / value)
         else:
-            curve = value * np.tanh(load / value)
+            # Real root of x + x^3 = load over that of the law, in closed form.
+            turn = np.arcsinh(1.5 * np.sqrt(3.0) * load / value)
+            curve = value * (2.0 / np.sqrt(3.0)) * np.sinh(turn / 3.0)
         return (history.side * curve)[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
