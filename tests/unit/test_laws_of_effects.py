@@ -30,12 +30,38 @@ def slope(effect: str, shape: dict[str, float], load: Floats) -> Floats:
 
 
 @pytest.mark.parametrize(
-    ("name", "half_at"), [("turn_nm", 1.0), ("squeeze_nm", np.log(2.0)), ("stop_nm", 0.8814)]
+    ("name", "half_at"), [("turn_nm", 1.0), ("squeeze_nm", np.log(2.0)), ("cubic_nm", 0.7698)]
 )
 def test_compliance_of_a_contact_falls_from_one_to_nothing(name: str, half_at: float) -> None:
-    load = np.array([1e-6, half_at * 3.0, 1000.0])
+    load = np.array([1e-6, half_at * 3.0, 1e5])
     found = slope("contact_stiffening", {name: 3.0}, load)
     np.testing.assert_allclose(found, [1.0, 0.5, 0.0], atol=4e-3)
+
+
+@pytest.mark.parametrize("decay", [0.3, 1.0, 2.5])
+def test_compliance_of_a_contact_falls_by_a_power_of_the_load(decay: float) -> None:
+    load = np.array([1e-6, 3.0, 60.0])
+    found = slope("contact_stiffening", {"knee_nm": 3.0, "decay": decay}, load)
+    np.testing.assert_allclose(found, (1.0 + load / 3.0) ** -decay, rtol=1e-4)
+
+
+@pytest.mark.parametrize("shape", [{"turn_nm": 2.0}, {"squeeze_nm": 2.0}, {"power": 0.7}])
+def test_a_contact_with_more_freedom_begins_where_it_was(shape: dict[str, float]) -> None:
+    """A power of the load is the limit far beyond the knee, an exponential that of a steep fall."""
+    freer = BY_NAME["contact_stiffening"].combined(shape, {"turn_nm": 0.01})
+    assert freer is not None
+    load = np.linspace(0.5, TOP, 50)
+    before = BY_NAME["contact_stiffening"].columns(one_run(load, load), shape)[:, 0]
+    after = BY_NAME["contact_stiffening"].columns(one_run(load, load), freer)[:, 0]
+    line = np.column_stack([np.ones_like(load), load, after])
+    left = before - line @ np.linalg.lstsq(line, before, rcond=None)[0]
+    assert np.std(left) < 0.1 * np.std(before)
+
+
+def test_scattered_clearances_close_about_their_mean() -> None:
+    load = np.array([1e-6, 5.0, 60.0])
+    found = slope("clearance_takeup", {"middle_nm": 5.0, "spread": 0.2}, load)
+    np.testing.assert_allclose(found, [0.0, -0.5, -1.0], atol=7e-3)
 
 
 def made(curve: Floats, torque: Floats, run: Floats) -> cs.Diagnosis:
@@ -53,16 +79,19 @@ def programme() -> tuple[Floats, Floats]:
     return np.tile(np.r_[up, -up], 6), np.repeat(np.arange(1, 7), 240)
 
 
-@pytest.mark.parametrize("law", ["layer", "stop"])
-def test_a_soft_layer_is_stiffening_and_no_takeup(
-    programme: tuple[Floats, Floats], law: str
+@pytest.mark.parametrize(
+    ("law", "name"),
+    [("layer", "contact_stiffening"), ("stop", "clearance_takeup")],
+)
+def test_what_is_softest_without_load_stiffens_and_what_comes_to_a_stop_is_taken_up(
+    programme: tuple[Floats, Floats], law: str, name: str
 ) -> None:
-    """The stop was called take-up before, whose kinks follow any curve that stiffens."""
+    """Both were take-up once, whose kinks follow any curve, and both stiffening after that."""
     torque, run = programme
     load = np.abs(torque)
     curve = 4.0 * (1.0 - np.exp(-load / 4.0)) if law == "layer" else 8.0 * np.tanh(load / 8.0)
     found = made(0.3 * np.sign(torque) * curve, torque, run)
-    assert [effect["name"] for effect in found.effects] == ["contact_stiffening"]
+    assert [effect["name"] for effect in found.effects] == [name]
 
 
 def test_a_side_load_that_comes_to_a_stop_is_a_side_load(programme: tuple[Floats, Floats]) -> None:

@@ -14,6 +14,9 @@ KINKS = 6
 """Most loads at which the slope drops."""
 FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
 """Loads of first engagement, and ranges, in which it is looked for, over the largest load."""
+MIDDLE, SPREAD = (0.1, 0.55), (0.08, 0.5)
+"""Loads about which scattered clearances close, over the largest load, and their spread over that
+load. With a wider spread many would be closed before any load, which is a contact that stiffens."""
 
 
 class ClearanceTakeup(Effect):
@@ -23,7 +26,9 @@ class ClearanceTakeup(Effect):
     the compliance falls by the amplitude. A range of zero is a single kink. Clearances are small
     against the elastic twist and differ from pin to pin, so the first engagement lies in the lower
     half of the range, and the others follow over a part of it or all; one kink far up is what a
-    sensor at its limit shows.
+    sensor at its limit shows. Clearances scattered about a mean close about `middle_nm`, most of
+    them within twice `spread` of that load on either side:
+    ``-dC w log(1 + exp((|T| - T1)/w))`` with ``w`` the spread times ``T1``.
     """
 
     name = "clearance_takeup"
@@ -40,20 +45,31 @@ class ClearanceTakeup(Effect):
     shape_parameters = (
         Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
         Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
+        Parameter("middle_nm", "N m", "load about which scattered clearances close", 1e-3, 1e6),
+        Parameter("spread", "", "spread of these loads over that load", *SPREAD, True),
         *(
             Parameter(f"kink_{k}_nm", "N m", f"load at which pins of group {k} engage", 0.0, 1e6)
             for k in range(1, KINKS + 1)
         ),
     )
-    forms = (ShapeForm(("first_nm", "range_nm")), ShapeForm(numbered="kink_{}_nm"))
+    forms = (
+        ShapeForm(("first_nm", "range_nm")),
+        ShapeForm(("middle_nm", "spread")),
+        ShapeForm(numbered="kink_{}_nm"),
+    )
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Loads of first engagement and ranges, as shares of the largest load."""
+        """Loads of first engagement and ranges, or middles and spreads of scattered ones."""
         top = history.largest_torque_nm
-        return [
+        ranges: list[Shape] = [
             {"first_nm": first * top, "range_nm": width * top}
             for first in np.linspace(*FIRST, 8)
             for width in np.linspace(*WIDTH, 6)
+        ]
+        return ranges + [
+            {"middle_nm": float(middle) * top, "spread": float(spread)}
+            for middle in np.linspace(*MIDDLE, 6)
+            for spread in np.geomspace(*SPREAD, 4)
         ]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
@@ -61,6 +77,10 @@ class ClearanceTakeup(Effect):
         top = history.largest_torque_nm
         if parameter.name == "first_nm":
             return replace(parameter, lower=0.0, upper=LATEST_FIRST * top)
+        if parameter.name == "middle_nm":
+            return replace(parameter, lower=MIDDLE[0] * top, upper=MIDDLE[1] * top)
+        if parameter.name == "spread":
+            return parameter
         if parameter.name.startswith("kink"):
             return replace(parameter, lower=0.0, upper=0.9 * top)
         return replace(parameter, lower=1e-3 * top, upper=0.9 * top)
@@ -72,6 +92,11 @@ class ClearanceTakeup(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist lost for a unit drop of compliance [deg]."""
         load, side = history.load_nm, history.side
+        if "middle_nm" in shape:
+            width = shape["spread"] * shape["middle_nm"]
+            closed = np.logaddexp(0.0, (load - shape["middle_nm"]) / width)
+            before = np.logaddexp(0.0, -1.0 / shape["spread"])
+            return np.asarray(-side * width * (closed - before))[:, None]
         if "first_nm" not in shape:
             return np.column_stack(
                 [-side * np.maximum(load - kink, 0.0) for kink in shape.values()]
@@ -88,14 +113,14 @@ class ClearanceTakeup(Effect):
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Kinks at which the slope drops."""
-        if "first_nm" in shape:
+        if "first_nm" in shape or "middle_nm" in shape:
             return None
         kept = [kink for kink, w in zip(shape.values(), wrong, strict=True) if not w]
         return listed("kink_{}_nm", kept)
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Compliance lost by the engagement."""
-        count = 1 if "first_nm" in shape else len(shape)
+        count = 1 if "first_nm" in shape or "middle_nm" in shape else len(shape)
         return tuple(
             Parameter(f"compliance_drop_{k}", "deg/(N m)", "compliance lost by engagement", 0.0)
             for k in range(1, count + 1)
@@ -103,7 +128,10 @@ class ClearanceTakeup(Effect):
 
 
 def _kinks(shape: Shape) -> list[float]:
-    """Loads at which the slope drops."""
-    if "first_nm" not in shape:
-        return list(shape.values())
-    return [shape["first_nm"], shape["first_nm"] + shape["range_nm"]]
+    """Loads at which the slope drops, or between which most of a gradual drop lies."""
+    if "first_nm" in shape:
+        return [shape["first_nm"], shape["first_nm"] + shape["range_nm"]]
+    if "middle_nm" in shape:
+        middle, half = shape["middle_nm"], 1.5 * shape["spread"] * shape["middle_nm"]
+        return [middle - half, middle + half]
+    return list(shape.values())

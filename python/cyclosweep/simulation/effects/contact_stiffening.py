@@ -14,9 +14,15 @@ LOADS = {"turn_nm": (0.02, 0.25, 7), "squeeze_nm": (0.05, 0.35, 4), "cubic_nm": 
 POWERS = (0.5, 0.9, 9)
 """Powers of the load: 2/3 is a point contact (Hertz), 0.9 a roller (Palmgren)."""
 
+KNEE, DECAY = (1e-3, 0.5), (0.1, 8.0)
+"""Loads, over the largest load, and powers within which a compliance that falls by a power of the
+load is fitted."""
+AS_EXPONENTIAL = 5.0
+"""Power at which such a compliance is nearly an exponential of the load."""
+
 
 class ContactStiffening(Effect):
-    """Compliance that falls smoothly with the load, alike on both flanks, by one of four laws.
+    """Compliance that falls smoothly with the load, alike on both flanks, by one of five laws.
 
     * A contact in parallel with softer ones, ``dC/(1 + |T|/T0)``: half of the extra compliance is
       gone at `turn_nm`. Such a contact is stiff long before the largest load: `turn_nm` stays below
@@ -26,6 +32,9 @@ class ContactStiffening(Effect):
     * A soft layer that is squeezed out, ``dC exp(-|T|/T0)`` with `squeeze_nm`.
     * A cubic spring, ``|T| = x/dC + (x/dC)^3/T0^2`` with `cubic_nm`, at most four times as stiff at
       the largest load as at none.
+
+    * ``dC/(1 + |T|/T0)^q`` with `knee_nm` and `decay`, which has the first three as its limits. It
+      is fitted only where one of them leaves a part of the curve.
 
     The first three are softest at zero load and lose compliance fastest there. A part that is
     as soft at small loads as at none and then comes to a stop is a clearance that is taken up.
@@ -46,8 +55,13 @@ class ContactStiffening(Effect):
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
         Parameter("squeeze_nm", "N m", "load that squeezes a soft layer out", 1e-6, 1e6, True),
         Parameter("cubic_nm", "N m", "load of a cubic spring", 1e-6, 1e6, True),
+        Parameter("knee_nm", "N m", "load from which the compliance falls", 1e-6, 1e6, True),
+        Parameter("decay", "", "power by which it falls", *DECAY, True),
     )
-    forms = tuple(ShapeForm((key,)) for key in ("turn_nm", "power", "squeeze_nm", "cubic_nm"))
+    forms = (
+        *(ShapeForm((key,)) for key in ("turn_nm", "power", "squeeze_nm", "cubic_nm")),
+        ShapeForm(("knee_nm", "decay")),
+    )
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Power laws from beyond a point contact to a roller, and the other laws by their loads."""
@@ -62,6 +76,10 @@ class ContactStiffening(Effect):
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep each load to its share of the largest one."""
         top = history.largest_torque_nm
+        if parameter.name == "decay":
+            return parameter
+        if parameter.name == "knee_nm":
+            return replace(parameter, lower=KNEE[0] * top, upper=KNEE[1] * top)
         lowest, highest, _ = LOADS[parameter.name]
         least = lowest if parameter.name == "cubic_nm" else 1e-3
         return replace(parameter, lower=least * top, upper=highest * top)
@@ -76,8 +94,12 @@ class ContactStiffening(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""
         load = history.load_nm
-        ((name, value),) = shape.items()
-        if name == "power":
+        (name, value), *others = shape.items()
+        if others:
+            rest = 1.0 - shape["decay"]
+            grown = np.log1p(load / value)
+            curve = value * (grown if abs(rest) < 1e-6 else np.expm1(rest * grown) / rest)
+        elif name == "power":
             curve = load**value
         elif name == "turn_nm":
             curve = value * np.log1p(load / value)
@@ -88,6 +110,16 @@ class ContactStiffening(Effect):
             turn = np.arcsinh(1.5 * np.sqrt(3.0) * load / value)
             curve = value * (2.0 / np.sqrt(3.0)) * np.sinh(turn / 3.0)
         return (history.side * curve)[:, None]
+
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
+        """Compliance that falls by a power of the load, begun as one of its limits."""
+        if "turn_nm" in shape:
+            return {"knee_nm": shape["turn_nm"], "decay": 1.0}
+        if "squeeze_nm" in shape:
+            return {"knee_nm": AS_EXPONENTIAL * shape["squeeze_nm"], "decay": AS_EXPONENTIAL}
+        if "power" in shape and "turn_nm" in found:
+            return {"knee_nm": found["turn_nm"], "decay": 1.0 - shape["power"]}
+        return None
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Extra compliance at zero load, or the factor of the power law."""
