@@ -14,7 +14,7 @@ from cyclosweep.simulation.effects import Shape
 
 DENSE = frozenset({"saturation at the end of the range", "bump at a load"})
 """Unnamed shapes whose grid stands for what is believed beforehand."""
-OTHER_LAW = 0.9
+OTHER_LAW = 0.8
 """Evidence of another law of an effect over that of the best one, from which it is tried too."""
 MOST_CHOICE_PENALTY = 1.5
 """What the choice of a shape is charged at most where the grid of shapes is coarse [nat]."""

@@ -14,7 +14,7 @@ KINKS = 6
 """Most loads at which the slope drops."""
 FIRST, WIDTH = (0.02, 0.4), (0.1, 1.0)
 """Loads of first engagement, and ranges, in which it is looked for, over the largest load."""
-MIDDLE, SPREAD = (0.1, 0.55), (0.08, 0.5)
+MIDDLE, SPREAD = (0.1, 0.55), (0.08, 0.35)
 """Loads about which scattered clearances close, over the largest load, and their spread over that
 load. With a wider spread many would be closed before any load, which is a contact that stiffens."""
 
