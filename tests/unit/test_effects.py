@@ -155,7 +155,7 @@ def test_what_hides_an_effect(effect: Effect) -> None:
 PARAMETERS = {
     "friction_hysteresis": {"slip_deg", "scatter", "skew"},
     "load_dependent_friction": {"slip_deg", "scatter", "skew"},
-    "contact_stiffening": {"turn_nm", "squeeze_nm", "cubic_nm"},
+    "contact_stiffening": {"turn_nm", "power", "squeeze_nm", "cubic_nm"},
     "clearance_takeup": {"first_nm", "range_nm", "middle_nm", "spread"},
     "overload_softening": {"onset_nm", "power"},
     "datum_drift": {"memory"},

@@ -53,6 +53,7 @@ class ContactStiffening(Effect):
     dense = True
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
+        Parameter("power", "", "power of the load", *POWERS[:2]),
         Parameter("squeeze_nm", "N m", "load that squeezes a soft layer out", 1e-6, 1e6, True),
         Parameter("cubic_nm", "N m", "load of a cubic spring", 1e-6, 1e6, True),
         Parameter("knee_nm", "N m", "load from which the compliance falls", 1e-6, 1e6, True),
@@ -76,7 +77,7 @@ class ContactStiffening(Effect):
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep each load to its share of the largest one."""
         top = history.largest_torque_nm
-        if parameter.name == "decay":
+        if parameter.name in ("decay", "power"):
             return parameter
         if parameter.name == "knee_nm":
             return replace(parameter, lower=KNEE[0] * top, upper=KNEE[1] * top)
