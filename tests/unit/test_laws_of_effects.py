@@ -90,12 +90,14 @@ def test_what_is_softest_without_load_stiffens_and_what_closes_later_is_taken_up
     """Both were take-up once, whose kinks follow any curve, and both stiffening after that."""
     torque, run = programme
     load = np.abs(torque)
-    curve = 4.0 * (1.0 - np.exp(-load / 4.0))
+    curve = 1.2 * (1.0 - np.exp(-load / 4.0))
     if law == "scattered":
-        # Gaps that are normally distributed: compliance falls as their distribution function.
-        beyond = (load - 6.0) / 1.6
-        curve = load - 1.6 * (beyond * norm.cdf(beyond) + norm.pdf(beyond))
-    found = made(0.3 * np.sign(torque) * curve, torque, run)
+        # Gaps that are normally distributed in twist, behind them springs of 1.5 times as much.
+        twist = np.linspace(0.0, 1.0, 2001)
+        beyond = (twist - 0.3) / 0.1
+        torques = twist + 0.15 * (beyond * norm.cdf(beyond) + norm.pdf(beyond))
+        curve = 4.0 * np.interp(load / TOP, torques / torques[-1], twist)
+    found = made(np.sign(torque) * curve, torque, run)
     assert [effect["name"] for effect in found.effects] == [name]
 
 
