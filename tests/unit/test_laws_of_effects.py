@@ -65,6 +65,16 @@ def test_scattered_clearances_close_about_their_mean() -> None:
     np.testing.assert_allclose(found, [0.0, -0.5, -1.0], atol=7e-3)
 
 
+def test_up_to_six_groups_of_pins_engage() -> None:
+    """More than four were refused, so that three kinks could not be given two more."""
+    takeup = BY_NAME["clearance_takeup"]
+    three = {"kink_1_nm": 2.0, "kink_2_nm": 7.0, "kink_3_nm": 11.0}
+    five = takeup.combined(three, {"first_nm": 4.0, "range_nm": 5.0})
+    assert five is not None and list(five.values()) == [2.0, 4.0, 7.0, 9.0, 11.0]
+    assert takeup.combined(five, {"first_nm": 5.0, "range_nm": 5.0}) is None
+    assert takeup.reduced(five, np.array([True, *[False] * 4])) is not None
+
+
 def made(curve: Floats, torque: Floats, run: Floats) -> cs.Diagnosis:
     rng = np.random.default_rng(3)
     angle = 28.0 * np.sign(torque) + 2.7 * torque + curve + 0.05 * rng.normal(size=len(torque))

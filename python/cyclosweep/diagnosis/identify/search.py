@@ -125,6 +125,8 @@ class Search:
                     child = self.extend(parent, name)
                     if child is not None:
                         found.append(child)
+            # Beside what was accepted, what makes the recording less likely leads nowhere.
+            found = [n for n in found if not self.start.fit.terms or n.score > self.start.score]
             if not found:
                 break
             found = list({n.names: n for n in sorted(found, key=lambda n: n.score)}.values())

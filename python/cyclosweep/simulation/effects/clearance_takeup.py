@@ -108,15 +108,14 @@ class ClearanceTakeup(Effect):
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Kinks of both; a range of engagement becomes a kink at either end."""
-        kinks = sorted({*_kinks(shape), *_kinks(found)})
-        return listed("kink_{}_nm", kinks) if len(kinks) <= KINKS else None
+        return listed("kink_{}_nm", [*_kinks(shape), *_kinks(found)], KINKS)
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Kinks at which the slope drops."""
         if "first_nm" in shape or "middle_nm" in shape:
             return None
         kept = [kink for kink, w in zip(shape.values(), wrong, strict=True) if not w]
-        return listed("kink_{}_nm", kept)
+        return listed("kink_{}_nm", kept, KINKS)
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Compliance lost by the engagement."""
