@@ -70,7 +70,8 @@ def test_up_to_six_groups_of_pins_engage() -> None:
     takeup = BY_NAME["clearance_takeup"]
     three = {"kink_1_nm": 2.0, "kink_2_nm": 7.0, "kink_3_nm": 11.0}
     five = takeup.combined(three, {"first_nm": 4.0, "range_nm": 5.0})
-    assert five is not None and list(five.values()) == [2.0, 4.0, 7.0, 9.0, 11.0]
+    assert five is not None
+    assert list(five.values()) == [2.0, 4.0, 7.0, 9.0, 11.0]
     assert takeup.combined(five, {"first_nm": 5.0, "range_nm": 5.0}) is None
     assert takeup.reduced(five, np.array([True, *[False] * 4])) is not None
 

@@ -41,6 +41,10 @@ def structure(search: Search, *terms: Term) -> Candidate:
     return search.judged(found, 0.0, 0.0)
 
 
+def mismatch(search: Search) -> float:
+    return search.baseline.fit.rmse_deg
+
+
 def term_of(value: EffectValue) -> Term:
     return Term(find(value.name), dict(value.shape))
 
@@ -62,7 +66,7 @@ def test_a_small_law_of_run_offsets_that_leaves_nothing_is_no_error_of_a_larger_
     # Below a quarter of the drift with temperature, by size alone it was taken for its error.
     search = search_of(WARM, SHIFTED)
     found = structure(search, term_of(WARM), term_of(SHIFTED)).fit
-    kept = without_model_error(found, found.terms[:1], search.baseline.fit.rmse_deg)
+    kept = without_model_error(found, structure(search, term_of(WARM)).fit, mismatch(search))
     assert {term.name for term in kept} == {"thermal_drift", "transmission_error"}
 
 
@@ -72,7 +76,7 @@ def test_a_small_law_of_run_offsets_as_free_as_the_runs_is_not_accepted() -> Non
     free = Term(find("transmission_error"), orders)
     drift = Term(find("datum_drift"), {"push": 1.0, "memory": 0.4})
     found = structure(search, term_of(WARM), drift, free).fit
-    kept = without_model_error(found, found.terms[:1], search.baseline.fit.rmse_deg)
+    kept = without_model_error(found, structure(search, term_of(WARM)).fit, mismatch(search))
     assert "transmission_error" not in {term.name for term in kept}
 
 
@@ -82,7 +86,7 @@ def test_what_was_accepted_and_has_shrunk_to_an_error_of_another_law_goes() -> N
     shape = {"slip_deg": 2.5, "scatter": 0.6, "skew": 0.0, "slack": 0.0}
     friction = Term(find("friction_hysteresis"), shape, None, 1e-3)
     found = structure(search, friction, creep).fit
-    kept = without_model_error(found, (friction,), search.baseline.fit.rmse_deg)
+    kept = without_model_error(found, structure(search, friction).fit, mismatch(search))
     assert {term.name for term in kept} == {"creep"}
 
 

@@ -24,6 +24,7 @@ from cyclosweep.diagnosis.identify.candidate import FURTHER
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvidence
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    BOTH_CURVES,
     LEAST_SUM,
     LawBeside,
     LawCheck,
@@ -257,7 +258,10 @@ def _check(
     family = [name for name in every if name in own]
     rivals = [name for name in every if name not in own]
     by_law -= FURTHER * (len(indices) - 1)
-    deficit = max((every[name].evidence for name in family), default=-np.inf) - by_law
+    by_class = max((every[name].evidence for name in family), default=-np.inf)
+    if len(indices) == 1 and set(family) >= BOTH_CURVES:
+        by_class = max(by_class, classes.evidence_together(sorted(BOTH_CURVES), known, residual))
+    deficit = by_class - by_law
     left = [classes.evidence(k, tangent, whole_residual) for k in family]
     missed = max((each.explained for each in left), default=0.0)
     share = float(np.sqrt(missed / max(missed + float(law @ law), 1e-300)))

@@ -5,6 +5,7 @@ recording best (empirical Bayes). A class is so charged for as many directions a
 tells apart, and no more: a smooth curve costs little more than the law that made it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,6 +125,29 @@ class ClassColumns:
         twist = left @ (share[best] * along)
         size = float(twist @ twist - np.sum(share[best] ** 2))
         return ClassEvidence(float(value[best]), max(size, 0.0), twist)
+
+    def evidence_together(self, names: Sequence[str], known: Floats, residual: Floats) -> float:
+        """Evidence for several classes, each with its own spread, one beside the other [nat].
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of the classes.
+        known : ndarray, shape (fitted, q)
+            Orthonormal basis of what is fitted besides.
+        residual : ndarray, shape (fitted,)
+            White unit-variance residual, orthogonal to it.
+
+        Returns
+        -------
+        float
+        """
+        total = 0.0
+        for name in sorted(names, key=lambda name: -self.evidence(name, known, residual).evidence):
+            found = self.evidence(name, known, residual)
+            total += found.evidence
+            residual = residual - found.twist
+        return total
 
     def beside(self, known: Floats, name: str) -> Floats:
         """Basis of what is fitted with all columns of a class.

@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     LawCheck,
     amplitude_count,
     cancels,
+    makes_others_grow,
     own_classes,
 )
 from cyclosweep.diagnosis.identify.other_laws import left_beyond_noise
@@ -97,6 +98,8 @@ def freer_instead_of_others(
                 fit(search.problem, search.noise, (*others, terms[index]), best.fit)
             )
             if joint is None or cancels(joint, len(others)):
+                continue
+            if makes_others_grow(joint, len(others), start.fit):
                 continue
             if np.std(size_of(joint, len(others))) > MOST_GROWTH * np.std(before):
                 continue

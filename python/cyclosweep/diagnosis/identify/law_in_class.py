@@ -8,7 +8,9 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_EFFECT,
     CLASSES_OF_FAMILY,
+    EVEN_CURVE,
     LOOP,
+    ODD_CURVE,
     OPENING_LOOP,
 )
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
@@ -29,6 +31,11 @@ LEAST_LEFT = 3.0
 """Log evidence that has to be left of a law beside a class that explains more [nat]."""
 LEFT_BESIDE = 0.1
 """The same as a share of the law's evidence."""
+BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
+"""Classes of a law that makes nearly any curve, such as a dial's: it is compared with both."""
+MOST_GROWN = 1.5
+"""Size of an accepted law beside such a law over its size before, from which the two cancel in one
+of the classes."""
 SHAPE_CHARGE = 1.0
 """Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
 
@@ -117,6 +124,37 @@ def cancels(fitted: FittedStructure, index: int) -> bool:
     ]
     largest = max(float(np.std(each)) for each in [own, *others])
     return float(np.std(own + sum(others))) < LEAST_SUM * largest
+
+
+def makes_others_grow(fitted: FittedStructure, index: int, accepted: FittedStructure) -> bool:
+    """Whether beside a new law of both curves an accepted one of its classes has grown.
+
+    Such a law may win in one class, and take back in the other what it does wrong there.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Which of its terms.
+    accepted : FittedStructure
+        The structure before.
+
+    Returns
+    -------
+    bool
+    """
+    term = fitted.terms[index]
+    if term.effect is None or not set(own_classes(term)) >= BOTH_CURVES:
+        return False
+    before = {t.name: float(np.std(size_of(accepted, k))) for k, t in enumerate(accepted.terms)}
+    if term.name in before:
+        return False
+    return any(
+        float(np.std(size_of(fitted, k))) > MOST_GROWN * before.get(other.name, np.inf)
+        for k, other in enumerate(fitted.terms)
+        if k != index and share_class(other, term)
+    )
 
 
 def law_places(fitted: FittedStructure, index: int) -> list[int]:

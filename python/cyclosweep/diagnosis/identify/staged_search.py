@@ -30,6 +30,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     LEAST_OF_CLASS,
     amplitude_count,
     cancels,
+    makes_others_grow,
     share_class,
 )
 from cyclosweep.diagnosis.identify.other_laws import with_better_laws
@@ -178,7 +179,7 @@ def search_in_stages(
                 fitted = refitted(needed, best.fit)
             accepted = fitted.terms
             continue
-        found = without_model_error(best.fit, accepted, mismatch)
+        found = without_model_error(best.fit, search.start.fit, mismatch)
         if decision.unexplained:
             doubtful = _doubtful(search, best)
             found = tuple(term for term in found if term.name not in doubtful)
@@ -258,7 +259,7 @@ def _doubtful(search: Search, best: Candidate) -> frozenset[str]:
 
 
 def without_model_error(
-    fitted: FittedStructure, accepted: tuple[Term, ...], mismatch_deg: float
+    fitted: FittedStructure, accepted: FittedStructure, mismatch_deg: float
 ) -> tuple[Term, ...]:
     """Terms of a structure but those that may be model error of a term accepted before.
 
@@ -266,8 +267,8 @@ def without_model_error(
     ----------
     fitted : FittedStructure
         The structure.
-    accepted : tuple of Term
-        The terms accepted before.
+    accepted : FittedStructure
+        Structure of the terms accepted before.
     mismatch_deg : float
         Root mean square error of the calibrated model without effects [deg].
 
@@ -275,7 +276,7 @@ def without_model_error(
     -------
     tuple of Term
     """
-    before = {term.name for term in accepted}
+    before = {term.name for term in accepted.terms}
     size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
     left = beyond_noise_deg(fitted)
     errors = errors_of_larger(fitted)
@@ -294,7 +295,8 @@ def without_model_error(
         largest = max((size[j] for j in mates), default=0.0)
         small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
         replaced = small and (size[k] < LEAST_OF_CLASS * largest or term.name in errors)
-        if (term.name in before and not replaced) or (stands_out and not cancels(fitted, k)):
+        stands_out &= not (cancels(fitted, k) or makes_others_grow(fitted, k, accepted))
+        if (term.name in before and not replaced) or stands_out:
             kept.append(term)
     return tuple(kept)
 
