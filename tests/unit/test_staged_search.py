@@ -16,6 +16,7 @@ from cyclosweep.diagnosis.identify.staged_search import (
     without_model_error,
 )
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.searches import search_of
@@ -138,3 +139,27 @@ def test_offsets_of_runs_are_no_noise_where_no_effect_of_the_library_gives_them(
         offset = (run == number).astype(np.float64)
         left = offset - basis @ (basis.T @ offset)
         assert np.linalg.norm(left) < 0.05 * np.linalg.norm(offset)
+
+
+def test_a_dial_beside_which_an_accepted_side_load_grows_is_not_accepted() -> None:
+    # The dial takes back of the even curve what the side load has too much.
+    search = search_of(EffectValue("load_asymmetry", {"orders": 2.0}, (0.9, -0.35)))
+    loaded, dial = (
+        Term(find("load_asymmetry"), {"power": 1.0}),
+        Term(find("dial_eccentricity"), {"order": 1.0}),
+    )
+    alone = structure(search, loaded).fit
+    both = structure(search, loaded, dial).fit
+    assert np.std(size_of(both, 0)) > 1.5 * np.std(size_of(alone, 0))
+    kept = without_model_error(both, alone, mismatch(search))
+    assert {term.name for term in kept} == {"load_asymmetry"}
+
+
+def test_a_dial_that_makes_a_side_load_smaller_is_accepted() -> None:
+    value = EffectValue("load_asymmetry", {"power": 1.0}, (0.6,))
+    search = search_of(EffectValue("dial_eccentricity", {"order": 1.0}, (-0.7, 0.6)), value)
+    loaded, dial = term_of(value), Term(find("dial_eccentricity"), {"order": 1.0})
+    alone = structure(search, loaded).fit
+    both = structure(search, loaded, dial).fit
+    kept = without_model_error(both, alone, mismatch(search))
+    assert {term.name for term in kept} == {"load_asymmetry", "dial_eccentricity"}
