@@ -143,7 +143,7 @@ def test_offsets_of_runs_are_no_noise_where_no_effect_of_the_library_gives_them(
 
 def test_a_dial_beside_which_an_accepted_side_load_grows_is_not_accepted() -> None:
     # The dial takes back of the even curve what the side load has too much.
-    search = search_of(EffectValue("load_asymmetry", {"orders": 2.0}, (0.9, -0.35)))
+    search = search_of(EffectValue("load_asymmetry", {"orders": 2.0}, (0.9, -0.07)))
     loaded, dial = (
         Term(find("load_asymmetry"), {"power": 1.0}),
         Term(find("dial_eccentricity"), {"order": 1.0}),
