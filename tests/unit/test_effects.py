@@ -167,7 +167,7 @@ PARAMETERS = {
     "load_asymmetry": {"power", "limit_nm"},
     "dial_eccentricity": set(),
 }
-"""What the fit refines of each effect."""
+"""What the fit refines of each effect, of the shapes on the grid."""
 
 
 @pytest.mark.parametrize("effect", VOCABULARY, ids=lambda e: e.name)
@@ -270,7 +270,7 @@ def test_pins_engage_one_after_another_from_a_low_load_on() -> None:
     ranges = [s for s in shapes if "first_nm" in s]
     assert all(0 < s["first_nm"] <= 0.41 * top and s["range_nm"] >= 0.09 * top for s in ranges)
     scattered = [s for s in shapes if "first_nm" not in s]
-    # One in twenty is closed without load at most, and half of them by the middle of the range.
+    # About 5 % are closed without load at most, and half of them by the middle of the range.
     assert all(0.09 * top < s["middle_nm"] < 0.56 * top for s in scattered)
     assert all(1.0 / (1.0 + np.exp(1.0 / s["spread"])) < 0.055 for s in scattered)
     assert max(s["first_nm"] + s["range_nm"] for s in ranges) > top

@@ -134,6 +134,21 @@ REFUSED = {
 }
 
 
+@pytest.mark.parametrize(
+    ("name", "shape", "what"),
+    [
+        ("clearance_takeup", {"middle_nm": 5.0, "spread": 0.0}, "spread: found 0"),
+        ("contact_stiffening", {"knee_nm": -1.0, "decay": 1.5}, "knee_nm: found -1"),
+        ("contact_stiffening", {"stop_nm": 3.0}, "stop_nm"),
+    ],
+)
+def test_a_shape_that_has_no_twist_is_refused(
+    name: str, shape: dict[str, float], what: str
+) -> None:
+    with pytest.raises(cs.InputError, match=what):
+        EffectValue.from_dict({"name": name, "shape": shape, "amplitudes": {}})
+
+
 @pytest.mark.parametrize("kind", REFUSED)
 def test_what_is_not_known_is_refused_in_one_line(tmp_path: Path, kind: str) -> None:
     text, what = REFUSED[kind]

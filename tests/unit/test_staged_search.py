@@ -7,8 +7,10 @@ from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
+from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.freer_laws import freer_instead_of_others
+from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     FAINT,
@@ -163,3 +165,15 @@ def test_a_dial_that_makes_a_side_load_smaller_is_accepted() -> None:
     both = structure(search, loaded, dial).fit
     kept = without_model_error(both, alone, mismatch(search))
     assert {term.name for term in kept} == {"load_asymmetry", "dial_eccentricity"}
+
+
+def test_an_odd_and_an_even_curve_show_more_together_than_either_alone() -> None:
+    # A dial was compared with the better one only, and so passed whatever it missed in the other.
+    stiff = EffectValue("contact_stiffening", {"turn_nm": 3.0}, (0.6,))
+    search = search_of(stiff, EffectValue("load_asymmetry", {"power": 1.0}, (0.3,)))
+    classes, known = ClassColumns.of(search.baseline.fit), search.baseline.fit.tangent
+    residual = classes.scale * search.baseline.fit.residual
+    alone = [classes.evidence(name, known, residual).evidence for name in BOTH_CURVES]
+    together = classes.evidence_together(sorted(BOTH_CURVES), known, residual)
+    assert min(alone) > 20.0
+    assert together > max(alone) + 0.5 * min(alone)

@@ -65,7 +65,8 @@ class EffectValue:
         Raises
         ------
         InputError
-            The effect, a shape parameter or an amplitude is unknown, missing or no finite number.
+            The effect, a shape parameter or an amplitude is unknown, missing or no finite number,
+            or a shape parameter is not above zero that has to be.
         """
         try:
             effect = find(text_of(content, "name"))
@@ -74,9 +75,31 @@ class EffectValue:
         try:
             given = object_of(content, "shape", {})
             shape = effect.known_shape({key: number_of(given, key) for key in given})
+            _require_positive(effect, shape)
             return cls(effect.name, shape, _amplitudes(effect, shape, content))
         except InputError as error:
             raise InputError(f"{effect.name}: {error}") from error
+
+
+def _require_positive(effect: Effect, shape: Mapping[str, float]) -> None:
+    """Refuse shape parameters that are fitted by their logarithm and are not above zero.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    shape : mapping of str to float
+        Its shape.
+
+    Raises
+    ------
+    InputError
+        A parameter is zero or less.
+    """
+    for parameter in effect.shape_parameters:
+        value = shape.get(parameter.name, 1.0)
+        if parameter.logarithmic and value <= 0.0:
+            raise InputError(f"{parameter.name}: found {value:g}, expected a number above zero")
 
 
 def _amplitudes(

@@ -127,7 +127,9 @@ class ClassColumns:
         return ClassEvidence(float(value[best]), max(size, 0.0), twist)
 
     def evidence_together(self, names: Sequence[str], known: Floats, residual: Floats) -> float:
-        """Evidence for several classes, each with its own spread, one beside the other [nat].
+        """Evidence for several classes, strongest first, each of what those before leave [nat].
+
+        An approximation of the joint evidence: columns that classes have in common count once.
 
         Parameters
         ----------

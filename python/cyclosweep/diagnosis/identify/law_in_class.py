@@ -32,10 +32,10 @@ LEAST_LEFT = 3.0
 LEFT_BESIDE = 0.1
 """The same as a share of the law's evidence."""
 BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
-"""Classes of a law that makes nearly any curve, such as a dial's: it is compared with both."""
+"""Classes of an effect whose twist has an odd and an even part, as an eccentric dial's."""
 MOST_GROWN = 1.5
-"""Size of an accepted law beside such a law over its size before, from which the two cancel in one
-of the classes."""
+"""Size of an accepted effect with a new one in the fit, over its size without, above which the new
+one is refused: the two compensate each other in the odd or in the even part."""
 SHAPE_CHARGE = 1.0
 """Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
 
@@ -127,9 +127,10 @@ def cancels(fitted: FittedStructure, index: int) -> bool:
 
 
 def makes_others_grow(fitted: FittedStructure, index: int, accepted: FittedStructure) -> bool:
-    """Whether beside a new law of both curves an accepted one of its classes has grown.
+    """Whether a new effect with an odd and an even part makes an accepted effect grow.
 
-    Such a law may win in one class, and take back in the other what it does wrong there.
+    Such an effect may fit better in one part, while the accepted one takes back what it does
+    wrong in the other.
 
     Parameters
     ----------

@@ -125,7 +125,7 @@ class Search:
                     child = self.extend(parent, name)
                     if child is not None:
                         found.append(child)
-            # Beside what was accepted, what makes the recording less likely leads nowhere.
+            # Once effects are accepted, what is not likelier with its charges is not extended.
             found = [n for n in found if not self.start.fit.terms or n.score > self.start.score]
             if not found:
                 break

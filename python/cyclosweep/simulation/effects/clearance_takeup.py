@@ -26,9 +26,9 @@ class ClearanceTakeup(Effect):
     the compliance falls by the amplitude. A range of zero is a single kink. Clearances are small
     against the elastic twist and differ from pin to pin, so the first engagement lies in the lower
     half of the range, and the others follow over a part of it or all; one kink far up is what a
-    sensor at its limit shows. Clearances scattered about a mean close about `middle_nm`, most of
-    them within twice `spread` of that load on either side:
-    ``-dC w log(1 + exp((|T| - T1)/w))`` with ``w`` the spread times ``T1``.
+    sensor at its limit shows. Clearances scattered about a mean close about the load ``T1`` of
+    `middle_nm`, three quarters of them within ``2 w`` of it with ``w`` the `spread` times ``T1``:
+    ``-dC w (log(1 + exp((|T| - T1)/w)) - log(1 + exp(-T1/w)))``.
     """
 
     name = "clearance_takeup"
@@ -46,7 +46,7 @@ class ClearanceTakeup(Effect):
         Parameter("first_nm", "N m", "load at which the next pins engage", 1e-3, 1e6),
         Parameter("range_nm", "N m", "range of load over which they engage", 1e-3, 1e6),
         Parameter("middle_nm", "N m", "load about which scattered clearances close", 1e-3, 1e6),
-        Parameter("spread", "", "spread of these loads over that load", *SPREAD, True),
+        Parameter("spread", "", "logistic scale of these loads over that load", *SPREAD, True),
         *(
             Parameter(f"kink_{k}_nm", "N m", f"load at which pins of group {k} engage", 0.0, 1e6)
             for k in range(1, KINKS + 1)
@@ -93,9 +93,10 @@ class ClearanceTakeup(Effect):
         """Twist lost for a unit drop of compliance [deg]."""
         load, side = history.load_nm, history.side
         if "middle_nm" in shape:
-            width = shape["spread"] * shape["middle_nm"]
-            closed = np.logaddexp(0.0, (load - shape["middle_nm"]) / width)
-            before = np.logaddexp(0.0, -1.0 / shape["spread"])
+            middle = shape["middle_nm"]
+            width = max(shape["spread"] * middle, 1e-9)
+            closed = np.logaddexp(0.0, (load - middle) / width)
+            before = np.logaddexp(0.0, -middle / width)
             return np.asarray(-side * width * (closed - before))[:, None]
         if "first_nm" not in shape:
             return np.column_stack(

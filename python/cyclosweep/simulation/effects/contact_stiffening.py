@@ -30,14 +30,15 @@ class ContactStiffening(Effect):
     * A power of the load, after calibration of the linear part: 2/3 of a point contact, 0.9 of a
       roller.
     * A soft layer that is squeezed out, ``dC exp(-|T|/T0)`` with `squeeze_nm`.
+    * A power of the compliance, ``dC/(1 + |T|/T0)^q`` with `knee_nm` and `decay`. It includes the
+      first law (``q = 1``) and approaches the second and the third, and is fitted only where one of
+      them leaves a part of the curve.
     * A cubic spring, ``|T| = x/dC + (x/dC)^3/T0^2`` with `cubic_nm`, at most four times as stiff at
       the largest load as at none.
 
-    * ``dC/(1 + |T|/T0)^q`` with `knee_nm` and `decay`, which has the first three as its limits. It
-      is fitted only where one of them leaves a part of the curve.
-
-    The first three are softest at zero load and lose compliance fastest there. A part that is
-    as soft at small loads as at none and then comes to a stop is a clearance that is taken up.
+    All but the cubic spring are softest without load and lose compliance fastest there. The cubic
+    spring is as soft at small loads as at none, but stiffens over the whole range and comes to no
+    stop; what does is a clearance that is taken up.
     """
 
     name = "contact_stiffening"
@@ -95,11 +96,11 @@ class ContactStiffening(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""
         load = history.load_nm
-        (name, value), *others = shape.items()
-        if others:
-            rest = 1.0 - shape["decay"]
-            grown = np.log1p(load / value)
-            curve = value * (grown if abs(rest) < 1e-6 else np.expm1(rest * grown) / rest)
+        name, value = next(iter(shape.items()))
+        if "knee_nm" in shape:
+            knee, rest = shape["knee_nm"], 1.0 - shape["decay"]
+            grown = np.log1p(load / knee)
+            curve = knee * (grown if abs(rest) < 1e-6 else np.expm1(rest * grown) / rest)
         elif name == "power":
             curve = load**value
         elif name == "turn_nm":
@@ -113,7 +114,7 @@ class ContactStiffening(Effect):
         return (history.side * curve)[:, None]
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
-        """Compliance that falls by a power of the load, begun as one of its limits."""
+        """Compliance that falls by a power of the load, begun as near the law as it comes."""
         if "turn_nm" in shape:
             return {"knee_nm": shape["turn_nm"], "decay": 1.0}
         if "squeeze_nm" in shape:

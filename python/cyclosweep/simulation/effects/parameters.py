@@ -76,7 +76,7 @@ def listed(name: str, values: Iterable[float], most: int = 4) -> Shape | None:
     values : iterable of float
         Values in any order.
     most : int
-        Number of values from which they are too many.
+        Most values that are accepted.
 
     Returns
     -------
