@@ -96,7 +96,7 @@ class ClearanceTakeup(Effect):
             middle = shape["middle_nm"]
             width = max(shape["spread"] * middle, 1e-9)
             closed = np.logaddexp(0.0, (load - middle) / width)
-            before = np.logaddexp(0.0, -middle / width)
+            before = np.logaddexp(0.0, -1.0 / shape["spread"])
             return np.asarray(-side * width * (closed - before))[:, None]
         if "first_nm" not in shape:
             return np.column_stack(
