@@ -226,7 +226,9 @@ def _with_names_that_hold(
     """
     few = search.problem.count <= FEW_READINGS
     best = max((p for _, p in decision.explanations), default=0.0)
-    told = not naming.withdrawn and (best >= SURE_OF_FEW or not naming.names)
+    # Ambiguous is also what a shape without a name fits as well, which no probability counts.
+    sure = best >= SURE_OF_FEW and decision.verdict != "AMBIGUOUS"
+    told = not naming.withdrawn and (sure or not naming.names)
     if few and not told:
         return replace(decision, verdict="INSUFFICIENT_DATA", unexplained=False)
     nothing = decision.verdict in NAMING and not naming.names
