@@ -173,7 +173,8 @@ def test_an_odd_and_an_even_curve_show_more_together_than_either_alone() -> None
     search = search_of(stiff, EffectValue("load_asymmetry", {"power": 1.0}, (0.3,)))
     classes, known = ClassColumns.of(search.baseline.fit), search.baseline.fit.tangent
     residual = classes.scale * search.baseline.fit.residual
-    alone = [classes.evidence(name, known, residual).evidence for name in BOTH_CURVES]
-    together = classes.evidence_together(sorted(BOTH_CURVES), known, residual)
+    each = {name: classes.evidence(name, known, residual) for name in sorted(BOTH_CURVES)}
+    together = classes.evidence_together(each, known, residual)
+    alone = [found.evidence for found in each.values()]
     assert min(alone) > 20.0
     assert together > max(alone) + 0.5 * min(alone)

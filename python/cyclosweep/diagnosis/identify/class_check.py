@@ -260,7 +260,8 @@ def _check(
     by_law -= FURTHER * (len(indices) - 1)
     by_class = max((every[name].evidence for name in family), default=-np.inf)
     if len(indices) == 1 and set(family) >= BOTH_CURVES:
-        by_class = max(by_class, classes.evidence_together(sorted(BOTH_CURVES), known, residual))
+        both = {name: every[name] for name in sorted(BOTH_CURVES)}
+        by_class = max(by_class, classes.evidence_together(both, known, residual))
     deficit = by_class - by_law
     left = [classes.evidence(k, tangent, whole_residual) for k in family]
     missed = max((each.explained for each in left), default=0.0)

@@ -5,7 +5,7 @@ recording best (empirical Bayes). A class is so charged for as many directions a
 tells apart, and no more: a smooth curve costs little more than the law that made it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,15 +126,17 @@ class ClassColumns:
         size = float(twist @ twist - np.sum(share[best] ** 2))
         return ClassEvidence(float(value[best]), max(size, 0.0), twist)
 
-    def evidence_together(self, names: Sequence[str], known: Floats, residual: Floats) -> float:
+    def evidence_together(
+        self, alone: Mapping[str, ClassEvidence], known: Floats, residual: Floats
+    ) -> float:
         """Evidence for several classes, strongest first, each of what those before leave [nat].
 
         An approximation of the joint evidence: columns that classes have in common count once.
 
         Parameters
         ----------
-        names : sequence of str
-            Names of the classes.
+        alone : mapping of str to ClassEvidence
+            The classes, each with its evidence alone.
         known : ndarray, shape (fitted, q)
             Orthonormal basis of what is fitted besides.
         residual : ndarray, shape (fitted,)
@@ -144,11 +146,13 @@ class ClassColumns:
         -------
         float
         """
-        total = 0.0
-        for name in sorted(names, key=lambda name: -self.evidence(name, known, residual).evidence):
+        strongest, *others = sorted(alone, key=lambda name: -alone[name].evidence)
+        found = alone[strongest]
+        total = found.evidence
+        for name in others:
+            residual = residual - found.twist
             found = self.evidence(name, known, residual)
             total += found.evidence
-            residual = residual - found.twist
         return total
 
     def beside(self, known: Floats, name: str) -> Floats:

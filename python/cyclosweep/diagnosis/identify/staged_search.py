@@ -295,8 +295,9 @@ def without_model_error(
         largest = max((size[j] for j in mates), default=0.0)
         small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
         replaced = small and (size[k] < LEAST_OF_CLASS * largest or term.name in errors)
-        stands_out &= not (cancels(fitted, k) or makes_others_grow(fitted, k, accepted))
-        if (term.name in before and not replaced) or stands_out:
+        if (term.name in before and not replaced) or (
+            stands_out and not cancels(fitted, k) and not makes_others_grow(fitted, k, accepted)
+        ):
             kept.append(term)
     return tuple(kept)
 

@@ -113,18 +113,23 @@ class ClearanceTakeup(Effect):
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Kinks at which the slope drops."""
-        if "first_nm" in shape or "middle_nm" in shape:
+        if _is_gradual(shape):
             return None
         kept = [kink for kink, w in zip(shape.values(), wrong, strict=True) if not w]
         return listed("kink_{}_nm", kept, KINKS)
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Compliance lost by the engagement."""
-        count = 1 if "first_nm" in shape or "middle_nm" in shape else len(shape)
+        count = 1 if _is_gradual(shape) else len(shape)
         return tuple(
             Parameter(f"compliance_drop_{k}", "deg/(N m)", "compliance lost by engagement", 0.0)
             for k in range(1, count + 1)
         )
+
+
+def _is_gradual(shape: Shape) -> bool:
+    """Whether the slope drops over a range of loads, by one amplitude, and not at kinks."""
+    return "first_nm" in shape or "middle_nm" in shape
 
 
 def _kinks(shape: Shape) -> list[float]:

@@ -1,6 +1,6 @@
 """Hertzian contacts: the compliance falls smoothly as the load grows."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,11 +14,39 @@ LOADS = {"turn_nm": (0.02, 0.25, 7), "squeeze_nm": (0.05, 0.35, 4), "cubic_nm": 
 POWERS = (0.5, 0.9, 9)
 """Powers of the load: 2/3 is a point contact (Hertz), 0.9 a roller (Palmgren)."""
 
-KNEE, DECAY = (1e-3, 0.5), (0.1, 8.0)
-"""Loads, over the largest load, and powers within which a compliance that falls by a power of the
-load is fitted."""
+BOUNDS = {
+    "turn_nm": (1e-3, LOADS["turn_nm"][1]),
+    "squeeze_nm": (1e-3, LOADS["squeeze_nm"][1]),
+    "cubic_nm": LOADS["cubic_nm"][:2],
+    "knee_nm": (1e-3, 0.5),
+}
+"""Loads of the laws over the largest load, within which they are fitted."""
+DECAY = (0.1, 8.0)
+"""Powers within which a compliance that falls by a power of the load is fitted."""
 AS_EXPONENTIAL = 5.0
 """Power at which such a compliance is nearly an exponential of the load."""
+
+
+def _fallen(load: Floats, knee: float, decay: float) -> Floats:
+    """Twist of a compliance that falls by a power of the load [deg]."""
+    rest = 1.0 - decay
+    grown = np.log1p(load / knee)
+    return np.asarray(knee * (grown if abs(rest) < 1e-6 else np.expm1(rest * grown) / rest))
+
+
+def _cubic(load: Floats, value: float) -> Floats:
+    """Twist of a cubic spring: the real root of x + x^3 = load over the law's, in closed form."""
+    turn = np.arcsinh(1.5 * np.sqrt(3.0) * load / value)
+    return np.asarray(value * (2.0 / np.sqrt(3.0)) * np.sinh(turn / 3.0))
+
+
+CURVES: dict[str, Callable[[Floats, float], Floats]] = {
+    "turn_nm": lambda load, value: value * np.log1p(load / value),
+    "power": lambda load, value: load**value,
+    "squeeze_nm": lambda load, value: -value * np.expm1(-load / value),
+    "cubic_nm": _cubic,
+}
+"""Twist for a unit of extra compliance by the laws of one parameter."""
 
 
 class ContactStiffening(Effect):
@@ -61,7 +89,7 @@ class ContactStiffening(Effect):
         Parameter("decay", "", "power by which it falls", *DECAY, True),
     )
     forms = (
-        *(ShapeForm((key,)) for key in ("turn_nm", "power", "squeeze_nm", "cubic_nm")),
+        *(ShapeForm((name,)) for name in CURVES),
         ShapeForm(("knee_nm", "decay")),
     )
 
@@ -77,14 +105,10 @@ class ContactStiffening(Effect):
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep each load to its share of the largest one."""
-        top = history.largest_torque_nm
-        if parameter.name in ("decay", "power"):
+        if parameter.name not in BOUNDS:
             return parameter
-        if parameter.name == "knee_nm":
-            return replace(parameter, lower=KNEE[0] * top, upper=KNEE[1] * top)
-        lowest, highest, _ = LOADS[parameter.name]
-        least = lowest if parameter.name == "cubic_nm" else 1e-3
-        return replace(parameter, lower=least * top, upper=highest * top)
+        lower, upper = (share * history.largest_torque_nm for share in BOUNDS[parameter.name])
+        return replace(parameter, lower=lower, upper=upper)
 
     def usual_start(
         self, history: History, limit_share: float, slip_share: float
@@ -96,21 +120,11 @@ class ContactStiffening(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist by contacts for a unit of extra compliance [deg]."""
         load = history.load_nm
-        name, value = next(iter(shape.items()))
         if "knee_nm" in shape:
-            knee, rest = shape["knee_nm"], 1.0 - shape["decay"]
-            grown = np.log1p(load / knee)
-            curve = knee * (grown if abs(rest) < 1e-6 else np.expm1(rest * grown) / rest)
-        elif name == "power":
-            curve = load**value
-        elif name == "turn_nm":
-            curve = value * np.log1p(load / value)
-        elif name == "squeeze_nm":
-            curve = -value * np.expm1(-load / value)
+            curve = _fallen(load, shape["knee_nm"], shape["decay"])
         else:
-            # Real root of x + x^3 = load over that of the law, in closed form.
-            turn = np.arcsinh(1.5 * np.sqrt(3.0) * load / value)
-            curve = value * (2.0 / np.sqrt(3.0)) * np.sinh(turn / 3.0)
+            ((name, value),) = shape.items()
+            curve = CURVES[name](load, value)
         return (history.side * curve)[:, None]
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
