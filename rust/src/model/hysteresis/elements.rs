@@ -47,7 +47,7 @@ impl SlipElements<'_> {
     /// How much longer than given the slip distances are under this limit.
     #[inline(always)]
     pub(super) fn stretch(&self, limit: f64) -> f64 {
-        if self.growth == 0.0 {
+        if self.growth == 0.0 || self.load_factor == 0.0 {
             return 1.0;
         }
         let reference = self.load_limit(self.reference_torque);
@@ -59,7 +59,10 @@ impl SlipElements<'_> {
 type Block = [f64; LANES];
 
 /// Some elements side by side; those that fill up the last block carry nothing.
+///
+/// A block of numbers fills one line of the cache, and is read far slower from two.
 #[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
 struct ElementBlock {
     /// Presliding distance.
     slip: Block,
@@ -204,9 +207,16 @@ impl ElementStates {
     }
 }
 
+/// A block in one line of the cache.
+#[repr(align(64))]
+struct Aligned(Block);
+
 /// Sum of a block.
+///
+/// The block is read back from memory: left alone, the compiler splits all sums that lead to it into
+/// pairs, and the loops over elements are no longer as wide as a block.
 #[inline(always)]
 fn total(block: Block) -> f64 {
-    let [a, b, c, d, e, f, g, h] = block;
+    let [a, b, c, d, e, f, g, h] = std::hint::black_box(&Aligned(block)).0;
     ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
