@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-import cyclosweep.diagnosis.identify.staged_search as staged_search
+import cyclosweep.diagnosis.identify_effects as identify_effects
 from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.diagnosis.whole_loop.usual_loop import freer_where_it_pays
 from cyclosweep.simulation.effects import effects
@@ -36,19 +36,19 @@ def recording(**friction: float) -> cs.Recording:
 
 
 class CapturedError(Exception):
-    """The search, as soon as friction is looked for."""
+    """The search, as soon as its stages begin."""
 
 
 @pytest.fixture
 def search_of(monkeypatch: pytest.MonkeyPatch) -> Callable[[cs.Recording], Search]:
-    """Search of a recording in the state in which friction is looked for."""
+    """Search of a recording in the state in which its stages begin."""
     kept: list[Search] = []
 
-    def capture(search: Search, noise: Noise) -> None:
+    def capture(search: Search, *_: object) -> None:
         kept.append(search)
         raise CapturedError
 
-    monkeypatch.setattr(staged_search, "friction_first", capture)
+    monkeypatch.setattr(identify_effects, "search_in_stages", capture)
 
     def run(made: cs.Recording) -> Search:
         with pytest.raises(CapturedError):
@@ -56,6 +56,23 @@ def search_of(monkeypatch: pytest.MonkeyPatch) -> Callable[[cs.Recording], Searc
         return kept[-1]
 
     return run
+
+
+def test_friction_that_was_taken_for_noise_is_not_looked_for_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    begun: list[FittedStructure | None] = []
+
+    def capture(_: Search, flexible: object, say: object, known: FittedStructure | None) -> None:
+        begun.append(known)
+        raise CapturedError
+
+    monkeypatch.setattr(identify_effects, "search_in_stages", capture)
+    with pytest.raises(CapturedError):
+        cs.diagnose(recording(slack=0.0), DRIVE, full=False)
+    (known,) = begun
+    assert known is not None
+    assert known.names == ("friction_hysteresis",)
 
 
 def friction_term(slack: float) -> Term:

@@ -1,5 +1,7 @@
 """Stages of a search: how large what a structure leaves is, what is accepted, freer laws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,11 +16,13 @@ from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     FAINT,
+    LEAST_OF_MISMATCH,
     visibility,
     without_model_error,
 )
+from cyclosweep.diagnosis.identify.starting_terms import starting_terms
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import size_left, size_of
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.searches import search_of
@@ -91,6 +95,45 @@ def test_what_was_accepted_and_has_shrunk_to_an_error_of_another_law_goes() -> N
     found = structure(search, friction, creep).fit
     kept = without_model_error(found, structure(search, friction).fit, mismatch(search))
     assert {term.name for term in kept} == {"creep"}
+
+
+def test_what_has_shrunk_to_a_fraction_of_what_it_was_goes_however_small_the_mismatch() -> None:
+    # A stiffening that had stood for kinks was kept as a twentieth of the mismatch, and the kinks
+    # then lost their name to it.
+    kinks = EffectValue("clearance_takeup", {"first_nm": 9.0, "range_nm": 12.0}, (1.0,))
+    search = search_of(kinks, EffectValue("contact_stiffening", {"turn_nm": 3.0}, (0.12,)))
+    stiffening, takeup = Term(find("contact_stiffening"), {"turn_nm": 3.0}), term_of(kinks)
+    alone, found = structure(search, stiffening).fit, structure(search, stiffening, takeup).fit
+    size = float(np.std(size_of(found, 0)))
+    assert size > LEAST_OF_MISMATCH * mismatch(search)
+    assert size < 0.2 * np.std(size_of(alone, 0))
+    kept = without_model_error(found, alone, mismatch(search))
+    assert {term.name for term in kept} == {"clearance_takeup"}
+
+
+def test_what_is_left_of_an_effect_is_what_nothing_fitted_takes_up() -> None:
+    search = search_of(CREEP, SHIFTED)
+    creep, shifted = term_of(CREEP), term_of(SHIFTED)
+    found = structure(search, creep).fit
+    largest = float(np.max(np.abs(size_of(structure(search, creep, shifted).fit, 1))))
+    assert size_left(found, shifted) == pytest.approx(largest, rel=0.1)
+    assert size_left(found, creep) < 0.01 * largest
+
+
+def test_of_shapes_that_explain_the_same_the_one_with_fewer_amplitudes_is_fitted() -> None:
+    # Where the positions of a recording do not tell waves apart, rounding chose among them.
+    parent = search_of(SHIFTED).baseline
+    scan = parent.scan
+    name = "transmission_error"
+    members = scan.groups[name]
+    width = [len(scan.library.signatures[k].scale) for k in members]
+    observed, ranks = scan.observed.copy(), scan.ranks.copy()
+    rounding = 1e-10 * np.argsort(np.argsort(width))
+    observed[members], ranks[members] = 200.0 + rounding, 2.0
+    tied = replace(scan)
+    vars(tied).update(observed=observed, ranks=ranks)
+    term, _, _ = next(starting_terms(replace(parent, scan=tied), name))
+    assert term.columns(parent.fit.history).shape[1] == min(width) < max(width)
 
 
 def test_friction_that_is_a_curve_of_the_torque_is_not_named() -> None:

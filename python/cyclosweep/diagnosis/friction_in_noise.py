@@ -13,6 +13,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.calibrate import flexible_beyond, noise_left
 from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.noise import Noise
@@ -32,7 +33,9 @@ HARDLY_ANYTHING = 0.1
 to it."""
 
 
-def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, Floats]:
+def without_hidden_friction(
+    search: Search, flexible: Floats
+) -> tuple[Search, Floats, FittedStructure | None]:
     """Search with the noise that friction leaves, where friction was taken for noise.
 
     Parameters
@@ -48,24 +51,27 @@ def without_hidden_friction(search: Search, flexible: Floats) -> tuple[Search, F
         The one given where its noise holds no friction.
     flexible : ndarray, shape (fitted, k)
         Columns of the flexible model that left its noise.
+    friction : FittedStructure or None
+        The friction that was taken for noise.
     """
     noise, problem, library = search.noise, search.problem, search.library
     if noise.structured or noise.best_correlation < SLOW or noise.step_deg > 0:
-        return search, flexible
+        return search, flexible, None
     little = model_error_noise(problem, noise, flexible)
     if search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
-        return search, flexible
+        return search, flexible, None
     found = friction_first(search, little)
     if found is None:
-        return search, flexible
+        return search, flexible, None
     known = fit(problem, little, found.terms, found, rounds=CONVERGED)
     beyond = flexible_beyond(problem, library, known)
     slow = noise_left(problem, beyond, all_noise=True)
     if is_far_likelier(slow, noise):
-        return Search(problem, noise_left(problem, beyond), library, search.seed), beyond
+        left = noise_left(problem, beyond)
+        return Search(problem, left, library, search.seed), beyond, known
     if known.rmse_deg < HARDLY_ANYTHING * search.baseline.fit.rmse_deg:
-        return Search(problem, little, library, search.seed), flexible
-    return search, flexible
+        return Search(problem, little, library, search.seed), flexible, known
+    return search, flexible, None
 
 
 def model_error_noise(problem: Problem, noise: Noise, flexible: Floats) -> Noise:

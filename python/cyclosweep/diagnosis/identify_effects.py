@@ -11,8 +11,13 @@ from cyclosweep.diagnosis.friction_in_noise import (
     without_hidden_friction,
 )
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.staged_search import search_in_stages, visibility
+from cyclosweep.diagnosis.identify.staged_search import (
+    search_in_stages,
+    visibility,
+    with_settled_laws,
+)
 from cyclosweep.diagnosis.identify.verdict import decide
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
@@ -54,11 +59,11 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     flexible = search.flexible
     if flexible is None:
         flexible = flexible_basis(search.problem, search.library, None)
-    search, flexible = without_hidden_friction(search, flexible)
+    search, flexible, friction = without_hidden_friction(search, flexible)
     calibrated = search.noise
     mismatch = visibility(search.baseline.fit, calibrated, flexible)
     if calibrated.structured or mismatch > LOUD:
-        return _by_size(search, flexible, say)
+        return _by_size(search, flexible, say, friction)
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()
@@ -71,7 +76,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         say("starting over with better-known noise")
         search = Search(search.problem, noise, search.library, search.seed)
         if given_up:
-            return search_in_stages(search, flexible, say)
+            return with_settled_laws(search, flexible, search_in_stages(search, flexible, say))
     else:
         search.run(say)
     if not decide(search, [], 0.0).unexplained:
@@ -80,7 +85,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
-    return search_in_stages(search, flexible, say)
+    return with_settled_laws(search, flexible, search_in_stages(search, flexible, say))
 
 
 def _few_pieces(noise: Noise) -> bool:
@@ -89,7 +94,12 @@ def _few_pieces(noise: Noise) -> bool:
     return rows * (1.0 - correlation) / (1.0 + correlation) < FEW_PIECES
 
 
-def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Search:
+def _by_size(
+    search: Search,
+    flexible: Floats,
+    say: Callable[[str], None],
+    begun: FittedStructure | None = None,
+) -> Search:
     """Explain a loud mismatch stage by stage, and fit the result to whole loops.
 
     Parameters
@@ -100,20 +110,23 @@ def _by_size(search: Search, flexible: Floats, say: Callable[[str], None]) -> Se
         Columns of a flexible model.
     say : callable
         Called with a few words before each long step.
+    begun : FittedStructure, optional
+        What is known already.
 
     Returns
     -------
     Search
         Of the last stage.
     """
-    staged = search_in_stages(search, flexible, say)
+    staged = search_in_stages(search, flexible, say, begun)
     if staged.start is not staged.baseline:
         noise = noise_beyond(search.problem, search.library, staged.start.fit)
         believed = noise.spread_deg <= LARGER_THAN_LEFT * staged.start.fit.rmse_deg
         if believed and not noise.structured and not _is_same(noise, search.noise):
             say("starting over with better-known noise")
-            again = Search(search.problem, noise, search.library, search.seed)
-            staged = search_in_stages(again, flexible, say, staged.start.fit)
+            search = Search(search.problem, noise, search.library, search.seed)
+            staged = search_in_stages(search, flexible, say, staged.start.fit)
+    staged = with_settled_laws(search, flexible, staged)
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged

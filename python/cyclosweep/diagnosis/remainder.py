@@ -7,7 +7,8 @@ import numpy as np
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import size_left, size_of
 from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
@@ -48,7 +49,7 @@ def remainder(
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
         return _staircase(concluded.accepted, concluded.repetition)
-    return _unnamed_term(concluded.best) or _unfitted(concluded, regions)
+    return _unnamed_term(concluded.best) or _unfitted(concluded)
 
 
 def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | None:
@@ -136,15 +137,13 @@ def _unnamed_term(best: Candidate) -> Remainder | None:
     return None
 
 
-def _unfitted(concluded: Conclusion, regions: Sequence[Region]) -> Remainder:
+def _unfitted(concluded: Conclusion) -> Remainder:
     """Describe the strongest hypothesis in the residual of the best structure.
 
     Parameters
     ----------
     concluded : Conclusion
         Verdict and accepted structure.
-    regions : sequence of Region
-        Where the calibrated model fails.
 
     Returns
     -------
@@ -154,15 +153,15 @@ def _unfitted(concluded: Conclusion, regions: Sequence[Region]) -> Remainder:
     excesses = best.excesses
     name = max(excesses, key=lambda key: excesses[key])
     wave = best.sinusoid[1]
-    place = wave.place if wave is not None and wave.family == name else ""
-    if name in best.scan.groups:
+    term = place = None
+    if wave is not None and wave.family == name:
+        term, place = Term(None, {}, wave), wave.place
+    elif name in best.scan.groups:
         signature = best.scan.library.signatures[best.scan.best_signature(name)]
+        term = Term(signature.effect, signature.shape, signature.unnamed)
         place = signature.unnamed.place if signature.unnamed is not None else "all along"
-    size = max(
-        (abs(region.mean_residual_deg) for region in regions),
-        default=concluded.accepted.fit.rmse_deg,
-    )
-    return Remainder(shape=name, place=place, size_deg=size)
+    size = concluded.accepted.fit.rmse_deg if term is None else size_left(best.fit, term)
+    return Remainder(shape=name, place=place or "", size_deg=size)
 
 
 def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:

@@ -36,6 +36,10 @@ SAME_OPTIMUM = 0.01
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
+FIRST_LOOK = 6
+"""Iterations after which a fit that still leaves"""
+HOPELESS = 3.0
+"""times the error of another one is given up."""
 
 
 def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
@@ -272,11 +276,14 @@ def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
     slipping = [term for term in best.terms if term.slips]
     if len(slipping) < 2:
         return best
-    fits = [
-        _fitted(noise, [term for term in best.terms if term is not left_out], best)
-        for left_out in slipping
-    ]
-    return min((each for each in (best, *fits) if each is not None), key=_cost)
+    fits = [best]
+    for left_out in slipping:
+        rest = tuple(term for term in best.terms if term is not left_out)
+        begun = fit(best.problem, noise, rest, best, rounds=FIRST_LOOK)
+        if begun.rmse_deg < HOPELESS * best.rmse_deg:
+            converged = _fitted(noise, begun.terms, begun)
+            fits += [] if converged is None else [converged]
+    return min(fits, key=_cost)
 
 
 def _cost(fitted: FittedStructure) -> float:

@@ -1,7 +1,6 @@
 """Search for the set of effects that explains a recording, each refitted with the baseline."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -93,17 +92,14 @@ class Search:
         base = fit(problem, noise, ())
         self.whitened = base.whitened(library.columns, noise)
         self.gram = self.whitened.T @ self.whitened
-        rng = np.random.default_rng([seed, 1])
-        self.alarm = Alarm.calibrate(self._scan(base), rng)
+        terms = () if accepted is None else accepted.terms
+        first = fit(problem, noise, terms, accepted) if terms else base
+        self.alarm = Alarm.calibrate(self._scan(first), np.random.default_rng([seed, 1]))
         self.threshold = self.alarm.threshold
-        self.baseline = self.judged(base, 0.0, 0.0)
-        self.start = self.baseline
+        self.baseline = self.start = self.judged(base, 0.0, 0.0)
         self.visited: dict[frozenset[str], Candidate] = {}
-        if accepted is not None and accepted.terms:
-            self.start = self.refit(accepted.terms, accepted)
-            self.alarm = Alarm.calibrate(self.start.scan, np.random.default_rng([seed, 1]))
-            self.threshold = self.alarm.threshold
-            self.start = replace(self.start, alarm=self.alarm)
+        if terms:
+            self.start = self.judged(first, 0.0, 0.0)
             self.visited[self.start.names] = self.start
         self._tried: set[tuple[Candidate, str]] = set()
         self.chosen: Candidate | None = None

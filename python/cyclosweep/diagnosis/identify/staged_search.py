@@ -133,9 +133,6 @@ def search_in_stages(
     def refitted(terms: tuple[Term, ...], near: FittedStructure) -> FittedStructure:
         return fit(searched.problem, searched.noise, terms, near, rounds=CONVERGED)
 
-    def stage_from(begun: FittedStructure) -> Search:
-        return _stage(searched, factor_of(begun), begun)
-
     rivals: list[tuple[Candidate, float]] = []
     last = searched
     fitted: FittedStructure = searched.baseline.fit
@@ -147,11 +144,11 @@ def search_in_stages(
         fitted = friction_first(searched, searched.noise.with_model_error(factor)) or fitted
     accepted = fitted.terms
     restarted = shed = False
+    kept_their_start = {frozenset(term.name for term in accepted)}
     for _ in range(MOST_STAGES):
-        factor = factor_of(fitted)
-        if not accepted and factor == 1.0:
+        if not accepted and factor_of(fitted) == 1.0:
             break
-        search = _stage(searched, factor, fitted)
+        search = _stage(searched, flexible, fitted)
         search.run(say)
         decision = named_if_close(search, decide(search, [], 0.0))
         if accepted:
@@ -160,8 +157,9 @@ def search_in_stages(
         if best is None or best.score < search.start.score:
             # What leaves nothing more may still be less likely than what was accepted.
             break
-        if accepted and not restarted:
+        if accepted and not restarted and best.names not in kept_their_start:
             turned = from_better_start(searched.noise, best.fit, PARAMETER_CHARGE)
+            kept_their_start.add(best.names)
             if turned is not best.fit:
                 # What was found beside friction in the wrong state may be the error of that state.
                 restarted = True
@@ -187,7 +185,7 @@ def search_in_stages(
         freer_form = freer_instead_of_others(search, best, part)
         if freer_form is not None:
             fitted = refitted(freer_form.fit.terms, freer_form.fit)
-            accepted, last = fitted.terms, stage_from(fitted)
+            accepted, last = fitted.terms, _stage(searched, flexible, fitted)
             rivals.clear()
             continue
         if {term.name for term in found} == {term.name for term in accepted}:
@@ -199,27 +197,49 @@ def search_in_stages(
         fitted = refitted(found, best.fit)
         accepted = fitted.terms
     if len(last.start.fit.terms) < len(accepted):
-        last = stage_from(fitted)
-    if accepted:
-        other = with_better_laws(last)
-        if other is not last.start.fit:
-            last = stage_from(other)
+        last = _stage(searched, flexible, fitted)
+    last.rivals_of_start = rivals
+    return last
+
+
+def with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Search:
+    """Settle the laws of what the stages accepted, once all of it is known.
+
+    Parameters
+    ----------
+    searched : Search
+        The search against the noise alone.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model, see `visibility`.
+    last : Search
+        The search of the last stage.
+
+    Returns
+    -------
+    Search
+        That search, or one from a structure of other laws, or of freer ones.
+    """
+    rivals = last.rivals_of_start
+    if last.start is not last.baseline:
+        better = with_better_laws(last)
+        if better is not last.start.fit:
+            last = _stage(searched, flexible, better)
         freer = with_freer_laws(last, last.start).fit
         if freer is not last.start.fit:
-            last = stage_from(freer)
+            last = _stage(searched, flexible, freer)
     last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
 
 
-def _stage(searched: Search, factor: float, accepted: FittedStructure) -> Search:
+def _stage(searched: Search, flexible: Floats, accepted: FittedStructure) -> Search:
     """Search of one stage, with nothing visited.
 
     Parameters
     ----------
     searched : Search
         The search against the noise alone.
-    factor : float
-        Noise and model error together over the noise.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model, see `visibility`.
     accepted : FittedStructure
         What was accepted before.
 
@@ -227,6 +247,7 @@ def _stage(searched: Search, factor: float, accepted: FittedStructure) -> Search
     -------
     Search
     """
+    factor = error_factor(visibility(accepted, searched.noise, flexible))
     noise = searched.noise.with_model_error(factor)
     return Search(searched.problem, noise, searched.library, searched.seed, accepted)
 
@@ -276,7 +297,7 @@ def without_model_error(
     -------
     tuple of Term
     """
-    before = {term.name for term in accepted.terms}
+    before = {t.name: float(np.std(size_of(accepted, k))) for k, t in enumerate(accepted.terms)}
     size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
     left = beyond_noise_deg(fitted)
     errors = errors_of_larger(fitted)
@@ -293,7 +314,8 @@ def without_model_error(
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
         largest = max((size[j] for j in mates), default=0.0)
-        small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
+        was = before.get(term.name, 0.0)
+        small = size[k] < max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_CLASS * was)
         replaced = small and (size[k] < LEAST_OF_CLASS * largest or term.name in errors)
         if (term.name in before and not replaced) or (
             stands_out and not cancels(fitted, k) and not makes_others_grow(fitted, k, accepted)

@@ -16,6 +16,8 @@ DENSE = frozenset({"saturation at the end of the range", "bump at a load"})
 """Unnamed shapes whose grid stands for what is believed beforehand."""
 OTHER_LAW = 0.8
 """Evidence of another law of an effect over that of the best one, from which it is tried too."""
+TIED_DIGITS = 6
+"""Decimals of log evidence to which shapes that explain the same agree."""
 MOST_CHOICE_PENALTY = 1.5
 """What the choice of a shape is charged at most where the grid of shapes is coarse [nat]."""
 
@@ -50,7 +52,9 @@ def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, f
     average = found.by_hypothesis[hypothesis]
     signatures = [found.library.signatures[index] for index in members]
     penalties = np.array([prior_penalty(hypothesis, s.effect, s.shape) for s in signatures])
-    rank = np.argsort(penalties - each)
+    # Waves that the positions of a recording do not tell apart explain the same: fewer do it.
+    width = [len(s.scale) for s in signatures]
+    rank = np.lexsort((width, np.round(penalties - each, TIED_DIGITS)))
     order = members[rank]
     first = found.library.signatures[order[0]]
     dense = first.effect.dense if first.effect is not None else hypothesis in DENSE

@@ -8,6 +8,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import line_design
 from cyclosweep.result import Untestable
@@ -132,6 +133,32 @@ def size_of(fitted: FittedStructure, index: int) -> Floats:
     ndarray, shape (fitted,)
     """
     return _recalibration(fitted)(fitted.contribution(index)[fitted.problem.fitted])
+
+
+def size_left(fitted: FittedStructure, term: Term) -> float:
+    """Largest twist of a term in what a structure leaves [deg].
+
+    What everything fitted would take up of the term is no part of it.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    term : Term
+        Not one of its terms.
+
+    Returns
+    -------
+    float
+        In deg.
+    """
+    columns = term.columns(fitted.history)[fitted.problem.fitted]
+    white = fitted.whitened(columns, fitted.noise)
+    beside = white - fitted.tangent @ (fitted.tangent.T @ white)
+    amplitudes = np.linalg.lstsq(beside, fitted.residual, rcond=1e-6)[0]
+    whole = _recalibration(fitted)(columns @ amplitudes)
+    seen = np.linalg.norm(beside @ amplitudes) / max(np.linalg.norm(white @ amplitudes), 1e-300)
+    return float(seen * np.max(np.abs(whole)))
 
 
 def spread_of_size(fitted: FittedStructure, index: int) -> float:
