@@ -53,8 +53,8 @@ def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, f
     signatures = [found.library.signatures[index] for index in members]
     penalties = np.array([prior_penalty(hypothesis, s.effect, s.shape) for s in signatures])
     # Waves that the positions of a recording do not tell apart explain the same: fewer do it.
-    width = [len(s.scale) for s in signatures]
-    rank = np.lexsort((width, np.round(penalties - each, TIED_DIGITS)))
+    width = np.array([len(s.scale) for s in signatures], dtype=np.float64)
+    rank = np.lexsort(np.stack([width, np.round(penalties - each, TIED_DIGITS)]))
     order = members[rank]
     first = found.library.signatures[order[0]]
     dense = first.effect.dense if first.effect is not None else hypothesis in DENSE

@@ -157,8 +157,9 @@ def size_left(fitted: FittedStructure, term: Term) -> float:
     beside = white - fitted.tangent @ (fitted.tangent.T @ white)
     amplitudes = np.linalg.lstsq(beside, fitted.residual, rcond=1e-6)[0]
     whole = _recalibration(fitted)(columns @ amplitudes)
-    seen = np.linalg.norm(beside @ amplitudes) / max(np.linalg.norm(white @ amplitudes), 1e-300)
-    return float(seen * np.max(np.abs(whole)))
+    all_of_it = max(float(np.linalg.norm(white @ amplitudes)), 1e-300)
+    seen = float(np.linalg.norm(beside @ amplitudes)) / all_of_it
+    return seen * float(np.max(np.abs(whole)))
 
 
 def spread_of_size(fitted: FittedStructure, index: int) -> float:
