@@ -4,12 +4,20 @@ A stage accepts a law while much is still unexplained, and its error of the mode
 of one class of behaviour differ. Once everything else is known the difference shows.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import share_class
+from cyclosweep.diagnosis.identify.law_in_class import (
+    BOTH_CURVES,
+    makes_others_grow,
+    own_classes,
+    share_class,
+)
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 
@@ -49,11 +57,17 @@ def with_better_laws(search: Search) -> FittedStructure:
         parent = search.refit(others, fitted) if others else search.baseline
         own = _extended(search, parent, name)
         tried = [child for each in rivals if (child := _extended(search, parent, each)) is not None]
+        tried = [_in_whole_class(search, child) for child in tried]
+        if _is_dial(term):
+            tried += list(_pairs(search, tried))
+            tried += [] if own is None else [_in_whole_class(search, own)]
         if own is not None and own.fit.chi2 < fitted.chi2 - 2.0 * CLEARLY:
             # Beside everything else the accepted law has been given more freedom.
             fitted = own.fit
         best = max(tried, key=lambda child: child.score, default=None)
         if best is None or not best.all_recognised or best.fit.chi2 >= fitted.chi2:
+            continue
+        if any(makes_others_grow(best.fit, k, fitted) for k in range(len(best.fit.terms))):
             continue
         ahead = best.score - _score(own)
         leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
@@ -78,6 +92,62 @@ def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:
     Candidate or None
     """
     return search.extend(parent, name) if name in parent.scan.groups else None
+
+
+def _is_dial(term: Term) -> bool:
+    """Whether a law has an odd and an even part, as that of an eccentric dial."""
+    return set(own_classes(term)) >= BOTH_CURVES
+
+
+def _in_whole_class(search: Search, child: Candidate) -> Candidate:
+    """Give a dial that a structure got last the form that holds nearly its whole class.
+
+    An eccentric dial is hardly ever without a tilt, and the search offers it without.
+
+    Parameters
+    ----------
+    search : Search
+    child : Candidate
+
+    Returns
+    -------
+    Candidate
+        The same for another law, and where the evidence does not prefer that form.
+    """
+    last = len(child.fit.terms) - 1
+    effect = child.fit.terms[last].effect
+    if effect is None or not _is_dial(child.fit.terms[last]):
+        return child
+    richer = search.first_better(child, freer_laws(child, search.library, last, whole_class=True))
+    if richer is None:
+        return child
+    before, after = (each.fit.terms[last].shape for each in (child, richer))
+    return replace(richer, prior=richer.prior - effect.penalty(after) + effect.penalty(before))
+
+
+def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:
+    """Structures with an even curve and an odd one, which together make the curve of a dial.
+
+    Parameters
+    ----------
+    search : Search
+    tried : sequence of Candidate
+        Structures with one of them.
+
+    Yields
+    ------
+    Candidate
+    """
+    even = [each for each in tried if own_classes(each.fit.terms[-1]) == (EVEN_CURVE,)]
+    best = max(even, key=lambda each: each.score, default=None)
+    if best is None:
+        return
+    for name in dict.fromkeys(each.fit.names[-1] for each in tried):
+        term = next(each.fit.terms[-1] for each in tried if each.fit.names[-1] == name)
+        if own_classes(term) == (ODD_CURVE,):
+            pair = _extended(search, best, name)
+            if pair is not None:
+                yield pair
 
 
 def left_beyond_noise(fitted: FittedStructure) -> float:
