@@ -63,7 +63,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     calibrated = search.noise
     mismatch = visibility(search.baseline.fit, calibrated, flexible)
     if calibrated.structured or mismatch > LOUD:
-        return _by_size(search, flexible, say, friction)
+        # Two frictions and their presliding have many optima: they are looked for once more.
+        one = friction is not None and sum(term.slips for term in friction.terms) == 1
+        return _by_size(search, flexible, say, friction if one else None)
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()

@@ -347,14 +347,14 @@ def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
     -------
     ndarray, shape (k,)
     """
-    gram = design.T @ design
-    norm = np.sqrt(np.diag(gram))
+    norm = np.sqrt(np.einsum("ij,ij->j", design, design))
     norm = np.where(norm > 0, norm, 1.0)
-    gram = gram / np.outer(norm, norm) + np.diag(hold / norm**2)
-    right = design.T @ target / norm
+    scaled = design / norm
+    gram = scaled.T @ scaled + np.diag(hold / norm**2)
+    right = scaled.T @ target
     for ridge in (0.0, 1e-9, 1e-6):
         # LAPACK itself: the checks around it take longer than so small a matrix.
         factor, failed = dpotrf(gram + ridge * np.eye(len(gram)), clean=False)
         if not failed and (ridge > 0 or np.min(np.abs(np.diag(factor))) > 1e-5):
             return np.asarray(dpotrs(factor, right)[0] / norm)
-    return np.asarray(np.linalg.lstsq(design / norm, target, rcond=1e-10)[0] / norm)
+    return np.asarray(np.linalg.lstsq(scaled, target, rcond=1e-10)[0] / norm)

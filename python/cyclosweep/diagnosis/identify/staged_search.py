@@ -314,9 +314,10 @@ def without_model_error(
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
         largest = max((size[j] for j in mates), default=0.0)
-        was = before.get(term.name, 0.0)
-        small = size[k] < max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_CLASS * was)
-        replaced = small and (size[k] < LEAST_OF_CLASS * largest or term.name in errors)
+        small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
+        shrunk = size[k] < LEAST_OF_CLASS * before.get(term.name, 0.0)
+        replaced = (small or shrunk) and size[k] < LEAST_OF_CLASS * largest
+        replaced |= small and term.name in errors
         if (term.name in before and not replaced) or (
             stands_out and not cancels(fitted, k) and not makes_others_grow(fitted, k, accepted)
         ):
