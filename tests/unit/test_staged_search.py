@@ -117,7 +117,7 @@ def test_what_is_left_of_an_effect_is_what_nothing_fitted_takes_up() -> None:
     found = structure(search, creep).fit
     largest = float(np.max(np.abs(size_of(structure(search, creep, shifted).fit, 1))))
     assert size_left(found, shifted) == pytest.approx(largest, rel=0.1)
-    assert size_left(found, creep) < 0.01 * largest
+    assert size_left(found, creep) < 1e-6 * largest
 
 
 def test_of_shapes_that_explain_the_same_the_one_with_fewer_amplitudes_is_fitted() -> None:

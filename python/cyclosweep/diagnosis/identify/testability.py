@@ -15,6 +15,9 @@ from cyclosweep.result import Untestable
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 
+LEAST_BESIDE = 1e-6
+"""Share of a column that everything fitted has to leave of it, so that it has an amplitude."""
+
 
 @dataclass(frozen=True, slots=True)
 class Testability:
@@ -155,7 +158,12 @@ def size_left(fitted: FittedStructure, term: Term) -> float:
     columns = term.columns(fitted.history)[fitted.problem.fitted]
     white = fitted.whitened(columns, fitted.noise)
     beside = white - fitted.tangent @ (fitted.tangent.T @ white)
-    amplitudes = np.linalg.lstsq(beside, fitted.residual, rcond=1e-6)[0]
+    # What is taken up whole leaves rounding, of which no amplitude can be had.
+    left = np.linalg.norm(beside, axis=0) > LEAST_BESIDE * np.linalg.norm(white, axis=0)
+    if not np.any(left):
+        return 0.0
+    columns, white, beside = columns[:, left], white[:, left], beside[:, left]
+    amplitudes = np.linalg.lstsq(beside, fitted.residual, rcond=LEAST_BESIDE)[0]
     whole = _recalibration(fitted)(columns @ amplitudes)
     all_of_it = max(float(np.linalg.norm(white @ amplitudes)), 1e-300)
     seen = float(np.linalg.norm(beside @ amplitudes)) / all_of_it
