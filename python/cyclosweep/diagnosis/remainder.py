@@ -153,7 +153,8 @@ def _unfitted(concluded: Conclusion) -> Remainder:
     excesses = best.excesses
     name = max(excesses, key=lambda key: excesses[key])
     wave = best.sinusoid[1]
-    term = place = None
+    term: Term | None = None
+    place = ""
     if wave is not None and wave.family == name:
         term, place = Term(None, {}, wave), wave.place
     elif name in best.scan.groups:
@@ -161,7 +162,7 @@ def _unfitted(concluded: Conclusion) -> Remainder:
         term = Term(signature.effect, signature.shape, signature.unnamed)
         place = signature.unnamed.place if signature.unnamed is not None else "all along"
     size = concluded.accepted.fit.rmse_deg if term is None else size_left(best.fit, term)
-    return Remainder(shape=name, place=place or "", size_deg=size)
+    return Remainder(shape=name, place=place, size_deg=size)
 
 
 def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:

@@ -142,12 +142,11 @@ def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:
     best = max(even, key=lambda each: each.score, default=None)
     if best is None:
         return
-    for name in dict.fromkeys(each.fit.names[-1] for each in tried):
-        term = next(each.fit.terms[-1] for each in tried if each.fit.names[-1] == name)
-        if own_classes(term) == (ODD_CURVE,):
-            pair = _extended(search, best, name)
-            if pair is not None:
-                yield pair
+    odd = [each.fit.terms[-1] for each in tried if own_classes(each.fit.terms[-1]) == (ODD_CURVE,)]
+    for term in odd:
+        pair = _extended(search, best, term.name)
+        if pair is not None:
+            yield pair
 
 
 def left_beyond_noise(fitted: FittedStructure) -> float:
