@@ -63,7 +63,9 @@ def test_friction_that_was_taken_for_noise_is_not_looked_for_again(
 ) -> None:
     begun: list[FittedStructure | None] = []
 
-    def capture(_: Search, flexible: object, say: object, known: FittedStructure | None) -> None:
+    def capture(
+        _: Search, flexible: object, say: object, known: FittedStructure | None, renewed: object
+    ) -> None:
         begun.append(known)
         raise CapturedError
 

@@ -235,8 +235,16 @@ def classes_shown(concluded: Conclusion) -> tuple[BehaviourClass, ...]:
 
 
 def explanations(concluded: Conclusion) -> tuple[Explanation, ...]:
-    """Return the explanations with their probabilities, the most probable first."""
-    return tuple(_explanation(each, p) for each, p in concluded.decision.explanations)
+    """Return the explanations with their probabilities, the most probable first.
+
+    The calibrated model alone explains nothing where something is left.
+    """
+    decision = concluded.decision
+    return tuple(
+        _explanation(each, p)
+        for each, p in decision.explanations
+        if each.fit.terms or not decision.unexplained
+    )
 
 
 def _explanation(candidate: Candidate, probability: float) -> Explanation:

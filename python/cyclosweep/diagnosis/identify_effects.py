@@ -16,7 +16,6 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     search_in_stages,
     visibility,
-    with_settled_laws,
 )
 from cyclosweep.diagnosis.identify.verdict import decide
 from cyclosweep.diagnosis.prepare.noise import Noise
@@ -33,6 +32,11 @@ CLEAR = 100.0
 stages at once: against the noise alone the error of a large effect's law hides what is smaller."""
 FEW_PIECES = 5.0
 """Independent pieces below which what remains unexplained is no noise but error of the model."""
+FEWEST_PIECES = 1.0
+"""The same, where what the calibrated model misses is besides"""
+ABOVE_STEPS = 40.0
+"""so many times what rows differ by: noise of an autocorrelation of 0.99 is twelve times as large
+as that, of 0.998 twenty-seven times."""
 LARGER_THAN_LEFT = 2.0
 """Noise over what a structure leaves, from which it is none: an autoregression near one describes
 the slow errors of a model as noise of any size."""
@@ -60,6 +64,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if flexible is None:
         flexible = flexible_basis(search.problem, search.library, None)
     search, flexible, friction = without_hidden_friction(search, flexible)
+    if is_error_of_model(search, flexible):
+        error = model_error_noise(search.problem, search.noise, flexible)
+        search = Search(search.problem, error, search.library, search.seed)
     calibrated = search.noise
     mismatch = visibility(search.baseline.fit, calibrated, flexible)
     if calibrated.structured or mismatch > LOUD:
@@ -78,22 +85,42 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         say("starting over with better-known noise")
         search = Search(search.problem, noise, search.library, search.seed)
         if given_up:
-            return with_settled_laws(search, flexible, search_in_stages(search, flexible, say))
+            return search_in_stages(search, flexible, say)
     else:
         search.run(say)
     if not decide(search, [], 0.0).unexplained:
         return search
-    if _few_pieces(search.noise):
+    if pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
-    return with_settled_laws(search, flexible, search_in_stages(search, flexible, say))
+    return search_in_stages(search, flexible, say)
 
 
-def _few_pieces(noise: Noise) -> bool:
-    """Whether noise is so slow that a recording cannot tell it from error of the model."""
-    rows, correlation = len(noise.gap), noise.best_correlation
-    return rows * (1.0 - correlation) / (1.0 + correlation) < FEW_PIECES
+def pieces(noise: Noise) -> float:
+    """Independent pieces of a recording of this noise."""
+    return len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
+
+
+def is_error_of_model(search: Search, flexible: Floats) -> bool:
+    """Whether what passes for slow noise can only be error of the model.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    flexible : ndarray, shape (n, k)
+        Columns of a flexible model.
+
+    Returns
+    -------
+    bool
+    """
+    noise = search.noise
+    if noise.structured or noise.step_deg > 0 or pieces(noise) >= FEWEST_PIECES:
+        return False
+    steps = model_error_noise(search.problem, noise, flexible).sigma_deg
+    return search.baseline.fit.rmse_deg > ABOVE_STEPS * steps
 
 
 def _by_size(
@@ -120,15 +147,16 @@ def _by_size(
     Search
         Of the last stage.
     """
-    staged = search_in_stages(search, flexible, say, begun)
-    if staged.start is not staged.baseline:
-        noise = noise_beyond(search.problem, search.library, staged.start.fit)
-        believed = noise.spread_deg <= LARGER_THAN_LEFT * staged.start.fit.rmse_deg
-        if believed and not noise.structured and not _is_same(noise, search.noise):
-            say("starting over with better-known noise")
-            search = Search(search.problem, noise, search.library, search.seed)
-            staged = search_in_stages(search, flexible, say, staged.start.fit)
-    staged = with_settled_laws(search, flexible, staged)
+
+    def renewed(searched: Search, accepted: FittedStructure) -> Search:
+        noise = noise_beyond(searched.problem, searched.library, accepted)
+        believed = noise.spread_deg <= LARGER_THAN_LEFT * accepted.rmse_deg
+        believed &= not searched.noise.structured or pieces(noise) >= FEWEST_PIECES
+        if not believed or noise.structured or _is_same(noise, searched.noise):
+            return searched
+        return Search(searched.problem, noise, searched.library, searched.seed)
+
+    staged = search_in_stages(search, flexible, say, begun, renewed)
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged

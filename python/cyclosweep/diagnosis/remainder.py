@@ -1,11 +1,13 @@
 """Shape, place and size of what is missing from the model and belongs to no listed effect."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_left, size_of
@@ -44,12 +46,32 @@ def remainder(
     if verified.decision.best is None:
         return _of_event(concluded, regions)
     if concluded.naming.withdrawn and concluded.naming.shown:
-        return _of_class(concluded)
+        return no_larger_than_left(_of_class(concluded), concluded.naming.part.fit)
     if verified.drift is not None:
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
         return _staircase(concluded.accepted, concluded.repetition)
-    return _unnamed_term(concluded.best) or _unfitted(concluded)
+    found = _unnamed_term(concluded.best) or _unfitted(concluded)
+    return no_larger_than_left(found, concluded.accepted.fit)
+
+
+def no_larger_than_left(found: Remainder, named: FittedStructure) -> Remainder:
+    """Bound the size of a remainder by the largest residual of the named effects.
+
+    Fitted jointly, a shape may be larger than what is left, as others make up for it.
+
+    Parameters
+    ----------
+    found : Remainder
+    named : FittedStructure
+        The structure of the named effects.
+
+    Returns
+    -------
+    Remainder
+    """
+    left = (named.problem.angle_deg - named.mean_deg)[named.problem.fitted]
+    return replace(found, size_deg=min(found.size_deg, float(np.abs(left).max())))
 
 
 def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | None:
@@ -184,6 +206,8 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     shape, place = "misfit of the model", "which does not repeat from run to run"
     if repeats.is_physics or repeats.order is not None:
         shape, place = "staircase tied to the position of the mesh", f"repeating {repeats.in_words}"
+    elif not repeats.is_known:
+        place = "all along"
     elif repeats.correlation > LEAST_REPEAT:
         place = f"which repeats only in part {repeats.in_words}"
     evidence, wave = accepted.sinusoid

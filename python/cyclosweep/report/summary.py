@@ -122,6 +122,13 @@ def _rest(answer: Answer) -> str:
     if rest is None:
         return ""
     what = f"{shape_in_words(rest.shape)} of {rest.size_deg:.2g} deg"
+    named = {effect.name for effect in answer.effects}
+    others = [law for law in answer.repaired.stand_ins if law not in named]
+    if answer.effects and others:
+        return (
+            f"{space}What is left, {what}, behaves like {listed(others)}, but follows none of the "
+            "listed laws."
+        )
     if answer.effects:
         return f"{space}What is left, {what}, no listed effect explains."
     text = f"The model misses something that no listed effect explains: {what}."

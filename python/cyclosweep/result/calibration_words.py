@@ -1,11 +1,34 @@
 """What was read from the loop and what the calibration found, in sentences."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from cyclosweep.result.answer import Finding
 from cyclosweep.result.calibration import CalibratedParameter
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.words import degrees
+
+HIDDEN = "as friction hides it"
+"""Words by which a finding says why play or stiffness is not given."""
+HIDDEN_BY_FRICTION = (
+    "Calibration: not stated, as friction hides compliance and play; what model.json holds of them "
+    "belongs to its friction and is none of the drive's."
+)
+
+
+def is_hidden_by_friction(findings: Sequence[Finding]) -> bool:
+    """Whether friction hides both play and stiffness of the drive.
+
+    Parameters
+    ----------
+    findings : sequence of Finding
+        What the loop shows.
+
+    Returns
+    -------
+    bool
+    """
+    return any(each.topic == "play" and HIDDEN in each.text for each in findings)
 
 
 def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParameter]) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from cyclosweep.result.answer import Answer
+from cyclosweep.result.calibration_words import HIDDEN
 
 LEVEL = 0.05
 """Probability below which an interval of 95 % cannot hold zero."""
@@ -82,7 +83,7 @@ def _of_play(answer: Answer) -> Iterator[str]:
         ("stiffness", read.stiffness_at_output_nm_per_arcmin),
     ):
         texts = [finding.text for finding in answer.findings if finding.topic == topic]
-        if value is not None and any("as friction hides it" in text for text in texts):
+        if value is not None and any(HIDDEN in text for text in texts):
             yield f"the {topic} is given, and friction is said to hide it"
 
 

@@ -4,7 +4,13 @@ from collections.abc import Sequence
 
 from cyclosweep.result.answer import Answer
 from cyclosweep.result.calibration import Thinning
-from cyclosweep.result.calibration_words import calibration_words, change_words, play_words
+from cyclosweep.result.calibration_words import (
+    HIDDEN_BY_FRICTION,
+    calibration_words,
+    change_words,
+    is_hidden_by_friction,
+    play_words,
+)
 from cyclosweep.result.effects import Explanation
 from cyclosweep.result.proof import HeldOutBlock
 from cyclosweep.result.words import (
@@ -282,6 +288,8 @@ def _calibration(answer: Answer) -> str:
     """What the calibration found; the compliance as a range where the drive changed."""
     if answer.change is None:
         read = play_words(answer.play_and_stiffness)
+        if is_hidden_by_friction(answer.findings):
+            return f"{read}{HIDDEN_BY_FRICTION}"
         return f"{read}{calibration_words(answer.repaired.parameters)}"
     return change_words(answer.change, answer.repaired.parameters)
 

@@ -62,7 +62,7 @@ FAMILIES_ALIKE = {
     "slip within a run": _OFFSETS,
     "change of play": _OFFSETS | _PLACES,
     "one run apart": _OFFSETS,
-    "drift in time": _OFFSETS,
+    "slow drift": _OFFSETS,
     "drift within runs": _OFFSETS,
     "wandering of the zero": _OFFSETS | _PLACES,
     "position offsets": _OFFSETS,
@@ -261,9 +261,9 @@ def _trends(history: History) -> Iterator[UnnamedShape]:
     share = (clock - clock[0]) / length
     starts = clock[history.run_starts][history.run]
     since = (clock - starts) / length
-    yield UnnamedShape("drift in time", "over the recording", lambda h: share[:, None])
+    yield UnnamedShape("slow drift", "over the recording", lambda h: share[:, None])
     yield UnnamedShape(
-        "drift in time",
+        "slow drift",
         "over the recording",
         lambda h: np.column_stack([share, share**2, share**3]),
     )
@@ -271,7 +271,7 @@ def _trends(history: History) -> Iterator[UnnamedShape]:
         yield UnnamedShape("drift within runs", "over each run", lambda h: since[:, None])
     for tau in (0.02, 0.1, 0.3):
         yield UnnamedShape(
-            "drift in time",
+            "slow drift",
             "dying out over the recording",
             partial(constant, np.exp(-share / tau)[:, None]),
         )

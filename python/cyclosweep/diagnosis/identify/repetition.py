@@ -73,6 +73,11 @@ class Repetition:
     order: StepOrder | None = None
 
     @property
+    def is_known(self) -> bool:
+        """Whether there were two runs to be compared."""
+        return self.cells > 0
+
+    @property
     def in_words(self) -> str:
         """Between what it repeats, and how well."""
         return f"from run to run (correlation {self.correlation:.2f})"

@@ -47,7 +47,7 @@ MODEL_ERROR_SHARE = 0.3
 """Model error over what a stage has to explain, as root mean squares."""
 FAINT = 30.0
 """Signal-to-noise ratio up to which a mismatch is judged against the noise alone."""
-MOST_STAGES = 4
+MOST_STAGES = 8
 """Stages of a search."""
 LEAST_OF_MISMATCH = 0.04
 """Size from which an effect is told from the model error of the others, as a share of the mismatch
@@ -106,6 +106,7 @@ def search_in_stages(
     flexible: Floats,
     say: Callable[[str], None],
     begun: FittedStructure | None = None,
+    renewed: Callable[[Search, FittedStructure], Search] = lambda search, accepted: search,
 ) -> Search:
     """Explain the largest mismatch first, then what is left of it, stage by stage.
 
@@ -119,6 +120,9 @@ def search_in_stages(
         Called with a few words before each long step.
     begun : FittedStructure, optional
         What was accepted before; without it friction is looked for first.
+    renewed : callable
+        From a search against the noise alone and what is accepted to the search by the noise that
+        this leaves; the same search where that is no other noise.
 
     Returns
     -------
@@ -148,6 +152,11 @@ def search_in_stages(
     for _ in range(MOST_STAGES):
         if not accepted and factor_of(fitted) == 1.0:
             break
+        better_known = renewed(searched, fitted) if accepted else searched
+        if better_known is not searched:
+            searched = better_known
+            fitted = refitted(accepted, fitted)
+            accepted = fitted.terms
         search = _stage(searched, flexible, fitted)
         search.run(say)
         decision = named_if_close(search, decide(search, [], 0.0))
@@ -199,10 +208,10 @@ def search_in_stages(
     if len(last.start.fit.terms) < len(accepted):
         last = _stage(searched, flexible, fitted)
     last.rivals_of_start = rivals
-    return last
+    return _with_settled_laws(searched, flexible, last)
 
 
-def with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Search:
+def _with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Search:
     """Settle the laws of what the stages accepted, once all of it is known.
 
     Parameters

@@ -44,6 +44,8 @@ class Flanks:
         The same by the largest torque of the readings that are scored [N m].
     turned : TurnedPlay or None
         Play through which the shaft was turned, where its ends were seen in the angle.
+    only_direction : float or None
+        +1 or -1 where no reading is under load in the other direction.
     """
 
     datum_deg: float
@@ -53,6 +55,7 @@ class Flanks:
     loaded_nm: float
     loaded_scored_nm: float
     turned: TurnedPlay | None = None
+    only_direction: float | None = None
 
     def at(
         self, torque: Floats, angle: Floats, scored: Flags | None = None
@@ -92,6 +95,12 @@ class Flanks:
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
         contact = loaded | (depth < margin)
+        # Where no torque loads the other flank, what lies far beyond it is a law that is curved,
+        # and no shaft that stands against it.
+        beyond = depth[(side != sign) & ~loaded]
+        curved = len(beyond) > 0 and float(np.median(beyond)) < -margin
+        if curved and self.only_direction is not None:
+            side[sign == self.only_direction] = self.only_direction
         return side, contact & ~_on_the_way(depth, contact, loaded)
 
 
@@ -175,4 +184,7 @@ def find_flanks(
     turned = turned_play(compliance * torque, angle, sign * loaded)
     if turned is not None:
         datum, play = turned.datum_deg, turned.free_play_deg
-    return Flanks(datum, compliance, max(play, 0.0), width, threshold, scored_threshold, turned)
+    only = None if both or not np.any(loaded) else float(sign[loaded][0])
+    return Flanks(
+        datum, compliance, max(play, 0.0), width, threshold, scored_threshold, turned, only
+    )

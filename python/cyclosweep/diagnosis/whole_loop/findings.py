@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.whole_loop.staircase_found import (
     staircase,
 )
 from cyclosweep.result import Finding
+from cyclosweep.result.calibration_words import HIDDEN
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.elastic_law import elastic_law
 
@@ -168,7 +169,7 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     Finding
     """
     if hidden is not None:
-        return _finding("play", f"Not reported, as friction hides it: {hidden}.")
+        return _finding("play", f"Not reported, {HIDDEN}: {hidden}.")
     if problem.one_sided:
         return _finding("play", "Not reported: only one flank was loaded.")
     dead = 2.0 * forecast.model.free_play_deg

@@ -10,6 +10,8 @@ from cyclosweep.simulation.effects.history import Floats, History
 
 STOPS = (0.06, 0.5)
 """Least and largest load of a stop over the largest load."""
+LEAST_OTHER = 0.1
+"""Load of the less loaded direction over that of the other, from which the two can be compared."""
 
 
 class LoadAsymmetry(Effect):
@@ -38,7 +40,9 @@ class LoadAsymmetry(Effect):
 
     def untestable(self, history: History) -> str | None:
         """Need both directions."""
-        if np.all(history.side > 0) or np.all(history.side < 0):
+        ends = max(history.applied_nm.max(), 0.0), max(-history.applied_nm.min(), 0.0)
+        one_flank = np.all(history.side > 0) or np.all(history.side < 0)
+        if one_flank or min(ends) < LEAST_OTHER * max(ends):
             return "only one direction was loaded, so the two cannot be compared"
         return super().untestable(history)
 

@@ -1,0 +1,119 @@
+"""What loops of devices that are no cycloidal drives showed to be wrong in answers.
+
+One direction of load, few readings whose mismatch is as slow as the whole recording, and sentences
+that said different things of the same recording.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
+from cyclosweep.diagnosis.identify_effects import FEWEST_PIECES, is_error_of_model, pieces
+from cyclosweep.diagnosis.prepare.flanks import find_flanks
+from cyclosweep.diagnosis.remainder import no_larger_than_left
+from cyclosweep.report.summary import summary_of
+from cyclosweep.result import (
+    Answer,
+    Explained,
+    Finding,
+    FoundEffect,
+    Mismatch,
+    Remainder,
+    Repair,
+    Size,
+)
+from cyclosweep.result.statement import statement_of
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.effects.history import Flags
+from cyclosweep.simulation.model import EffectValue
+from tests.support.arrays import Floats
+from tests.support.searches import search_of
+from tests.unit.test_flanks import Line
+from tests.unit.test_statement import CALIBRATED
+
+LOAD = np.r_[np.linspace(0.7, 40.0, 60), np.linspace(40.0, 0.7, 60)]
+SLOW = 0.998
+
+
+def sides(torque: Floats, angle: Floats, play: float) -> tuple[Floats, Flags]:
+    line = Line(free_play_deg=play)
+    return find_flanks(torque, angle, line).at(torque, angle)
+
+
+def test_a_curved_law_in_one_direction_stands_against_one_flank() -> None:
+    # Softer at small loads: there the angle lies far beyond the other end of a small play.
+    angle = 0.02 + 2.7 * LOAD - 12.0 * np.exp(-LOAD / 4.0)
+    side, contact = sides(LOAD, angle, 0.02)
+    assert np.all(side == 1.0)
+    assert np.all(contact)
+
+
+def test_a_shaft_that_was_turned_through_its_play_stands_against_the_other_flank() -> None:
+    light = np.full(20, 0.05)
+    torque = np.r_[light, LOAD]
+    angle = np.r_[-28.0 + 2.7 * light, 28.0 + 2.7 * LOAD]
+    side, _ = sides(torque, angle, 28.0)
+    np.testing.assert_array_equal(side, np.r_[np.full(20, -1.0), np.ones(len(LOAD))])
+
+
+@pytest.mark.parametrize(("share", "shown"), [(0.05, False), (0.3, True)])
+def test_a_side_load_asks_for_load_in_both_directions(share: float, shown: bool) -> None:
+    history = search_of().problem.history
+    torque = np.where(history.applied_nm < 0.0, share * history.applied_nm, history.applied_nm)
+    reason = find("load_asymmetry").untestable(replace(history, applied_nm=torque))
+    assert (reason is None) == shown
+
+
+def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_model() -> None:
+    large = EffectValue("creep", {"lag_s": 20.0}, (6.0,))
+    search = search_of(large)
+    flexible = flexible_basis(search.problem, search.library)
+    rows = len(search.noise.gap)
+    slow = replace(search.noise, best_correlation=1.0 - 1.0 / rows, structured=False, step_deg=0.0)
+    search.noise = slow
+    assert pieces(slow) < FEWEST_PIECES
+    assert is_error_of_model(search, flexible)
+    search.noise = replace(slow, best_correlation=0.9)
+    assert not is_error_of_model(search, flexible)
+    nothing = search_of()
+    nothing.noise = replace(slow, gap=nothing.noise.gap)
+    assert not is_error_of_model(nothing, flexible_basis(nothing.problem, nothing.library))
+
+
+def test_what_is_left_is_no_larger_than_the_largest_residual() -> None:
+    fitted = search_of(EffectValue("creep", {"lag_s": 20.0}, (2.0,))).baseline.fit
+    left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
+    largest = float(np.abs(left).max())
+    huge = Remainder(shape="slow drift", place="over the recording", size_deg=9.0 * largest)
+    assert no_larger_than_left(huge, fitted).size_deg == largest
+    small = replace(huge, size_deg=0.5 * largest)
+    assert no_larger_than_left(small, fitted) == small
+
+
+FRICTION = FoundEffect(name="friction_hysteresis", size_deg=Size(estimate=3.0, ci95=(2.8, 3.2)))
+UNKNOWN = Answer(
+    verdict="UNKNOWN_PHYSICS",
+    mismatch=Mismatch(p_value=0.001),
+    effects=(FRICTION,),
+    explained=Explained(share=0.5, ci95=(0.4, 0.6)),
+    repaired=Repair(parameters=CALIBRATED, rmse_deg=0.2),
+    unknown=Remainder(shape="loop of constant width", place="all along", size_deg=1.5),
+)
+
+
+def test_a_compliance_that_friction_hides_is_not_compared_with_nominal() -> None:
+    assert "against nominal" in statement_of(UNKNOWN)
+    hidden = Finding(topic="play", text="Not reported, as friction hides it: it takes 73 %.")
+    text = statement_of(replace(UNKNOWN, findings=(hidden,)))
+    assert "against nominal" not in text
+    assert "friction hides compliance and play" in text
+
+
+def test_the_summary_names_what_stands_in_for_what_is_left() -> None:
+    assert "no listed effect explains" in summary_of(UNKNOWN)
+    repaired = replace(UNKNOWN.repaired, stand_ins=("overload_softening",))
+    text = summary_of(replace(UNKNOWN, repaired=repaired))
+    assert "no listed effect explains" not in text
+    assert "behaves like overload softening" in text
