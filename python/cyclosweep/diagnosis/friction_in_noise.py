@@ -21,8 +21,11 @@ from cyclosweep.diagnosis.prepare.noise_estimate import as_model_error
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.history import Floats
 
-SLOW = 0.6
-"""Autocorrelation of the noise from which friction is looked for in it."""
+SLOW = 0.3
+"""Autocorrelation of the noise from which friction is looked for in it,"""
+HEAVY = 5.0
+"""and the degrees of freedom of its tails up to which it is, too: a law of friction that the
+flexible model misses leaves a few large errors after each reversal, which pass for outliers."""
 LOUD = 4.0
 """Error of the calibrated model, over what rows differ by, from which it is."""
 FAR_LIKELIER = 100.0
@@ -55,7 +58,8 @@ def without_hidden_friction(
         The friction that was taken for noise.
     """
     noise, problem, library = search.noise, search.problem, search.library
-    if noise.structured or noise.best_correlation < SLOW or noise.step_deg > 0:
+    white = noise.best_correlation < SLOW and noise.tail > HEAVY
+    if noise.structured or white or noise.step_deg > 0:
         return search, flexible, None
     little = model_error_noise(problem, noise, flexible)
     if search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
