@@ -8,6 +8,8 @@ import pytest
 
 import cyclosweep as cs
 import cyclosweep.diagnosis.identify_effects as identify_effects
+from cyclosweep.diagnosis import friction_in_noise
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
@@ -18,6 +20,7 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import freer_where_it_pays
 from cyclosweep.simulation.effects import effects
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep_challenge.scoreboard.made import Recipe, make
+from tests.support.searches import search_of as calibrated_search
 
 DRIVE = cs.Drive.reference_87()
 SHAPE = {"slip_deg": 4.0, "scatter": 0.6, "skew": 0.5}
@@ -110,3 +113,24 @@ def test_whole_loops_are_fitted_with_friction_that_forgets_only_where_it_does(
     assert ("forgetting" in freed.terms[0].shape) == bool(forgetting)
     if forgetting:
         assert freed.error_deg < 0.7 * usual.error_deg
+
+
+@pytest.mark.parametrize(
+    ("correlation", "tail", "looked_for"),
+    [(0.45, np.inf, True), (0.1, 3.0, True), (0.1, np.inf, False), (0.1, 12.0, False)],
+)
+def test_friction_is_looked_for_in_noise_that_is_slow_or_has_heavy_tails(
+    correlation: float, tail: float, looked_for: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried: list[Search] = []
+
+    def capture(search: Search, _: object) -> None:
+        tried.append(search)
+
+    monkeypatch.setattr(friction_in_noise, "friction_first", capture)
+    search = calibrated_search(EffectValue("creep", {"lag_s": 20.0}, (6.0,)))
+    flexible = flexible_basis(search.problem, search.library)
+    search.noise = replace(search.noise, best_correlation=correlation, tail=tail)
+    found = friction_in_noise.without_hidden_friction(search, flexible)
+    assert found == (search, flexible, None)
+    assert (len(tried) > 0) == looked_for

@@ -5,9 +5,11 @@ import pytest
 from scipy.stats import norm
 
 import cyclosweep as cs
-from cyclosweep.simulation.effects import effects
+from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.effects.base import Shape
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.model import EffectValue
+from tests.support.searches import search_of
 from tests.unit.test_effects import history
 
 BY_NAME = {effect.name: effect for effect in effects()}
@@ -180,3 +182,14 @@ def test_a_side_load_is_no_tilted_dial(programme: tuple[Floats, Floats]) -> None
     torque, run = programme
     found = made(2.0 * (np.abs(torque) / TOP) ** 2, torque, run)
     assert [effect["name"] for effect in found.effects] == ["load_asymmetry"]
+
+
+@pytest.mark.parametrize("exponent", [5.0, 8.0])
+def test_softening_by_ramberg_and_osgood_is_within_the_library(exponent: float) -> None:
+    (power,) = (each for each in find("overload_softening").shape_parameters if not each.unit)
+    assert power.lower <= exponent <= power.upper
+    shape = {"onset_nm": 0.0, "power": exponent}
+    search = search_of(EffectValue("overload_softening", shape, (2.0 / 3.1**exponent,)))
+    best = search.extend(search.baseline, "overload_softening")
+    assert best is not None
+    assert search.suffices(best)

@@ -19,7 +19,7 @@ from cyclosweep.diagnosis.identify.naming import names_that_hold
 from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
-from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
+from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger, without_small_laws
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
@@ -215,6 +215,19 @@ def test_bounds_of_a_structure_are_counted_by_its_own_noise() -> None:
         return next(each.estimate_deg for each in bounds if each.name == "contact_stiffening")
 
     assert estimate(wider) == pytest.approx(estimate(search.baseline.fit), rel=0.2)
+
+
+def test_a_law_with_little_evidence_beside_model_error_is_no_error_of_a_larger_one() -> None:
+    # Positions have nothing in common with loops; little evidence is not taken up by them.
+    shifted = EffectValue("transmission_error", {"order_1": 1.0}, (0.25, 0.1))
+    sliding = friction(5.0)
+    search = search_of(sliding, shifted)
+    size = sliding.amplitudes[0]
+    terms = [Term(find(each.name), dict(each.shape), None, size) for each in (sliding, shifted)]
+    for factor in (1.0, 6.0):
+        noise = search.noise.with_model_error(factor)
+        found = fit(search.problem, noise, terms, search.baseline.fit, rounds=20)
+        assert errors_of_larger(found) == frozenset()
 
 
 def test_two_look_alikes_of_one_class_are_one_curve() -> None:

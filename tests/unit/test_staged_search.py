@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     FAINT,
     LEAST_OF_MISMATCH,
+    offset_count,
     visibility,
     without_model_error,
 )
@@ -221,3 +222,13 @@ def test_an_odd_and_an_even_curve_show_more_together_than_either_alone() -> None
     alone = [found.evidence for found in each.values()]
     assert min(alone) > 20.0
     assert together > max(alone) + 0.5 * min(alone)
+
+
+def test_a_position_that_moves_within_runs_gives_more_offsets_than_runs() -> None:
+    history = search_of().problem.history
+    assert history.crank_deg is not None
+    still = history.with_state(crank_deg=90.0 * history.run)
+    moving = history.with_state(crank_deg=90.0 * history.run + 45.0 * (history.sense > 0))
+    assert offset_count(still, "transmission_error") == history.run_count
+    assert offset_count(moving, "transmission_error") == 2 * history.run_count
+    assert offset_count(moving, "datum_drift") == history.run_count

@@ -291,9 +291,23 @@ class LawBeside:
         value = law_evidence(residual, law, charged, classes.freedom)
         return cls(known, law, residual, charged, value)
 
-    def is_replaced(self, classes: ClassColumns, name: str) -> bool:
-        """Whether little is left of the law beside all columns of a class."""
+    def is_replaced(self, classes: ClassColumns, name: str, least: float = LEAST_LEFT) -> bool:
+        """Whether little is left of the law beside all columns of a class.
+
+        Parameters
+        ----------
+        classes : ClassColumns
+            Columns of every class.
+        name : str
+            Name of the class.
+        least : float
+            Log evidence that has to be left in any case [nat].
+
+        Returns
+        -------
+        bool
+        """
         beside = classes.beside(self.known, name)
         law, left = (each - beside @ (beside.T @ each) for each in (self.law, self.residual))
         remains = law_evidence(left, law, self.charged, classes.freedom)
-        return remains < max(LEAST_LEFT, LEFT_BESIDE * self.evidence)
+        return remains < max(least, LEFT_BESIDE * self.evidence)

@@ -16,6 +16,7 @@ from cyclosweep.diagnosis.identify.class_check import most_missed
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    LEAST_LEFT,
     LEAST_OF_CLASS,
     LawBeside,
     LawCheck,
@@ -27,6 +28,8 @@ from cyclosweep.simulation.effects.history import Floats
 
 LOUD = 100.0
 """Signal-to-noise ratio of the larger one from which its law's error counts."""
+HALF = 0.5
+"""Share of the evidence of a law of little evidence that has to be left beside a class."""
 ALIKE = 0.8
 """Correlation of the twist by two laws of a class from which both together make one curve, whatever
 their sizes; loops of friction are told apart by how they open."""
@@ -99,7 +102,10 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
 
     def is_replaced(k: int) -> bool:
         law = LawBeside.of(fitted, classes, [k])
-        return any(law.is_replaced(classes, name) for name in larger[k] & set(classes.columns))
+        # Beside a large model error a law has little evidence: that alone does not take it up.
+        least = min(LEAST_LEFT, HALF * law.evidence)
+        known = larger[k] & set(classes.columns)
+        return any(law.is_replaced(classes, name, least) for name in known)
 
     return frozenset(fitted.terms[k].name for k in small if is_replaced(k))
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
@@ -41,7 +41,7 @@ from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
-from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.effects.history import Floats, History
 
 MODEL_ERROR_SHARE = 0.3
 """Model error over what a stage has to explain, as root mean squares."""
@@ -334,6 +334,27 @@ def without_model_error(
     return tuple(kept)
 
 
+def offset_count(history: History, name: str) -> int:
+    """Number of offsets that a recording has for a law to follow.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+    name : str
+        Name of the effect: one that goes with the position has an offset for each position of a
+        run, the others one for each run.
+
+    Returns
+    -------
+    int
+    """
+    if history.crank_deg is None or POSITION not in CLASSES_OF_EFFECT[name]:
+        return history.run_count
+    place = np.round(history.crank_deg % 360.0)
+    return len(np.unique(np.column_stack([history.run, place]), axis=0))
+
+
 def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
     """Whether a law of run offsets may by chance hold what another one misses of them.
 
@@ -357,6 +378,6 @@ def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float
     """
     offsets = [k for k, term in enumerate(fitted.terms) if term.name in CLASSES_OF_EFFECT]
     counted = sum(amplitude_count(fitted, k) for k in offsets)
-    free = fitted.history.run_count - 1 - counted
+    free = offset_count(fitted.history, fitted.terms[index].name) - 1 - counted
     share = left**2 / max(left**2 + size**2, 1e-300)
     return free <= 0 or share ** (0.5 * free) > BY_CHANCE

@@ -25,7 +25,7 @@ class OverloadSoftening(Effect):
     dense = True
     shape_parameters = (
         Parameter("onset_nm", "N m", "load above which the compliance grows", 0.0, 1e6),
-        Parameter("power", "", "power of the extra twist", 1.0, 3.0),
+        Parameter("power", "", "power of the extra twist", 1.0, 10.0),
     )
     forms = (ShapeForm(("onset_nm", "power")),)
 
