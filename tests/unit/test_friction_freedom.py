@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import t as student_t
 
 import cyclosweep as cs
 import cyclosweep.diagnosis.identify_effects as identify_effects
@@ -15,6 +16,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.diagnosis.whole_loop.usual_loop import freer_where_it_pays
 from cyclosweep.simulation.effects import effects
@@ -134,3 +136,18 @@ def test_friction_is_looked_for_in_noise_that_is_slow_or_has_heavy_tails(
     found = friction_in_noise.without_hidden_friction(search, flexible)
     assert found == (search, flexible, None)
     assert (len(tried) > 0) == looked_for
+
+
+@pytest.mark.parametrize("freedom", [2.6, 3.2, 4.0, 7.0])
+def test_the_likelihood_of_noise_is_that_of_its_rows(freedom: float) -> None:
+    # By the standard deviation alone, which belongs to the tails, rows of lighter tails are far
+    # likelier.
+    rows = 3_000
+    left = 0.05 * student_t(freedom).rvs(rows, random_state=7)
+    basis = np.ones((rows, 1)) / np.sqrt(rows)
+    gap, weight = np.zeros(rows), np.ones(rows)
+    noise = estimate_noise(left, basis, gap, 0.0, weight)
+    scale = noise.sigma_deg * np.sqrt((noise.tail - 2.0) / noise.tail)
+    exact = float(student_t(noise.tail, scale=scale).logpdf(left - left.mean()).sum())
+    constant = 0.5 * rows * np.log(2.0 * np.pi * np.e)
+    assert friction_in_noise.log_likelihood(noise) - constant == pytest.approx(exact, abs=6.0)

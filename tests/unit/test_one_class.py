@@ -230,6 +230,19 @@ def test_a_law_with_little_evidence_beside_model_error_is_no_error_of_a_larger_o
         assert errors_of_larger(found) == frozenset()
 
 
+def test_a_law_with_little_evidence_that_a_larger_class_holds_is_its_error() -> None:
+    # A stiffening, and pins that close at one load, are both odd curves of the torque.
+    stiff = EffectValue("contact_stiffening", {"turn_nm": 4.0}, (6.0,))
+    search = search_of(stiff)
+    law = search.extend(search.baseline, "contact_stiffening")
+    assert law is not None
+    pins = Term(find("clearance_takeup"), {"kink_1_nm": 9.0})
+    for factor in (1.0, 4.0):
+        noise = search.noise.with_model_error(factor)
+        found = fit(search.problem, noise, (*law.fit.terms, pins), law.fit, rounds=20)
+        assert "clearance_takeup" in errors_of_larger(found)
+
+
 def test_two_look_alikes_of_one_class_are_one_curve() -> None:
     search = search_of(EffectValue("clearance_takeup", KINKS, (0.4, 0.4)))
     both = fitted(

@@ -11,6 +11,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.freer_laws import freer_instead_of_others
 from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES
 from cyclosweep.diagnosis.identify.search import Search
@@ -18,6 +19,7 @@ from cyclosweep.diagnosis.identify.staged_search import (
     FAINT,
     LEAST_OF_MISMATCH,
     offset_count,
+    search_in_stages,
     visibility,
     without_model_error,
 )
@@ -26,6 +28,7 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_left, size_of
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import friction
 from tests.support.searches import search_of
 
 CREEP = EffectValue("creep", {"lag_s": 20.0}, (2.0,))
@@ -227,8 +230,31 @@ def test_an_odd_and_an_even_curve_show_more_together_than_either_alone() -> None
 def test_a_position_that_moves_within_runs_gives_more_offsets_than_runs() -> None:
     history = search_of().problem.history
     assert history.crank_deg is not None
-    still = history.with_state(crank_deg=90.0 * history.run)
+    rows = np.ones(len(history), dtype=bool)
+    # Positions on both sides of a whole turn are the same.
+    near = 0.02 * (history.sense > 0) - 0.01
+    still = history.with_state(crank_deg=90.0 * history.run + near)
     moving = history.with_state(crank_deg=90.0 * history.run + 45.0 * (history.sense > 0))
-    assert offset_count(still, "transmission_error") == history.run_count
-    assert offset_count(moving, "transmission_error") == 2 * history.run_count
-    assert offset_count(moving, "datum_drift") == history.run_count
+    steady = history.with_state(crank_deg=np.linspace(0.0, 7_000.0, len(history)))
+    assert offset_count(still, rows, "transmission_error") == history.run_count
+    assert offset_count(moving, rows, "transmission_error") == 2 * history.run_count
+    assert offset_count(moving, history.sense > 0, "transmission_error") == history.run_count
+    assert offset_count(steady, rows, "transmission_error") == history.run_count
+    assert offset_count(moving, rows, "datum_drift") == history.run_count
+
+
+def test_the_noise_beside_what_was_accepted_is_that_of_the_next_stage() -> None:
+    search = search_of(friction(5.0))
+    flexible = flexible_basis(search.problem, search.library)
+    accepted: list[tuple[str, ...]] = []
+
+    def renewed(searched: Search, known: FittedStructure) -> Search:
+        accepted.append(known.names)
+        if len(accepted) > 1:
+            return searched
+        wider = searched.noise.with_sigma(2.0 * search.noise.sigma_deg)
+        return Search(searched.problem, wider, searched.library, searched.seed)
+
+    last = search_in_stages(search, flexible, lambda words: None, None, renewed)
+    assert all("friction_hysteresis" in names for names in accepted)
+    assert last.noise.spread_deg == pytest.approx(2.0 * search.noise.sigma_deg)

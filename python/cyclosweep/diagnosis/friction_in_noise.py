@@ -1,12 +1,13 @@
-"""Friction that a flexible model did not hold, and that was therefore taken for slow noise.
+"""Friction that a flexible model did not hold, and that was therefore taken for noise.
 
 Friction whose presliding is long, or unlike that of the shapes which the flexible model is made of,
 leaves a residual that is large and smooth: an autoregression near one describes it as noise, and
-everything then lies within the noise. A friction of a few parameters that explains most of the
-mismatch is no noise. It is looked for with noise as small as what rows differ by, and believed
-where the recording is far likelier with it and the noise that is then left, or where it leaves
-hardly anything. The likelihood does not see the latter: a drift of a recording of a few independent
-pieces costs next to nothing as noise, however large it is.
+everything then lies within the noise. Abrupt friction leaves large errors after each reversal,
+which pass for outliers. A friction of a few parameters that explains most of the mismatch is no
+noise. It is looked for with noise as small as what rows differ by, and believed where the recording
+is far likelier with it and the noise that is then left, or where it leaves hardly anything. The
+likelihood does not see the latter: a drift of a recording of a few independent pieces costs next to
+nothing as noise, however large it is.
 """
 
 import numpy as np
@@ -73,7 +74,9 @@ def without_hidden_friction(
     if is_far_likelier(slow, noise):
         left = noise_left(problem, beyond)
         return Search(problem, left, library, search.seed), beyond, known
-    if known.rmse_deg < HARDLY_ANYTHING * search.baseline.fit.rmse_deg:
+    # Noise of a long memory costs next to nothing where it is drift; white noise is no drift.
+    little_left = noise.best_correlation >= SLOW
+    if little_left and known.rmse_deg < HARDLY_ANYTHING * search.baseline.fit.rmse_deg:
         return Search(problem, little, library, search.seed), flexible, known
     return search, flexible, None
 
@@ -113,10 +116,11 @@ def is_far_likelier(noise: Noise, other: Noise) -> bool:
     -------
     bool
     """
-    return _log_likelihood(noise) >= _log_likelihood(other) + FAR_LIKELIER
+    return log_likelihood(noise) >= log_likelihood(other) + FAR_LIKELIER
 
 
-def _log_likelihood(noise: Noise) -> float:
+def log_likelihood(noise: Noise) -> float:
     """Log likelihood [nat] of rows of this noise, but for a constant."""
     rows = len(noise.gap)
-    return -rows * float(np.log(noise.sigma_deg)) - 0.5 * noise.log_determinant
+    density = noise.tail_gain - float(np.log(noise.sigma_deg))
+    return rows * density - 0.5 * noise.log_determinant

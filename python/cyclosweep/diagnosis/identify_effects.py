@@ -35,8 +35,8 @@ FEW_PIECES = 5.0
 FEWEST_PIECES = 1.0
 """The same, where what the calibrated model misses is besides"""
 ABOVE_STEPS = 40.0
-"""so many times what rows differ by: noise of an autocorrelation of 0.99 is twelve times as large
-as that, of 0.998 twenty-seven times."""
+"""so many times what rows differ by. Noise alone is less: of an autocorrelation of 0.99 it is
+twelve times as large as that, of 0.998, the largest that is estimated, twenty-seven times."""
 LARGER_THAN_LEFT = 2.0
 """Noise over what a structure leaves, from which it is none: an autoregression near one describes
 the slow errors of a model as noise of any size."""
@@ -98,12 +98,14 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
 
 
 def pieces(noise: Noise) -> float:
-    """Independent pieces of a recording of this noise."""
+    """Independent pieces of a recording of this noise, if it were one run."""
     return len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
 
 
 def is_error_of_model(search: Search, flexible: Floats) -> bool:
-    """Whether what passes for slow noise can only be error of the model.
+    """Whether a large mismatch stands beside noise that no recording tells from error of the model.
+
+    That is the case of a single run, along which the noise hardly changes.
 
     Parameters
     ----------
@@ -117,7 +119,8 @@ def is_error_of_model(search: Search, flexible: Floats) -> bool:
     bool
     """
     noise = search.noise
-    if noise.structured or noise.step_deg > 0 or pieces(noise) >= FEWEST_PIECES:
+    breaks = int(np.count_nonzero(noise.gap <= 0.0)) - 1
+    if noise.structured or noise.step_deg > 0 or pieces(noise) + breaks >= FEWEST_PIECES:
         return False
     steps = model_error_noise(search.problem, noise, flexible).sigma_deg
     return search.baseline.fit.rmse_deg > ABOVE_STEPS * steps

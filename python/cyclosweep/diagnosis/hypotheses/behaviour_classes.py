@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.diagnosis.hypotheses.shape_columns import hats, lapse, rates
+from cyclosweep.diagnosis.hypotheses.shape_columns import hats, lapse, positions, rates
 from cyclosweep.simulation.effects.base import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Floats, History
 
@@ -142,7 +142,7 @@ def _by_state(history: History) -> Iterator[tuple[str, Floats]]:
     """What differs between positions, between runs, and with the temperature."""
     elastic = history.elastic_nm / history.largest_torque_nm
     if history.crank_deg is not None:
-        place = np.round(history.crank_deg % 360.0, 1)
+        place = positions(history.crank_deg)
         places = np.unique(place)
         if FEWEST_STATES <= len(places) <= MOST_POSITIONS:
             one = (place[:, None] == places).astype(np.float64)

@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.hypotheses.shape_columns import (
     hats,
     lapse,
     one_run,
+    positions,
     rates,
     relaxing,
     softer_after,
@@ -308,10 +309,11 @@ def _positions(history: History) -> Iterator[UnnamedShape]:
     """An offset and a compliance of its own for each position of the mesh."""
     if history.crank_deg is None:
         return
-    places = np.unique(np.round(history.crank_deg % 360.0, 1))
+    place = positions(history.crank_deg)
+    places = np.unique(place)
     if not 3 <= len(places) <= 40:
         return
-    which = np.searchsorted(places, np.round(history.crank_deg % 360.0, 1))
+    which = np.searchsorted(places, place)
     one = (which[:, None] == np.arange(len(places))).astype(np.float64)
     if len(places) > 7:
         # With fewer positions the first three orders of the mesh say the same.

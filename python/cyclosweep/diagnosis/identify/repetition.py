@@ -74,7 +74,7 @@ class Repetition:
 
     @property
     def is_known(self) -> bool:
-        """Whether there were two runs to be compared."""
+        """Whether there were two runs of the same loads, long enough to be compared."""
         return self.cells > 0
 
     @property

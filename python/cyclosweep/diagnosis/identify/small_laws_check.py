@@ -28,8 +28,6 @@ from cyclosweep.simulation.effects.history import Floats
 
 LOUD = 100.0
 """Signal-to-noise ratio of the larger one from which its law's error counts."""
-HALF = 0.5
-"""Share of the evidence of a law of little evidence that has to be left beside a class."""
 ALIKE = 0.8
 """Correlation of the twist by two laws of a class from which both together make one curve, whatever
 their sizes; loops of friction are told apart by how they open."""
@@ -102,10 +100,10 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
 
     def is_replaced(k: int) -> bool:
         law = LawBeside.of(fitted, classes, [k])
-        # Beside a large model error a law has little evidence: that alone does not take it up.
-        least = min(LEAST_LEFT, HALF * law.evidence)
-        known = larger[k] & set(classes.columns)
-        return any(law.is_replaced(classes, name, least) for name in known)
+        # Beside a large model error a law has little evidence: that alone does not replace it.
+        faint = law.evidence < 2.0 * LEAST_LEFT
+        replaced = law.is_taken_up if faint else law.is_replaced
+        return any(replaced(classes, name) for name in larger[k] & set(classes.columns))
 
     return frozenset(fitted.terms[k].name for k in small if is_replaced(k))
 

@@ -11,7 +11,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
+    CLASSES_OF_EFFECT,
+    MOST_POSITIONS,
+    POSITION,
+)
+from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
@@ -41,14 +46,14 @@ from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
-from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 MODEL_ERROR_SHARE = 0.3
 """Model error over what a stage has to explain, as root mean squares."""
 FAINT = 30.0
 """Signal-to-noise ratio up to which a mismatch is judged against the noise alone."""
 MOST_STAGES = 8
-"""Stages of a search."""
+"""Stages of a search: two for each of four effects, as what was accepted may be given up again."""
 LEAST_OF_MISMATCH = 0.04
 """Size from which an effect is told from the model error of the others, as a share of the mismatch
 of the calibrated model."""
@@ -138,7 +143,7 @@ def search_in_stages(
         return fit(searched.problem, searched.noise, terms, near, rounds=CONVERGED)
 
     rivals: list[tuple[Candidate, float]] = []
-    last = searched
+    last = first = searched
     fitted: FittedStructure = searched.baseline.fit
     mismatch = fitted.rmse_deg
     factor = factor_of(fitted)
@@ -155,6 +160,7 @@ def search_in_stages(
         better_known = renewed(searched, fitted) if accepted else searched
         if better_known is not searched:
             searched = better_known
+            rivals.clear()
             fitted = refitted(accepted, fitted)
             accepted = fitted.terms
         search = _stage(searched, flexible, fitted)
@@ -180,6 +186,8 @@ def search_in_stages(
         needed = accepted if shed else still_needed(search, best, accepted)
         if len(needed) < len(accepted):
             # What was taken first may have stood in for what was found since.
+            if not needed:
+                searched = first
             shed, last, fitted = True, searched, searched.baseline.fit
             rivals.clear()
             if needed:
@@ -334,16 +342,18 @@ def without_model_error(
     return tuple(kept)
 
 
-def offset_count(history: History, name: str) -> int:
+def offset_count(history: History, fitted: Flags, name: str) -> int:
     """Number of offsets that a recording has for a law to follow.
 
     Parameters
     ----------
     history : History
         Load history of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
     name : str
         Name of the effect: one that goes with the position has an offset for each position of a
-        run, the others one for each run.
+        run, unless it moves steadily, the others one for each run.
 
     Returns
     -------
@@ -351,8 +361,10 @@ def offset_count(history: History, name: str) -> int:
     """
     if history.crank_deg is None or POSITION not in CLASSES_OF_EFFECT[name]:
         return history.run_count
-    place = np.round(history.crank_deg % 360.0)
-    return len(np.unique(np.column_stack([history.run, place]), axis=0))
+    place = positions(history.crank_deg[fitted])
+    if len(np.unique(place)) > MOST_POSITIONS:
+        return history.run_count
+    return len(np.unique(np.column_stack([history.run[fitted], place]), axis=0))
 
 
 def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
@@ -378,6 +390,7 @@ def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float
     """
     offsets = [k for k, term in enumerate(fitted.terms) if term.name in CLASSES_OF_EFFECT]
     counted = sum(amplitude_count(fitted, k) for k in offsets)
-    free = offset_count(fitted.history, fitted.terms[index].name) - 1 - counted
+    name = fitted.terms[index].name
+    free = offset_count(fitted.history, fitted.problem.fitted, name) - 1 - counted
     share = left**2 / max(left**2 + size**2, 1e-300)
     return free <= 0 or share ** (0.5 * free) > BY_CHANCE

@@ -11,6 +11,10 @@ from cyclosweep.simulation.effects.history import Flags, Floats
 LOADED = 0.25
 """Share of the largest torque beyond which a flank is taken to be in contact."""
 
+LIGHT = 0.2
+"""Share of that torque up to which a shaft may stand where it was turned to by hand: a twentieth of
+the largest torque is more than the zero of a torque sensor is off."""
+
 FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
@@ -95,12 +99,13 @@ class Flanks:
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
         contact = loaded | (depth < margin)
-        # Where no torque loads the other flank, what lies far beyond it is a law that is curved,
-        # and no shaft that stands against it.
-        beyond = depth[(side != sign) & ~loaded]
-        curved = len(beyond) > 0 and float(np.median(beyond)) < -margin
-        if curved and self.only_direction is not None:
-            side[sign == self.only_direction] = self.only_direction
+        # A shaft may have been turned against the other flank without load. Where readings lie
+        # there under a torque that pushes it away, the law is curved and all are in contact.
+        one_way = sign == self.only_direction if self.only_direction is not None else loaded
+        beyond = np.abs(torque)[one_way & (side != sign) & ~loaded]
+        if len(beyond) and float(np.median(beyond)) > LIGHT * self.loaded_nm:
+            side[one_way] = sign[one_way]
+            return side, contact | one_way
         return side, contact & ~_on_the_way(depth, contact, loaded)
 
 

@@ -53,6 +53,9 @@ class Noise:
     white_share : float
         Share of a row's variance that is new in every row, as rounding is, beside the part that
         correlates from row to row.
+    tail_gain : float
+        Log density of a row, in the mean, beyond that of Gaussian rows of this ``sigma_deg`` [nat]:
+        what the tails gain.
     """
 
     sigma_deg: float
@@ -68,6 +71,7 @@ class Noise:
     model_error_factor: float = 1.0
     by_rows: bool = False
     white_share: float = 0.0
+    tail_gain: float = 0.0
 
     @property
     def plain(self) -> "Noise":

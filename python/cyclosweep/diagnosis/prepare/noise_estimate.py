@@ -90,7 +90,7 @@ def estimate_noise(
     if resolution > 0 and not averaged:
         rough = noise_with_rounding(clean, basis, rough, resolution) or rough
         best = rough.best_correlation
-    sigma, tail, moments = _size(rough, left, basis, freedom)
+    sigma, tail, moments, gain = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     if resolution > 0 and not averaged:
         if sigma**2 < 0.165 * resolution**2 and count >= 60:
@@ -98,14 +98,15 @@ def estimate_noise(
             if coarse is not None:
                 return coarse
         sigma = max(sigma, resolution / np.sqrt(12.0))
+    found = replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments, tail_gain=gain)
     if all_noise:
-        return replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments)
+        return found
     white = rough.whiten(left)
     rounded = rough.white_share > 0.0
     unsteady = best > MODEL_ERROR and unsteadiness(white, loud_only=rounded) > UNSTEADY
     if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
         return as_model_error(rough, left, resolution, float(np.ptp(angle)))
-    return replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments)
+    return found
 
 
 def as_model_error(noise: Noise, left: Floats, resolution: float, travel: float) -> Noise:
@@ -235,8 +236,8 @@ def _coarse_noise(
 
 def _size(
     noise: Noise, left: Floats, basis: Floats, freedom: float
-) -> tuple[float, float, tuple[float, float]]:
-    """Size of the whitened noise, the tail of its distribution, slope and square of its score.
+) -> tuple[float, float, tuple[float, float], float]:
+    """Size of the whitened noise, its tail, slope and square of its score, gain of the tail.
 
     Parameters
     ----------
@@ -251,8 +252,9 @@ def _size(
 
     Returns
     -------
-    sigma, tail, moments
-        Standard deviation [deg], degrees of freedom, mean slope and mean square of the score.
+    sigma, tail, moments, gain
+        Standard deviation [deg], degrees of freedom, mean slope and mean square of the score, log
+        density of a row beyond that of Gaussian rows of this standard deviation [nat].
     """
     white = noise.whiten(left)
     inner = orthonormal(noise.whiten(basis))
@@ -260,7 +262,7 @@ def _size(
     count = len(white)
     sigma = float(np.sqrt(white @ white / freedom))
     if count < 100 or sigma <= 0:
-        return max(sigma, 1e-9), np.inf, (1.0, 1.0)
+        return max(sigma, 1e-9), np.inf, (1.0, 1.0), 0.0
     inflate = np.sqrt(count / freedom)
     scale = 1.4826 * float(np.median(np.abs(white))) * inflate
     best_tail, best_value, best_sigma = np.inf, -np.inf, sigma
@@ -281,9 +283,11 @@ def _size(
         if value > best_value:
             best_tail, best_value, best_sigma = tail, value, trial
     if np.isinf(best_tail):
-        return best_sigma, best_tail, (1.0, 1.0)
+        return best_sigma, best_tail, (1.0, 1.0), 0.0
     score, slope = student_score(white * inflate / best_sigma, best_tail)
-    return best_sigma, best_tail, (float(np.mean(slope)), float(np.mean(score**2)))
+    gaussian = -float(np.log(best_sigma / inflate)) - 0.5 * float(np.log(2 * np.pi * np.e))
+    gain = best_value / count - gaussian
+    return best_sigma, best_tail, (float(np.mean(slope)), float(np.mean(score**2))), gain
 
 
 def _scoring_step(angle: Floats, basis: Floats, mean: Floats, sigma: float, step: float) -> Floats:

@@ -11,7 +11,8 @@ from cyclosweep.simulation.effects.history import Floats, History
 STOPS = (0.06, 0.5)
 """Least and largest load of a stop over the largest load."""
 LEAST_OTHER = 0.1
-"""Load of the less loaded direction over that of the other, from which the two can be compared."""
+"""Load of the less loaded direction over that of the other, from which the two can be compared:
+below it, an even curve and an odd one differ on a tenth of the range."""
 
 
 class LoadAsymmetry(Effect):
@@ -39,11 +40,13 @@ class LoadAsymmetry(Effect):
     forms = (ShapeForm(("power",)), ShapeForm(("limit_nm",)), ShapeForm(("orders",)))
 
     def untestable(self, history: History) -> str | None:
-        """Need both directions."""
+        """Need loads in both directions."""
         ends = max(history.applied_nm.max(), 0.0), max(-history.applied_nm.min(), 0.0)
         one_flank = np.all(history.side > 0) or np.all(history.side < 0)
         if one_flank or min(ends) < LEAST_OTHER * max(ends):
-            return "only one direction was loaded, so the two cannot be compared"
+            return (
+                "the other direction was loaded to less than a tenth, so the two cannot be compared"
+            )
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
