@@ -31,8 +31,6 @@ LEAST_LEFT = 3.0
 """Log evidence that has to be left of a law beside a class that explains more [nat]."""
 LEFT_BESIDE = 0.1
 """The same as a share of the law's evidence."""
-MOST_TAKEN_UP = 0.5
-"""Share of a law's mean square that has to be left beside a class, where it has little evidence."""
 BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
 """Classes of an effect whose twist has an odd and an even part, as an eccentric dial's."""
 MOST_GROWN = 1.5
@@ -293,18 +291,23 @@ class LawBeside:
         value = law_evidence(residual, law, charged, classes.freedom)
         return cls(known, law, residual, charged, value)
 
-    def is_taken_up(self, classes: ClassColumns, name: str) -> bool:
-        """Whether all columns of a class leave less than half of the law's mean square.
+    def is_replaced(self, classes: ClassColumns, name: str, least: float = LEAST_LEFT) -> bool:
+        """Whether little is left of the law beside all columns of a class.
 
-        For laws of so little evidence that what is left of it says nothing.
+        Parameters
+        ----------
+        classes : ClassColumns
+            Columns of every class.
+        name : str
+            Name of the class.
+        least : float
+            Log evidence that has to be left in any case [nat].
+
+        Returns
+        -------
+        bool
         """
-        beside = classes.beside(self.known, name)
-        left = self.law - beside @ (beside.T @ self.law)
-        return float(left @ left) < MOST_TAKEN_UP * float(self.law @ self.law)
-
-    def is_replaced(self, classes: ClassColumns, name: str) -> bool:
-        """Whether little is left of the law beside all columns of a class."""
         beside = classes.beside(self.known, name)
         law, left = (each - beside @ (beside.T @ each) for each in (self.law, self.residual))
         remains = law_evidence(left, law, self.charged, classes.freedom)
-        return remains < max(LEAST_LEFT, LEFT_BESIDE * self.evidence)
+        return remains < max(least, LEFT_BESIDE * self.evidence)

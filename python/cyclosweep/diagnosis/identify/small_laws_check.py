@@ -28,6 +28,8 @@ from cyclosweep.simulation.effects.history import Floats
 
 LOUD = 100.0
 """Signal-to-noise ratio of the larger one from which its law's error counts."""
+HALF = 0.5
+"""Share of the evidence of a law of little evidence that has to be left beside a class."""
 ALIKE = 0.8
 """Correlation of the twist by two laws of a class from which both together make one curve, whatever
 their sizes; loops of friction are told apart by how they open."""
@@ -99,11 +101,12 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
     classes = ClassColumns.of(fitted)
 
     def is_replaced(k: int) -> bool:
-        law = LawBeside.of(fitted, classes, [k])
+        law, known = LawBeside.of(fitted, classes, [k]), larger[k] & set(classes.columns)
+        if law.evidence <= 0.0:
+            return bool(known)
         # Beside a large model error a law has little evidence: that alone does not replace it.
-        faint = law.evidence < 2.0 * LEAST_LEFT
-        replaced = law.is_taken_up if faint else law.is_replaced
-        return any(replaced(classes, name) for name in larger[k] & set(classes.columns))
+        least = min(LEAST_LEFT, HALF * law.evidence)
+        return any(law.is_replaced(classes, name, least) for name in known)
 
     return frozenset(fitted.terms[k].name for k in small if is_replaced(k))
 
