@@ -45,7 +45,8 @@ class LoadAsymmetry(Effect):
         one_flank = np.all(history.side > 0) or np.all(history.side < 0)
         if one_flank or min(ends) < LEAST_OTHER * max(ends):
             return (
-                "the other direction was loaded to less than a tenth, so the two cannot be compared"
+                "one direction was loaded to less than a tenth of the other, so the two cannot be "
+                "compared"
             )
         return super().untestable(history)
 
