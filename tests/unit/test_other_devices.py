@@ -15,7 +15,7 @@ from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.effects_found import explanations
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.verdict import Decision
-from cyclosweep.diagnosis.identify_effects import FEWEST_PIECES, is_error_of_model, pieces
+from cyclosweep.diagnosis.identify_effects import FEWEST_PIECES, instead_of_slow_noise, pieces
 from cyclosweep.diagnosis.prepare.flanks import find_flanks
 from cyclosweep.diagnosis.remainder import no_larger_than_left
 from cyclosweep.report.summary import summary_of
@@ -83,7 +83,7 @@ def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_mode
     search.noise = replace(search.noise, best_correlation=slow, gap=one_run)
     slow_noise = search.noise
     assert pieces(slow_noise) < FEWEST_PIECES
-    assert is_error_of_model(search, flexible)
+    assert instead_of_slow_noise(search, flexible) is not None
     # Other runs have noise of their own, noise of many pieces is known, and without a mismatch
     # nothing speaks against slow noise.
     for changed in (
@@ -91,10 +91,11 @@ def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_mode
         replace(slow_noise, best_correlation=0.9),
     ):
         search.noise = changed
-        assert not is_error_of_model(search, flexible)
+        assert instead_of_slow_noise(search, flexible) is None
     nothing = search_of()
     nothing.noise = replace(nothing.noise, best_correlation=slow, gap=one_run)
-    assert not is_error_of_model(nothing, flexible_basis(nothing.problem, nothing.library))
+    flexible = flexible_basis(nothing.problem, nothing.library)
+    assert instead_of_slow_noise(nothing, flexible) is None
 
 
 def test_what_is_left_is_no_larger_than_the_largest_residual() -> None:

@@ -64,8 +64,8 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if flexible is None:
         flexible = flexible_basis(search.problem, search.library, None)
     search, flexible, friction = without_hidden_friction(search, flexible)
-    if is_error_of_model(search, flexible):
-        error = model_error_noise(search.problem, search.noise, flexible)
+    error = instead_of_slow_noise(search, flexible)
+    if error is not None:
         search = Search(search.problem, error, search.library, search.seed)
     calibrated = search.noise
     mismatch = visibility(search.baseline.fit, calibrated, flexible)
@@ -102,10 +102,10 @@ def pieces(noise: Noise) -> float:
     return len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
 
 
-def is_error_of_model(search: Search, flexible: Floats) -> bool:
-    """Whether a large mismatch stands beside noise that no recording tells from error of the model.
+def instead_of_slow_noise(search: Search, flexible: Floats) -> Noise | None:
+    """Noise beside error of the model, where a large mismatch stands beside slow noise.
 
-    That is the case of a single run, along which the noise hardly changes.
+    In a single run, along which the noise hardly changes, nothing tells it from error of the model.
 
     Parameters
     ----------
@@ -116,14 +116,16 @@ def is_error_of_model(search: Search, flexible: Floats) -> bool:
 
     Returns
     -------
-    bool
+    Noise or None
+        None where the noise is known, or the mismatch is small.
     """
     noise = search.noise
     breaks = int(np.count_nonzero(noise.gap <= 0.0)) - 1
     if noise.structured or noise.step_deg > 0 or pieces(noise) + breaks >= FEWEST_PIECES:
-        return False
-    steps = model_error_noise(search.problem, noise, flexible).sigma_deg
-    return search.baseline.fit.rmse_deg > ABOVE_STEPS * steps
+        return None
+    steps = model_error_noise(search.problem, noise, flexible)
+    large = search.baseline.fit.rmse_deg > ABOVE_STEPS * steps.sigma_deg
+    return steps if large else None
 
 
 def _by_size(

@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.identify.testability import size_left, size_of
 from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
+from cyclosweep.simulation.effects.history import Floats
 
 STRONG_WAVE = 5.0
 """Log evidence from which a sinusoid in the residual is worth naming."""
@@ -70,8 +71,13 @@ def no_larger_than_left(found: Remainder, named: FittedStructure) -> Remainder:
     -------
     Remainder
     """
-    left = (named.problem.angle_deg - named.mean_deg)[named.problem.fitted]
-    return replace(found, size_deg=min(found.size_deg, float(np.abs(left).max())))
+    largest = float(np.abs(_residual_deg(named)).max())
+    return replace(found, size_deg=min(found.size_deg, largest))
+
+
+def _residual_deg(fitted: FittedStructure) -> Floats:
+    """Measured less modelled twist of the fitted rows [deg]."""
+    return np.asarray((fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted])
 
 
 def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | None:
@@ -202,7 +208,7 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     Remainder
     """
     fitted = accepted.fit
-    left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
+    left = _residual_deg(fitted)
     shape, place = "misfit of the model", "which does not repeat from run to run"
     if repeats.is_physics or repeats.order is not None:
         shape, place = "staircase tied to the position of the mesh", f"repeating {repeats.in_words}"

@@ -16,19 +16,21 @@ HIDDEN_BY_FRICTION = (
 )
 
 
-def is_hidden_by_friction(findings: Sequence[Finding]) -> bool:
-    """Whether friction hides both play and stiffness of the drive.
+def is_hidden_by_friction(findings: Sequence[Finding], topic: str) -> bool:
+    """Whether a finding says that friction hides what it is about.
 
     Parameters
     ----------
     findings : sequence of Finding
         What the loop shows.
+    topic : str
+        ``"play"``, which is hidden together with the stiffness, or another one.
 
     Returns
     -------
     bool
     """
-    return any(each.topic == "play" and HIDDEN in each.text for each in findings)
+    return any(each.topic == topic and HIDDEN in each.text for each in findings)
 
 
 def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParameter]) -> str:

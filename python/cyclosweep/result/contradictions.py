@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from cyclosweep.result.answer import Answer
-from cyclosweep.result.calibration_words import HIDDEN
+from cyclosweep.result.calibration_words import is_hidden_by_friction
 
 LEVEL = 0.05
 """Probability below which an interval of 95 % cannot hold zero."""
@@ -82,8 +82,7 @@ def _of_play(answer: Answer) -> Iterator[str]:
         ("play", read.free_play_deg),
         ("stiffness", read.stiffness_at_output_nm_per_arcmin),
     ):
-        texts = [finding.text for finding in answer.findings if finding.topic == topic]
-        if value is not None and any(HIDDEN in text for text in texts):
+        if value is not None and is_hidden_by_friction(answer.findings, topic):
             yield f"the {topic} is given, and friction is said to hide it"
 
 

@@ -288,7 +288,7 @@ def _calibration(answer: Answer) -> str:
     """What the calibration found; the compliance as a range where the drive changed."""
     if answer.change is None:
         read = play_words(answer.play_and_stiffness)
-        if is_hidden_by_friction(answer.findings):
+        if is_hidden_by_friction(answer.findings, "play"):
             return f"{read}{HIDDEN_BY_FRICTION}"
         return f"{read}{calibration_words(answer.repaired.parameters)}"
     return change_words(answer.change, answer.repaired.parameters)
