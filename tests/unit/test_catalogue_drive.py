@@ -11,6 +11,7 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.reference.validation import report_json, summary
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -58,6 +59,21 @@ def test_the_study_runs(tmp_path: Path) -> None:
     gaps = kept.select(pl.col("hole_clearance_mm") + pl.col("ring_clearance_mm"))
     assert gaps.to_series().to_numpy().max() == pytest.approx(0.0125)
     assert kept["solver_status"].unique().to_list() == ["quadratic"]
+
+
+def test_what_the_paper_prints_of_its_own_drive_is_not_asked_of_it(drive: cs.Drive) -> None:
+    table = cs.validate(drive)
+    assert not table.filter(
+        pl.col("counted") & ~pl.col("ok") & (pl.col("explanation") == "")
+    ).height
+    assert "nominal input torque T_N" not in table["fact"].to_list()
+    assert not table.filter(kind="input").height
+    report = report_json(drive)
+    assert report["ok"]
+    assert summary(report["counts"], drive).endswith("was not asked of catalogue-29.")
+    # A drive of the same ratings with dimensions of its own is asked all of it.
+    other = cs.Drive.reference_87().replace(eccentricity_mm=0.6, free_play_deg=20.0)
+    assert cs.validate(other)["fact"].to_list() == cs.validate()["fact"].to_list()
 
 
 def test_every_missing_key_is_named(tmp_path: Path) -> None:

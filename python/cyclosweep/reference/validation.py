@@ -29,7 +29,7 @@ def report_json(drive: Drive | None = None, *, broken_models: bool = False) -> d
     Parameters
     ----------
     drive : Drive, optional
-        The 87:1 drive; the built-in one by default.
+        The built-in 87:1 drive by default.
     broken_models : bool
         Whether to add what deliberate errors break.
     """
@@ -69,13 +69,15 @@ def untouched(rows: pl.DataFrame) -> list[str]:
     return rows.filter(~hit)["fact"].to_list()
 
 
-def summary(counts: dict[str, dict[str, int]]) -> str:
+def summary(counts: dict[str, dict[str, int]], drive: Drive | None = None) -> str:
     """Say in a few lines what counts and what does not.
 
     Parameters
     ----------
     counts : dict
         As :func:`cyclosweep.reference.rows.tally` returns them.
+    drive : Drive, optional
+        The drive they are of; the built-in one by default.
     """
     evidence, identity = counts["evidence"], counts["identity"]
     lines = [
@@ -90,7 +92,9 @@ def summary(counts: dict[str, dict[str, int]]) -> str:
     ]
     others = sum(found["fail"] for kind, found in counts.items() if kind not in COUNTED)
     if others:
-        lines.append(f"{others} rows that do not count differ from the print: another drive.")
+        lines.append(f"{others} rows that do not count differ from the print: other dimensions.")
+    if drive is not None and not paper_87.is_reference_case(drive):
+        lines.append(f"What the paper prints of its own 87:1 drive was not asked of {drive.name}.")
     return "\n".join(lines)
 
 
@@ -102,7 +106,7 @@ def report_tables(
     Parameters
     ----------
     drive : Drive, optional
-        The 87:1 drive; the built-in one by default.
+        The built-in 87:1 drive by default.
     broken_models : bool
         Whether to add what deliberate errors break.
     """
