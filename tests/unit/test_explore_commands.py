@@ -107,3 +107,26 @@ def test_bad_input_is_one_line_and_status_2(
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_answers_of_an_unfinished_study_say_so(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cs.sink(cs.Study.from_toml("study.toml"), "part of it", rows_per_part=128)
+    asked = (
+        ["best"],
+        ["nearest", "--target", "twist_1tn_deg=60"],
+        ["feasible", "--json"],
+        ["sensitivity", "--results", "twist_1tn_deg"],
+        ["robust", "--tolerances", TOLERANCES, "--pieces", "8", "--candidates", "2"],
+    )
+    for lost, said in (
+        (None, ""),
+        ("part-000002.parquet", "the study is unfinished, the answer is of 384 of 512 variants\n"),
+    ):
+        if lost is not None:
+            (folder / "part of it" / lost).unlink()
+        for command, *options in asked:
+            assert run(monkeypatch, command, "part of it", *options) == 0
+            errors = capsys.readouterr().err
+            assert errors == (f"cyclosweep: part of it: {said}" if said else ""), command

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from cyclosweep.cli.exploring import say_if_unfinished
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
@@ -58,6 +59,7 @@ def best(
     if out is not None:
         writable(out)
     stored = open_study(study)
+    say_if_unfinished(study)
     goals = _goals(pareto, minimise, maximise, stored)
     with interruptible("nothing was written"):
         if pareto:

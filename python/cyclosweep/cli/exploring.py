@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,7 +14,15 @@ from cyclosweep.errors import InputError
 if TYPE_CHECKING:
     import polars as pl
 
-__all__ = ["Limits", "OutTable", "Rows", "check_out", "plain_rows", "write_out"]
+__all__ = [
+    "Limits",
+    "OutTable",
+    "Rows",
+    "check_out",
+    "plain_rows",
+    "say_if_unfinished",
+    "write_out",
+]
 
 Limits = Annotated[
     list[str] | None,
@@ -34,6 +43,22 @@ def check_out(out: Path | None) -> None:
         writable(out)
         if not out.absolute().parent.is_dir():
             raise InputError(f"--out: no folder {out.parent}, expected one that is there")
+
+
+def say_if_unfinished(folder: Path) -> None:
+    """Say on standard error that a study lacks variants; nothing where its folder cannot tell."""
+    from cyclosweep.sweep.stored import open_study
+
+    try:
+        stored = open_study(folder)
+    except InputError:
+        return  # no manifest: parts of others are read all the same
+    if not stored.complete:
+        print(
+            f"cyclosweep: {folder}: the study is unfinished, the answer is of "
+            f"{stored.rows:,} of {stored.variants:,} variants",
+            file=sys.stderr,
+        )
 
 
 def write_out(table: pl.DataFrame, out: Path | None) -> None:

@@ -7,7 +7,14 @@ from typing import Annotated
 
 import typer
 
-from cyclosweep.cli.exploring import Limits, OutTable, check_out, plain_rows, write_out
+from cyclosweep.cli.exploring import (
+    Limits,
+    OutTable,
+    check_out,
+    plain_rows,
+    say_if_unfinished,
+    write_out,
+)
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 
@@ -29,8 +36,10 @@ def feasible(
     from cyclosweep.sweep.study import Study
 
     check_out(out)
+    is_file = study.suffix.lower() == ".toml"
+    if not is_file:
+        say_if_unfinished(study)
     with interruptible("nothing was written"):
-        is_file = study.suffix.lower() == ".toml"
         found = feasible_ranges(Study.from_toml(study) if is_file else study, limit)
     write_out(found.intervals, out)
     if as_json:

@@ -7,7 +7,15 @@ from typing import Annotated
 
 import typer
 
-from cyclosweep.cli.exploring import Limits, OutTable, Rows, check_out, plain_rows, write_out
+from cyclosweep.cli.exploring import (
+    Limits,
+    OutTable,
+    Rows,
+    check_out,
+    plain_rows,
+    say_if_unfinished,
+    write_out,
+)
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
@@ -34,6 +42,7 @@ def nearest(
 
     check_out(out)
     stored = open_study(study)
+    say_if_unfinished(study)
     wanted = dict(_wanted(text) for text in target)
     with interruptible("nothing was written"):
         found = nearest_variants(study, wanted, count=rows, limits=limit)

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cyclosweep.cli.exploring import Limits, OutTable, Rows, check_out, plain_rows, write_out
+from cyclosweep.cli.exploring import (
+    Limits,
+    OutTable,
+    Rows,
+    check_out,
+    plain_rows,
+    say_if_unfinished,
+    write_out,
+)
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
@@ -122,6 +130,7 @@ def _designs(
         if drive is not None:
             raise InputError("--drive: not for the folder of a sweep, which has its own")
         stored = open_study(first)
+        say_if_unfinished(first)
         objective = wanted or stored.objective
         best = best_variants(first, _stated(objective), limit, rows=candidates)
         if best.table.is_empty():

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cyclosweep.cli.exploring import Limits, OutTable, check_out, plain_rows, write_out
+from cyclosweep.cli.exploring import (
+    Limits,
+    OutTable,
+    check_out,
+    plain_rows,
+    say_if_unfinished,
+    write_out,
+)
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
@@ -51,6 +58,8 @@ def sensitivity(
 
     check_out(out)
     wanted = [name.strip() for name in results.split(",") if name.strip()] if results else None
+    if study.is_dir():
+        say_if_unfinished(study)
     with interruptible("nothing was written"):
         if study.is_dir():
             table = input_influence(study, wanted, limit)
