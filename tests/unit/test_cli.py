@@ -246,6 +246,9 @@ def test_a_quick_diagnosis_writes_the_same_verdict_without_a_report(tmp_path: Pa
     for part in ("baseline", "repaired"):
         assert said[0][part]["holdout_rmse_deg"] is None, "nothing was held out"
         assert said[1][part]["holdout_rmse_deg"] > 0.0
+    assert [effect["name"] for effect in said[0]["effects"]] == ["friction_hysteresis"]
+    assert said[0]["effects"][0]["e_value"] is None, "1 would read as no evidence"
+    assert said[1]["effects"][0]["e_value"] > 100
     assert "held-out error" in whole.stdout
     assert "held-out error" not in quick.stdout
 

@@ -15,7 +15,7 @@ from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
 from cyclosweep.result import DriveChange, NextExperiment, RunToRunDrift, SelfCheck, Verdict
 
-NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, 1.0, "")
+NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, np.nan, "")
 MOST_RIVALS = 2
 """Other explanations of which synthetic twins are made."""
 ONCE_MORE = (

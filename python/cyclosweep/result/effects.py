@@ -57,7 +57,7 @@ class FoundEffect(Part):
     p_value: float | None = None
     """Probability of as much evidence where it is absent."""
     e_value: float | None = None
-    """Evidence from data that were not used for the choice; 100 is strong."""
+    """Evidence from data not used for the choice; 100 is strong, null where there are none."""
     detectability: float | None = None
     """Signal-to-noise ratio, calibration and all other effects taken out."""
 

@@ -24,7 +24,7 @@ class HeldOutResult:
         Root mean square over all blocks [deg].
     e_value : float
         At least so many times is the repaired model likelier than the baseline, whatever was
-        searched (see `FittedStructure.left_out_evidence`).
+        searched (see `FittedStructure.left_out_evidence`); NaN where nothing was held out.
     label : str
         What was held out.
     """
@@ -40,7 +40,7 @@ def judge_left_out(structure: FittedStructure) -> HeldOutResult:
     """Errors of baseline and structure on rows that were left out of their fits."""
     predictions = structure.predict_left_out()
     if not predictions:
-        return HeldOutResult((), np.nan, np.nan, 1.0, "nothing: too few samples")
+        return HeldOutResult((), np.nan, np.nan, np.nan, "nothing: too few samples")
     blocks = tuple(_block(structure.problem, each) for each in predictions)
     weight = np.array([b.samples for b in blocks], dtype=np.float64)
     before = float(np.sqrt(np.average([b.before_deg**2 for b in blocks], weights=weight)))
