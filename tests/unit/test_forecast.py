@@ -152,10 +152,12 @@ def test_calibration_of_a_loop_is_found(found: cs.Diagnosis) -> None:
 
 def test_loop_is_described(found: cs.Diagnosis) -> None:
     check_content(found.content)
-    topics = {row["topic"] for row in found.content["findings"]}
+    rows = {row["topic"]: row["text"] for row in found.content["findings"]}
     assert {
         "play", "friction hysteresis", "friction that grows with load", "stiffness",
-    } <= topics  # fmt: skip
+    } <= set(rows)  # fmt: skip
+    for topic in ("play", "stiffness"):
+        assert "at the output shaft, " in rows[topic], "which shaft it is at"
     assert found.verdict == "MOSTLY_EXPLAINED"
     hidden = {row["name"] for row in found.content["not_testable"]}
     assert {"other_mesh_positions", "temperature"} <= hidden

@@ -1,11 +1,16 @@
 """Free play and stiffness by straight lines: what was put into a loop comes out of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.report import ReportData
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
-from cyclosweep.result import CalibratedParameter
+from cyclosweep.report.tables import play_table
+from cyclosweep.result import Answer, CalibratedParameter, PlayAndStiffness, Reading
+from cyclosweep.result.calibration_words import play_words
 
 FITTED = {
     "free_play_deg": CalibratedParameter(nominal=1.0, estimate=1.4, std_error=0.05, unit="deg"),
@@ -80,3 +85,41 @@ def test_one_run_has_no_interval_and_a_missing_value_has_a_reason() -> None:
     alone = play_and_stiffness(cs.Recording.from_arrays(torque, torque), one_flank, 13.0)
     assert alone.free_play_deg is None
     assert "only one flank" in (alone.reason or "")
+
+
+def shown(read: PlayAndStiffness) -> dict[str, tuple[str, str]]:
+    """Rows of the table of play and stiffness, by their labels."""
+    recording = loop("input")
+    answer = Answer(verdict="NOTHING_MISSING", play_and_stiffness=read)
+    table = play_table(ReportData(recording=recording, result=answer))
+    assert table is not None
+    return {label: (value, ends) for label, value, ends in table.rows}
+
+
+def test_a_loop_without_friction_is_said_to_have_none() -> None:
+    torque = np.tile(np.r_[1:12:40j, 12:1:40j, -1:-12:40j, -12:-1:40j], 2)
+    run = np.repeat([1, 2], len(torque) // 2)
+    angle = 3.0 * np.sign(torque) + 0.3 * torque
+    read = play_and_stiffness(cs.Recording.from_arrays(torque, angle, run=run), FITTED, 13.0)
+    assert read.friction_nm is not None
+    assert read.friction_nm.estimate == 0.0
+    label = "friction at the input, half the loop's width"
+    assert shown(read)[label] == ("none found", "–")
+    for estimate, ends, words in (
+        (-0.005, (-0.04, 0.03), ("none found", "at most 0.03 N m")),
+        (0.5, (0.48, 0.52), ("0.5 N m", "0.48 … 0.52")),
+        (-0.5, (-0.52, -0.48), ("−0.5 N m", "−0.52 … −0.48")),
+        (0.25, None, ("0.25 N m", "–")),
+    ):
+        found = replace(read, friction_nm=Reading(estimate=estimate, ci95=ends))
+        assert shown(found)[label] == words
+
+
+def test_an_interval_has_the_digits_that_tell_its_ends_apart() -> None:
+    ends = Reading(estimate=55.506, ci95=(55.502, 55.51))
+    read = PlayAndStiffness(runs=3, free_play_deg=ends)
+    value, interval = shown(read)["free play at the input, from flank to flank"]
+    assert (value.split()[0], interval) == ("55.506", "55.502 … 55.51")
+    assert play_words(read) == (
+        "Read from the loop: free play from flank to flank 55.506 deg (95 %: 55.502 to 55.51). "
+    )

@@ -50,6 +50,15 @@ def test_what_is_not_ruled_out_stands_beside_the_name() -> None:
     assert "creep, with a probability of 60 %; not ruled out: viscous drag (38 %)" in text
 
 
+def test_an_estimate_lies_within_its_interval_as_it_is_written() -> None:
+    for size, words in (
+        (Size(estimate=1.6538, ci95=(1.6502, 1.6573)), "creep 1.654 deg (95 %: 1.65 to 1.657)"),
+        (Size(estimate=0.682, ci95=(0.66, 0.705)), "0.682 deg (41 arcmin) (95 %: 0.66 to 0.705)"),
+    ):
+        effect = FoundEffect(name="creep", size_deg=size)
+        assert words in statement_of(replace(IDENTIFIED, effects=(effect,)))
+
+
 def test_a_verdict_with_rivals_is_headed_by_its_probability() -> None:
     assert verdict_words(IDENTIFIED)[1] == "Cause identified"
     rivals = replace(IDENTIFIED, explanation_set=TWO)

@@ -22,7 +22,7 @@ from cyclosweep.result import (
     Size,
     Untestable,
 )
-from cyclosweep.result.words import degrees
+from cyclosweep.result.words import degrees, telling_digits
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects.history import Flags, Floats
 
@@ -357,7 +357,8 @@ def _statement(found: Sliding, *, named: bool) -> str:
     -------
     str
     """
-    half = NORMAL_95 * found.std_error_nm
+    half, limit = NORMAL_95 * found.std_error_nm, found.friction_nm
+    digits = telling_digits(limit, (limit - half, limit + half))
     first = "Missing physics: friction that slides fully (friction hysteresis)."
     if not named:
         first = "Unknown physics: a loop that takes the whole torque."
@@ -366,8 +367,8 @@ def _statement(found: Sliding, *, named: bool) -> str:
         f"{degrees(found.rising.range_deg)} at {found.rising.torque_nm:.3g} N m while it rises "
         f"and over {degrees(found.falling.range_deg)} at {found.falling.torque_nm:.3g} N m while "
         f"it falls, {100 * found.rising.share:.0f} % and {100 * found.falling.share:.0f} % of all "
-        f"motion in these directions. The friction limit is {found.friction_nm:.3g} N m (95 %: "
-        f"{found.friction_nm - half:.3g} to {found.friction_nm + half:.3g}); the loop fills "
+        f"motion in these directions. The friction limit is {limit:.{digits}g} N m (95 %: "
+        f"{limit - half:.{digits}g} to {limit + half:.{digits}g}); the loop fills "
         f"{100 * found.loop_share:.0f} % of the rectangle around it. No stiffness can be read "
         "from this recording, and no model is given that would compute a twist from a torque; "
         "loops below the friction limit would show the stiffness."

@@ -14,6 +14,7 @@ from cyclosweep.report.wording import (
     without_unit,
 )
 from cyclosweep.result import EffectParameter, FoundEffect, Region
+from cyclosweep.result.words import telling_digits
 
 
 def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
@@ -42,7 +43,8 @@ def look_at(data: ReportData) -> list[str]:
 def _size(effect: FoundEffect, data: ReportData) -> str:
     """Size of an effect with its interval, and the torque that it is worth."""
     size = effect.size_deg
-    text = f"{angle(size.estimate)}, 95 % interval {interval(size.ci95)} deg"
+    digits = telling_digits(size.estimate, size.ci95)
+    text = f"{angle(size.estimate, digits)}, 95 % interval {interval(size.ci95, digits)} deg"
     if data.compliance_deg_per_nm:
         text += f"; worth {number(abs(size.estimate / data.compliance_deg_per_nm))} N m"
     return text

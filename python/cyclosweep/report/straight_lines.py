@@ -16,6 +16,8 @@ ANGLE_BINS = 120
 """Bins of the angle in which rising and falling branches are compared."""
 LEAST_BINS = 4
 """Fewest bins of a flank through which a line is laid."""
+ROUNDING = 1e-9
+"""Share of the largest torque below which the loop's width is an error of rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,4 +113,7 @@ def _of_run(run: int, torque: Floats, angle: Floats) -> LoopLines | None:
         slopes.append(float(slope))
         flanks |= on
     between = np.isfinite(half) & (np.abs(middle) < high)
-    return LoopLines(run, ends[1] - ends[0], float(np.mean(slopes)), float(np.mean(half[between])))
+    friction = float(np.mean(half[between]))
+    if abs(friction) < ROUNDING * largest:
+        friction = 0.0
+    return LoopLines(run, ends[1] - ends[0], float(np.mean(slopes)), friction)

@@ -19,6 +19,7 @@ from cyclosweep.report.wording import (
     without_unit,
 )
 from cyclosweep.result import CalibratedParameter, Reading
+from cyclosweep.result.words import telling_digits
 
 
 def loop_table(data: ReportData) -> Table | None:
@@ -121,13 +122,14 @@ def hypothesis_table(data: ReportData) -> Table | None:
     for row in data.hypotheses:
         if row.outcome == "accepted":
             lead.add(len(rows))
+        digits = 3 if row.size_deg is None else telling_digits(row.size_deg, row.ci95_deg)
         rows.append(
             (
                 plain(row.name),
                 row.outcome,
                 NOTHING if row.absorbed_share is None else f"{100 * row.absorbed_share:.0f} %",
-                number(row.size_deg),
-                interval(row.ci95_deg),
+                number(row.size_deg, digits),
+                interval(row.ci95_deg, digits),
                 probability(row.p_value),
                 number(row.e_value, 2),
                 number(row.smallest_detectable_deg),
@@ -284,12 +286,12 @@ def play_table(data: ReportData) -> Table | None:
         return None
     side = data.recording.side
     rows = [
-        (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, _angles)),
+        (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, angle)),
         ("stiffness at the output", *_read(read.stiffness_at_output_nm_per_arcmin, _stiffnesses)),
-        (f"friction at the {side}, half the loop's width", *_read(read.friction_nm, _torques)),
+        (f"friction at the {side}, half the loop's width", *_friction(read.friction_nm)),
     ]
     if side == "input":
-        rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, _angles)))
+        rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, angle)))
     shown = tuple(row for row in rows if row[1] != NOTHING)
     note = f"Read by {read.definition}."
     if read.runs == 1:
@@ -301,25 +303,29 @@ def play_table(data: ReportData) -> Table | None:
     return Table("Free play and stiffness", ("", "value", "95 % interval"), shown, note)
 
 
-def _read(reading: Reading | None, write: Callable[[float], str]) -> tuple[str, str]:
+def _read(reading: Reading | None, write: Callable[[float, int], str]) -> tuple[str, str]:
     """Value and interval of a reading."""
     if reading is None:
         return NOTHING, NOTHING
-    ends = reading.ci95
-    return write(reading.estimate), NOTHING if ends is None else interval(ends)
+    digits = telling_digits(reading.estimate, reading.ci95)
+    return write(reading.estimate, digits), interval(reading.ci95, digits)
 
 
-def _angles(value_deg: float) -> str:
-    """Angle in both units."""
-    return angle(value_deg)
+def _friction(reading: Reading | None) -> tuple[str, str]:
+    """Friction and its interval; none where the interval holds zero."""
+    if reading is not None:
+        low, high = reading.ci95 or (reading.estimate, reading.estimate)
+        if low <= 0.0 <= high:
+            return "none found", f"at most {_torques(high)}" if high > 0.0 else NOTHING
+    return _read(reading, _torques)
 
 
-def _stiffnesses(nm_per_arcmin: float) -> str:
+def _stiffnesses(nm_per_arcmin: float, digits: int) -> str:
     """Stiffness in N m/arcmin and as compliance."""
     compliance = 1.0 / (ARCMIN * nm_per_arcmin)
-    return f"{number(nm_per_arcmin)} N m/arcmin ({number(compliance)} deg/(N m))"
+    return f"{number(nm_per_arcmin, digits)} N m/arcmin ({number(compliance, digits)} deg/(N m))"
 
 
-def _torques(value_nm: float) -> str:
+def _torques(value_nm: float, digits: int = 3) -> str:
     """Torque."""
-    return f"{number(value_nm)} N m"
+    return f"{number(value_nm, digits)} N m"

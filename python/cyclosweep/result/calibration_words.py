@@ -6,7 +6,7 @@ from cyclosweep.result.answer import Finding
 from cyclosweep.result.calibration import CalibratedParameter
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
-from cyclosweep.result.words import degrees
+from cyclosweep.result.words import degrees, telling_digits
 
 HIDDEN = "as friction hides it"
 """Words by which a finding says why play or stiffness is not given."""
@@ -77,7 +77,7 @@ def play_words(read: PlayAndStiffness | None) -> str:
     if read is None:
         return ""
     said = [
-        f"{name} {reading.estimate:.3g} {unit}{_ends(reading)}"
+        f"{name} {_read(reading, unit)}"
         for name, reading, unit in (
             ("free play from flank to flank", read.free_play_deg, "deg"),
             ("stiffness at the output", read.stiffness_at_output_nm_per_arcmin, "N m/arcmin"),
@@ -87,11 +87,14 @@ def play_words(read: PlayAndStiffness | None) -> str:
     return f"Read from the loop: {', '.join(said)}. " if said else ""
 
 
-def _ends(reading: Reading) -> str:
-    """Interval of a reading; nothing where there is none."""
-    if reading.ci95 is None:
-        return ""
-    return f" (95 %: {reading.ci95[0]:.3g} to {reading.ci95[1]:.3g})"
+def _read(reading: Reading, unit: str) -> str:
+    """Value of a reading with its unit and, where there is one, its interval."""
+    ends = reading.ci95
+    digits = telling_digits(reading.estimate, ends)
+    text = f"{reading.estimate:.{digits}g} {unit}"
+    if ends is None:
+        return text
+    return f"{text} (95 %: {ends[0]:.{digits}g} to {ends[1]:.{digits}g})"
 
 
 def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:

@@ -19,6 +19,7 @@ from cyclosweep.result.words import (
     place_of,
     readable,
     shape_in_words,
+    telling_digits,
     with_article,
 )
 
@@ -123,10 +124,11 @@ def _mostly_explained(answer: Answer) -> str:
     names = listed([effect.name for effect in answer.effects])
     share = "most"
     if answer.explained.share is not None:
-        share = f"{100 * answer.explained.share:.3g} %"
-        if answer.explained.ci95 is not None:
-            low, high = answer.explained.ci95
-            share += f" (95 %: {100 * low:.3g} to {100 * high:.3g})"
+        ends = answer.explained.ci95
+        digits = telling_digits(answer.explained.share, ends)
+        share = f"{100 * answer.explained.share:.{digits}g} %"
+        if ends is not None:
+            share += f" (95 %: {100 * ends[0]:.{digits}g} to {100 * ends[1]:.{digits}g})"
     remains = "something without a name"
     if answer.unknown is not None:
         remains = f"{shape_in_words(answer.unknown.shape)} of {degrees(answer.unknown.size_deg)}"
@@ -248,11 +250,15 @@ def _largest_bound(answer: Answer) -> float:
 
 def _sizes(answer: Answer) -> str:
     """Accepted effects with their sizes and intervals."""
-    return "; ".join(
-        f"{readable(effect.name)} {degrees(effect.size_deg.estimate)} "
-        f"(95 %: {effect.size_deg.ci95[0]:.2g} to {effect.size_deg.ci95[1]:.2g})"
-        for effect in answer.effects
-    )
+    words = []
+    for effect in answer.effects:
+        size, (low, high) = effect.size_deg.estimate, effect.size_deg.ci95
+        digits = telling_digits(size, (low, high))
+        words.append(
+            f"{readable(effect.name)} {degrees(size, digits)} "
+            f"(95 %: {low:.{digits}g} to {high:.{digits}g})"
+        )
+    return "; ".join(words)
 
 
 def _improvement(answer: Answer) -> str:

@@ -27,17 +27,54 @@ def place_of(regions: Sequence[Region]) -> str:
     return ", ".join(parts) or "everywhere"
 
 
-def degrees(value: float | None) -> str:
+MOST_DIGITS = 6
+"""Significant digits that are not exceeded, however narrow an interval is."""
+
+
+def telling_digits(estimate: float, ends: Sequence[float] | None, least: int = 3) -> int:
+    """Significant digits with which an estimate and the ends of its interval are told apart.
+
+    Parameters
+    ----------
+    estimate : float
+        The estimate.
+    ends : sequence of two floats, or None
+        Lower and upper end; None where there is no interval.
+    least : int
+        Digits that are always written.
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> telling_digits(1.6538, (1.6502, 1.6573)), telling_digits(0.9, (0.8, 1.0))
+    (4, 3)
+    """
+    if ends is None or ends[0] == ends[1]:
+        return least
+    values = {estimate, *ends}
+    for digits in range(least, MOST_DIGITS):
+        if len({f"{value:.{digits}g}" for value in values}) == len(values):
+            return digits
+    return MOST_DIGITS
+
+
+def degrees(value: float | None, digits: int = 3) -> str:
     """Write an angle in deg and, where small, in arcmin.
 
     Parameters
     ----------
     value : float or None
         The angle [deg]; None where it is not known.
+    digits : int
+        Significant digits; in arcmin one less.
     """
     if value is None:
         return "an unknown angle"
-    return f"{value:.3g} deg" + (f" ({60 * value:.2g} arcmin)" if abs(value) < 1.0 else "")
+    small = f" ({60 * value:.{digits - 1}g} arcmin)" if abs(value) < 1.0 else ""
+    return f"{value:.{digits}g} deg{small}"
 
 
 def readable(name: str) -> str:

@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.whole_loop.staircase_found import (
 )
 from cyclosweep.result import Finding
 from cyclosweep.result.calibration_words import HIDDEN
+from cyclosweep.result.words import telling_digits
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.elastic_law import elastic_law
 
@@ -176,7 +177,7 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     half = 2 * _half_interval(forecast, "play")
     text = (
         f"Dead zone of the fitted simulation: {angle_in_words(dead)} ± {half:.2g} deg (95 %) from "
-        "flank to flank, a parameter of that model."
+        f"flank to flank at the {problem.recording.side} shaft, a parameter of that model."
     )
     law = elastic_law(forecast.model, problem.history.largest_torque_nm)
     if law is not None:
@@ -248,8 +249,9 @@ def _stiffening(problem: Problem, forecast: Forecast) -> Finding:
     soft, stiff = slope(0.0, 0.1 * top), slope(0.5 * top, top)
     return _finding(
         "stiffening",
-        f"The elastic line is {soft / max(stiff, 1e-12):.2g} times steeper up to {0.1 * top:.2g} "
-        f"N m ({soft:.3g} deg/(N m)) than from {0.5 * top:.3g} to {top:.3g} N m "
+        f"The elastic line at the {problem.recording.side} shaft is "
+        f"{soft / max(stiff, 1e-12):.2g} times steeper up to {0.1 * top:.2g} N m "
+        f"({soft:.3g} deg/(N m)) than from {0.5 * top:.3g} to {top:.3g} N m "
         f"({stiff:.3g} deg/(N m)).",
     )
 
@@ -300,10 +302,12 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
     mean = float(values.mean())
     half = float(stats.t.ppf(0.975, len(values) - 1) * stats.sem(values))
     low, high = max(mean - half, 0.0), mean + half
+    digits = telling_digits(mean, (low, high), 2)
     return _finding(
         "stiffness",
-        f"Loading branches alone, from {0.5 * top:.3g} to {top:.3g} N m: {mean:.2g} N m/arcmin, "
-        f"95 % interval {low:.2g} to {high:.2g} ({60 * 180 / np.pi * mean:.3g} N m/rad); single "
+        f"Loading branches alone, from {0.5 * top:.3g} to {top:.3g} N m: {mean:.{digits}g} N "
+        f"m/arcmin at the {problem.recording.side} shaft, 95 % interval {low:.{digits}g} to "
+        f"{high:.{digits}g} ({60 * 180 / np.pi * mean:.3g} N m/rad); single "
         f"branches from {values.min():.2g} to {values.max():.2g}. Unlike the stiffness by straight "
         "lines it contains what friction takes of the torque on the way up.",
     )
