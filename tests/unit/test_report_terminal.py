@@ -10,8 +10,18 @@ from rich.console import Console
 import cyclosweep as cs
 from cyclosweep.recording.faults import Fault
 from cyclosweep.report import ReportData, print_summary, write_png, write_report
-from cyclosweep.result import Answer
+from cyclosweep.result import Answer, PlayAndStiffness, Reading
 from tests.unit.made_up_report import make
+
+
+def play_and_stiffness_at_input() -> PlayAndStiffness:
+    """Values with intervals, and no friction."""
+    return PlayAndStiffness(
+        runs=3,
+        free_play_deg=Reading(estimate=55.5, ci95=(55.2, 55.8)),
+        stiffness_at_output_nm_per_arcmin=Reading(estimate=46.04, ci95=(46.02, 46.06)),
+        friction_nm=Reading(estimate=-0.005, ci95=(-0.04, 0.03)),
+    )
 
 
 def printed(data: ReportData, width: int) -> str:
@@ -20,7 +30,7 @@ def printed(data: ReportData, width: int) -> str:
     return stream.getvalue()
 
 
-@pytest.mark.parametrize("width", [60, 80, 120])
+@pytest.mark.parametrize("width", [40, 60, 80, 120])
 def test_summary_fits_and_is_complete(width: int) -> None:
     text = printed(make(), width)
     assert max(len(line) for line in text.splitlines()) <= width
@@ -31,6 +41,29 @@ def test_summary_fits_and_is_complete(width: int) -> None:
     ):  # fmt: skip
         assert words in squeezed
     assert "…" not in text.replace(" … ", "")
+
+
+def test_no_word_is_broken_and_the_verdict_is_whole_in_40_columns() -> None:
+    data = make()
+    answer = replace(
+        data.result, verdict="UNKNOWN_PHYSICS", play_and_stiffness=play_and_stiffness_at_input()
+    )
+    words = set(printed(replace(data, result=answer), 300).split())
+    narrow = printed(replace(data, result=answer), 40)
+    assert max(len(line) for line in narrow.splitlines()) <= 40
+    inside = narrow.translate(str.maketrans("", "", "╭╮╰╯│─"))
+    assert set(inside.split()) <= words | {"deg", "p", "e", "95", "%:", "0.001,"}
+    squeezed = " ".join(narrow.replace("│", "").split())
+    assert "Known effects found, and something without a name (UNKNOWN_PHYSICS)" in squeezed
+    assert "friction hysteresis 0.55 deg (33 arcmin) 95 %: 0.51 … 0.59 deg" in squeezed
+
+
+def test_evidence_that_was_not_computed_is_a_dash() -> None:
+    data = make()
+    effects = tuple(replace(effect, e_value=None) for effect in data.result.effects)
+    text = printed(replace(data, result=replace(data.result, effects=effects)), 80)
+    [line] = [line for line in text.splitlines() if line.startswith("friction hysteresis  ")]
+    assert line.split()[-1] == "–"
 
 
 def test_the_first_lines_are_short() -> None:

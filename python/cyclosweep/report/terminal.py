@@ -1,8 +1,10 @@
-"""The report in a terminal, from 60 columns up."""
+"""The report in a terminal, from 40 columns up."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, ConsoleOptions, Group, RenderableType
+from rich.padding import Padding
 from rich.panel import Panel
 from rich.table import Table as RichTable
 from rich.text import Text
@@ -20,6 +22,12 @@ from cyclosweep.report.wording import (
     verdict_words,
 )
 from cyclosweep.result import FoundEffect, Verdict
+from cyclosweep.result.words import telling_digits
+
+NARROW = 60
+"""Columns below which tables are written as lines, each with its own words."""
+FRAME = 6
+"""Columns that the frame takes of a line with a title."""
 
 _STYLES: dict[Verdict, str] = {
     "IDENTIFIED": "green",
@@ -59,16 +67,13 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     now = do_now(result)
     if now:
         statement.append(f"\n\n{now}")
-    title = Text(f"{words} ({code})", style=f"bold {style}")
-    yield Panel(
-        statement, title=title, title_align="left", border_style=style,
-        subtitle=Text(data.recording.name, style="dim", overflow="ellipsis", no_wrap=True),
-        subtitle_align="right",
-    )  # fmt: skip
-    yield from _facts(data)
+    yield _Framed(f"{words} ({code})", statement, data.recording.name, style)
+    facts = _facts(data)
+    if facts:
+        yield _Facts(facts)
     if result.effects:
         yield Text("")
-        yield _effects(result.effects)
+        yield _Effects(result.effects)
     rest = sentences.unknown(data)
     for heading, lines in (
         ("What to look at on the drive", sentences.look_at(data)),
@@ -97,11 +102,8 @@ def _remarks(data: ReportData) -> list[str]:
     return [reason for reason in reasons if reason.rstrip(".") not in said][:4]
 
 
-def _facts(data: ReportData) -> Iterator[RenderableType]:
-    """Errors before and after beside the noise."""
-    grid = RichTable.grid(padding=(0, 2))
-    grid.add_column(style="dim")
-    grid.add_column(justify="right")
+def _facts(data: ReportData) -> list[tuple[str, str]]:
+    """Errors before and after beside the noise, then play, stiffness and friction."""
     rows = [(label, value) for value, label, _ in sentences.headline(data)]
     if data.result.mismatch.p_value is not None:
         rows.append(("mismatch before, p", probability(data.result.mismatch.p_value)))
@@ -109,29 +111,82 @@ def _facts(data: ReportData) -> Iterator[RenderableType]:
         rows.append(("mismatch after, p", probability(data.result.sufficiency.p_value)))
     if (play := play_table(data)) is not None:
         rows += [(label, f"{value}  {ends}") for label, value, ends in play.rows]
-    for label, value in rows:
-        grid.add_row(label, value)
-    if rows:
+    return rows
+
+
+@dataclass(frozen=True)
+class _Framed:
+    """Verdict and statement in a frame; the verdict stands inside where it is wider than that."""
+
+    title: str
+    statement: Text
+    name: str
+    style: str
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[RenderableType]:
+        title, bold = self.title, f"bold {self.style}"
+        fits = len(title) + FRAME <= options.max_width
+        yield Panel(
+            self.statement if fits else Text.assemble((title, bold), "\n\n", self.statement),
+            title=Text(title, style=bold) if fits else None,
+            title_align="left",
+            border_style=self.style,
+            subtitle=Text(self.name, style="dim", overflow="ellipsis", no_wrap=True),
+            subtitle_align="right",
+        )
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """Figures beside their labels, or in a narrow terminal below them."""
+
+    rows: list[tuple[str, str]]
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[RenderableType]:
+        if options.max_width < NARROW:
+            for label, value in self.rows:
+                yield Text(label, style="dim")
+                yield Padding(Text(value), (0, 0, 0, 2))
+            return
+        grid = RichTable.grid(padding=(0, 2))
+        grid.add_column(style="dim")
+        grid.add_column(justify="right")
+        for label, value in self.rows:
+            grid.add_row(label, value)
         yield grid
 
 
-def _effects(effects: Sequence[FoundEffect]) -> RenderableType:
-    """Table of the accepted effects, narrow enough for 60 columns."""
-    table = RichTable(box=None, padding=(0, 2, 0, 0), header_style="bold")
-    table.add_column("effect", overflow="fold", ratio=1)
-    table.add_column("size", justify="right")
-    table.add_column("95 % (deg)", justify="right", no_wrap=True)
-    table.add_column("p", justify="right", no_wrap=True)
-    table.add_column("e", justify="right", no_wrap=True)
-    for effect in effects:
-        table.add_row(
-            Text(plain(effect.name)),
-            angle(effect.size_deg.estimate, 2),
-            interval(effect.size_deg.ci95, 2),
-            probability(effect.p_value),
-            number(effect.e_value, 2),
-        )
-    return table
+@dataclass(frozen=True)
+class _Effects:
+    """The accepted effects as a table, or in a narrow terminal as a few lines each."""
+
+    effects: Sequence[FoundEffect]
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[RenderableType]:
+        table = RichTable(box=None, padding=(0, 2, 0, 0), header_style="bold")
+        table.add_column("effect", overflow="fold", ratio=1)
+        table.add_column("size", justify="right")
+        table.add_column("95 % (deg)", justify="right", no_wrap=True)
+        table.add_column("p", justify="right", no_wrap=True)
+        table.add_column("e", justify="right", no_wrap=True)
+        for effect in self.effects:
+            digits = telling_digits(effect.size_deg.estimate, effect.size_deg.ci95, 2)
+            size = angle(effect.size_deg.estimate, digits)
+            ends = interval(effect.size_deg.ci95, digits)
+            p, e = probability(effect.p_value), number(effect.e_value, 2)
+            if options.max_width < NARROW:
+                yield Text(plain(effect.name), style="bold")
+                yield Padding(Text(f"{size}\n95 %: {ends} deg\np {p}, e {e}"), (0, 0, 0, 2))
+            else:
+                table.add_row(Text(plain(effect.name)), size, ends, p, e)
+        if table.row_count:
+            yield table
 
 
 def _bullets(heading: str, lines: list[str]) -> RenderableType:
