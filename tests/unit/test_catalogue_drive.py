@@ -71,7 +71,7 @@ def test_what_the_paper_prints_of_its_own_drive_is_not_asked_of_it(drive: cs.Dri
     report = report_json(drive)
     assert report["ok"]
     assert summary(report["counts"], drive).endswith("was not asked of catalogue-29.")
-    # A drive of the same ratings with dimensions of its own is asked all of it.
+    # A drive of 87:1 is asked all of it, whatever its dimensions.
     other = cs.Drive.reference_87().replace(eccentricity_mm=0.6, free_play_deg=20.0)
     assert cs.validate(other)["fact"].to_list() == cs.validate()["fact"].to_list()
 

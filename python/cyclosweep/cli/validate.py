@@ -24,7 +24,7 @@ def validate(
 ) -> None:
     """Compare the library with every published fact of the 87:1 case and with other cases.
 
-    What the paper prints of its own drive is not asked of a drive with other ratings or counts.
+    What the paper prints of its own drive is asked only of a drive of 87:1.
     Exit status 1 when a row disagrees and nothing in it explains why, or when a deliberate error
     breaks no row; what the model cannot compute does not count.
     """

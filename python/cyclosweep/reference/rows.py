@@ -47,8 +47,7 @@ def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.Dat
     ----------
     drive : Drive, optional
         The built-in 87:1 drive by default. What the paper says of its own drive is asked only of
-        one with the same ratings and counts. Rows on formulas and on other people's drives do not
-        depend on it.
+        one of 87:1. Rows on formulas and on other people's drives do not depend on it.
     broken : str, optional
         Put a deliberate error into the model first, for example ``"E halved"``; see
         :data:`cyclosweep.reference.broken_models.BROKEN_MODELS`.

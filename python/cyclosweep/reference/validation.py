@@ -92,7 +92,7 @@ def summary(counts: dict[str, dict[str, int]], drive: Drive | None = None) -> st
     ]
     others = sum(found["fail"] for kind, found in counts.items() if kind not in COUNTED)
     if others:
-        lines.append(f"{others} rows that do not count differ from the print: other dimensions.")
+        lines.append(f"{others} rows that do not count differ from the print: another drive.")
     if drive is not None and not paper_87.is_reference_case(drive):
         lines.append(f"What the paper prints of its own 87:1 drive was not asked of {drive.name}.")
     return "\n".join(lines)
