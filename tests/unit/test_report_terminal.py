@@ -2,6 +2,7 @@
 
 import io
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ from rich.console import Console
 import cyclosweep as cs
 from cyclosweep.recording.faults import Fault
 from cyclosweep.report import ReportData, print_summary, write_png, write_report
+from cyclosweep.report.figures import all_figures
+from cyclosweep.report.png import _write
 from cyclosweep.result import Answer, PlayAndStiffness, Reading
 from tests.unit.made_up_report import make
 
@@ -87,6 +90,20 @@ def test_pictures(tmp_path: Path) -> None:
     assert [path.name for path in files] == ["loop.png", "zoom.png", "profiles.png", "map.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in files)
     assert len(list((tmp_path / "pictures").iterdir())) == 4
+
+
+def test_the_caption_of_a_picture_is_drawn_whole(tmp_path: Path) -> None:
+    image = pytest.importorskip("matplotlib.image")
+    figure = next(iter(all_figures(make(runs=2, samples=200))))
+    heights = []
+    for lines in range(1, 7):
+        caption = "whatever its letters gjpqy, " * 6 * lines
+        file = _write(replace(figure, caption=caption), tmp_path / "loop.png")
+        pixels = image.imread(file)[:, :, :3]
+        foot = (pixels[-200:] < 0.9).any(axis=(1, 2))
+        assert not foot[-4:].any(), "nothing is cut at the edge"
+        heights.append(len(pixels))
+    assert all(low < high for low, high in pairwise(heights))
 
 
 def test_the_name_chooses_the_form(tmp_path: Path) -> None:

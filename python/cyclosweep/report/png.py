@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from textwrap import fill
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,8 +30,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 DOTS_PER_INCH = 150
-CAPTION = 36
-"""Height of the caption, two lines [hundredths of an inch]."""
+LINE = 16
+"""Height of a line of the caption [hundredths of an inch]."""
+CAPTION_COLUMNS = 190
+"""Letters in a line of the caption."""
 
 
 def write_png(data: ReportData, folder: str | Path) -> list[Path]:
@@ -80,11 +82,12 @@ def _write(figure: Figure, path: Path) -> Path:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as Canvas
 
-    height = figure.rows * figure.row_height + 80
-    canvas = Canvas(figsize=(WIDTH / 100, height / 100), layout="constrained")
+    lines = wrap(figure.caption, CAPTION_COLUMNS)
+    drawn, caption = figure.rows * figure.row_height + 44, LINE * max(len(lines), 1) + 4
+    canvas = Canvas(figsize=(WIDTH / 100, (drawn + caption) / 100), layout="constrained")
     FigureCanvasAgg(canvas)
     # A part of its own for the caption, which the legend would else be drawn over.
-    parts = canvas.add_gridspec(2, 1, height_ratios=[height - CAPTION, CAPTION])
+    parts = canvas.add_gridspec(2, 1, height_ratios=[drawn, caption])
     pictures, foot = canvas.add_subfigure(parts[0]), canvas.add_subfigure(parts[1])
     grid = pictures.add_gridspec(figure.rows, figure.columns)
     handles: dict[str, Any] = {}
@@ -95,7 +98,8 @@ def _write(figure: Figure, path: Path) -> Path:
         for handle, name in zip(*names, strict=True):
             handles.setdefault(name, handle)
     pictures.suptitle(figure.title, fontsize=11, fontweight="bold")
-    foot.text(0.01, 0.9, fill(figure.caption, 190), fontsize=7.5, color="#5c6672", va="top")
+    top = 1.0 - 4 / caption
+    foot.text(0.01, top, "\n".join(lines), fontsize=7.5, color="#5c6672", va="top")
     if handles:
         pictures.legend(
             handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles),
