@@ -166,6 +166,25 @@ def test_current_force_and_counts_ask_for_their_constant(tmp_path: Path) -> None
     np.testing.assert_allclose(present(recording.angle_deg), angle, rtol=1e-6)
 
 
+def test_a_load_without_a_unit_may_be_a_force_or_a_torque(tmp_path: Path) -> None:
+    _, torque, angle, _ = loop()
+    path = write(tmp_path / "loop.csv", "load,Angle [deg]", torque, angle)
+    asked = run("inspect", str(path), "--out", str(tmp_path / "loop.toml"))
+    assert asked.returncode == 2
+    assert "N m assumed" not in asked.stdout
+    assert asked.stderr.rstrip().endswith("--lever-arm M, or, where it is a torque, "
+                                          "--torque-unit 'N m'.")  # fmt: skip
+    for options, factor in (
+        (("--torque-unit", "N m"), 1.0),
+        (("--lever-arm", "0.5"), 0.5),
+    ):
+        given = run("inspect", str(path), "--out", str(tmp_path / "loop.toml"), *options)
+        assert given.returncode == 0, given.stderr
+        read = cs.Recording.read(path).torque_nm
+        np.testing.assert_allclose(read, factor * torque, rtol=1e-6)
+        (tmp_path / "loop.toml").unlink()
+
+
 def test_a_geared_encoder_that_wraps(tmp_path: Path) -> None:
     torque = 900 * np.sin(np.linspace(0, 12, 1500))
     angle = 3.0 * np.tanh(torque / 300) + 1.5

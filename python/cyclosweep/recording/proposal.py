@@ -168,6 +168,11 @@ def _column(
         column["unit"] = named.unit
     elif is_dated:
         return column
+    elif named.kind == "force":
+        if known.lever_arm_m is not None:
+            column["unit"] = "N"
+            made.assumed.append(f"Unit of {named.column} not stated: N assumed.")
+            made.remarks[f"columns.{role}"] = ""
     elif role in ("time_s", "temperature_c", "torque_nm") and named.kind != "current":
         unit = {"time_s": "seconds", "temperature_c": "deg C", "torque_nm": "N m"}[role]
         made.assumed.append(f"Unit of {named.column} not stated: {unit} assumed.")
@@ -180,7 +185,10 @@ def _column(
     if named.kind in needs:
         key, value, flag = needs[named.kind]
         if value is None:
-            made.open.append(f"{named.column} holds {_KINDS[named.kind]}: say {flag}.")
+            said = f"{named.column} holds {_KINDS[named.kind]}: say {flag}"
+            if named.kind == "force" and named.unit is None:  # its name alone says so
+                said += ", or, where it is a torque, --torque-unit 'N m'"
+            made.open.append(f"{said}.")
         else:
             column[key] = value
     return column
