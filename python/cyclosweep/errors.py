@@ -16,6 +16,7 @@ __all__ = [
     "instance_of",
     "one_of",
     "path_of",
+    "refuse_no_file",
 ]
 
 Name = TypeVar("Name", bound=object)
@@ -183,3 +184,22 @@ def _short(found: object) -> str:
 def _plain(name: str) -> str:
     """A name as it is compared: small letters, one sign between words."""
     return name.strip().lower().replace("-", "_").replace(" ", "_")
+
+
+def refuse_no_file(path: Path) -> None:
+    """Refuse a path at which there is no file to read.
+
+    Parameters
+    ----------
+    path : Path
+        Where a file is expected.
+
+    Raises
+    ------
+    InputError
+        With what is there instead.
+    """
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder, expected a file")
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")

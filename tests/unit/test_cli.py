@@ -95,6 +95,20 @@ def test_shards_make_up_the_sweep(study: Path, tmp_path: Path) -> None:
     assert sharded.equals(cs.scan_dataset(tmp_path / "w").collect())
 
 
+def test_a_task_beyond_the_parts_says_that_there_is_nothing_to_do(
+    study: Path, tmp_path: Path
+) -> None:
+    for index, said in (
+        ("0", ""),
+        ("1", "cyclosweep: the study has 1 part: from task 1 on there is nothing to do\n"),
+    ):
+        result = run(
+            "shard", str(study), "--out", str(tmp_path / "s"), "--index", index, "--of", "9"
+        )
+        assert result.returncode == 0
+        assert result.stderr == said
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -276,7 +290,8 @@ def test_without_a_command_there_is_help() -> None:
 def test_other_rows_of_the_same_study_are_refused_by_name(study: Path, tmp_path: Path) -> None:
     out = str(tmp_path / "out")
     assert run("sweep", str(study), "--out", out, "--rows", "20").returncode == 0
-    assert_one_line(run("sweep", str(study), "--out", out), 2, "0 to 20", "0 to 150", "--fresh")
+    refused = run("sweep", str(study), "--out", out)
+    assert_one_line(refused, 2, "0 to 19 of", "0 to 149 asked", "--fresh")
 
 
 def test_a_challenge_without_its_package_says_what_to_install(tmp_path: Path) -> None:
@@ -309,7 +324,7 @@ def test_results_do_not_go_into_a_file(tmp_path: Path, arguments: list[str]) -> 
 
 def test_a_programme_that_is_a_folder_is_one_line(tmp_path: Path) -> None:
     result = run("simulate", "reference-87", ".", "--out", "out.csv", cwd=tmp_path)
-    assert_one_line(result, 2, ".: no such file")
+    assert_one_line(result, 2, ".: is a folder, expected a file")
 
 
 def test_a_study_nested_too_deeply_is_one_line(tmp_path: Path) -> None:

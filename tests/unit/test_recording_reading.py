@@ -274,7 +274,7 @@ def test_bad_metadata_is_one_line(tmp_path: Path, meta: str, words: list[str]) -
 
 def test_files_that_are_not_there(tmp_path: Path) -> None:
     assert "no such file" in complaint(tmp_path / "nothing.csv")
-    assert "no such file" in complaint(tmp_path)
+    assert "is a folder, expected a file" in complaint(tmp_path)
     assert "gone.toml" in complaint(write(tmp_path, TEXT), tmp_path / "gone.toml")
 
 

@@ -12,7 +12,7 @@ import typer
 
 from cyclosweep.atomic import unfinished
 from cyclosweep.cli.output import fail
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, refuse_no_file
 
 if TYPE_CHECKING:
     from polars import DataFrame
@@ -64,8 +64,7 @@ def simulate(
     from cyclosweep.recording.programme import beyond_rating, scaled_programme, sheet_of
     from cyclosweep.simulation.simulate import simulate as run
 
-    if not program.is_file():
-        raise InputError(f"{program}: no such file")
+    refuse_no_file(program)
     read = (program, _metadata(program), Path(model))
     _refuse_output("--out", out, read)
     if sheet is not None:

@@ -73,10 +73,18 @@ def shard(
     as_json: AsJson = False,
 ) -> None:
     """Compute one task of a batch array; any mix of tasks gives the same dataset."""
+    from cyclosweep.sweep.dataset import dataset_of
     from cyclosweep.sweep.shards import shard as run
 
     with interruptible(LEFT):
-        summary = run(_study(study, None), out, index=index, of=of)
+        swept = _study(study, None)
+        summary = run(swept, out, index=index, of=of)
+    if index >= (parts := dataset_of(swept, out).part_count):
+        print(
+            f"cyclosweep: the study has {parts:,} part{'s' * (parts != 1)}: from task {parts:,} on "
+            "there is nothing to do",
+            file=sys.stderr,
+        )
     if as_json:
         print_json({"schema": "cyclosweep.summary/1", "folder": str(out), **summary.to_json()})
     else:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep.errors import DesignError, InputError
+from cyclosweep.errors import DesignError, InputError, refuse_no_file
 from cyclosweep.recording.choosing import Choice, choose, numbers_of
 from cyclosweep.recording.columns import file_columns, stem
 from cyclosweep.recording.facts import facts_of
@@ -165,8 +165,7 @@ def inspect(
         The file cannot be read as a table, the settings do not fit it, or the drive cannot be
         built.
     """
-    if not path.is_file():
-        raise InputError(f"{path}: no such file")
+    refuse_no_file(path)
     _refuse_drive(known)
     in_force = None if settings is None else InForce.read(settings, known, given)
     if in_force is not None:

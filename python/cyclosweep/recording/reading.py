@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, refuse_no_file
 from cyclosweep.recording.cleaning import (
     beyond_limits,
     drop_missing,
@@ -55,8 +55,7 @@ def read(path: Path, meta_path: Path | None, meta: Metadata | None = None) -> di
     InputError
         The file cannot be read as a recording.
     """
-    if not path.is_file():
-        raise InputError(f"{path}: no such file")
+    refuse_no_file(path)
     meta_path = metadata_path(path, meta_path)
     if meta is None:
         meta = Metadata() if meta_path is None else Metadata.read(meta_path)

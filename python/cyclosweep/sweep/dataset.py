@@ -174,10 +174,12 @@ class Dataset:
         whole = {"start": 0, "stop": 0}
         if not isinstance(there, dict) or {**there, **whole} != {**here, **whole}:
             return
+        held, asked = (
+            f"{each.get('start', 0):,} to {each.get('stop', 0) - 1:,}" for each in (there, here)
+        )
         raise InputError(
-            f"{self.folder}: holds variants {there.get('start'):,} to {there.get('stop'):,} of "
-            f"this study, found {here['start']:,} to {here['stop']:,} asked for; expected the "
-            "same, another folder, or --fresh, which deletes what is there"
+            f"{self.folder}: holds variants {held} of this study, found {asked} asked for; "
+            "expected the same, another folder, or --fresh, which deletes what is there"
         )
 
     def is_whole(self, part: Part) -> bool:
