@@ -12,6 +12,7 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.design.part_units import PART_INPUTS, PART_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS
+from cyclosweep.sweep.size import estimate
 
 
 @pytest.fixture(scope="module")
@@ -135,6 +136,15 @@ def test_a_dataset_is_resumed_and_knows_its_model(drive: cs.Drive, tmp_path: Pat
     assert found.equals(cs.sweep(space, model="components"))
     with pytest.raises(cs.InputError, match="another study"):
         cs.sink(space, tmp_path, model="components", solver="full", rows_per_part=8)
+
+
+def test_the_size_on_disk_is_foretold(drive: cs.Drive, tmp_path: Path) -> None:
+    space = cs.Space.sobol(drive, 16_000, seed=1, output_pin_diameter_mm=(12, 16))
+    study = cs.Study.of(space, model="components")
+    foretold = estimate(study, tmp_path / "study").needed_bytes
+    cs.sink(study, tmp_path / "study")
+    written = sum(path.stat().st_size for path in (tmp_path / "study").glob("part-*"))
+    assert foretold == pytest.approx(written, rel=0.2)
 
 
 def test_a_study_file_names_the_model(drive: cs.Drive, tmp_path: Path) -> None:

@@ -53,6 +53,12 @@ def page(folder: Path) -> str:
     return cs.report_study(folder, folder.parent / "bericht ö.html").read_text("utf-8")
 
 
+def test_a_limit_without_an_end_is_said_in_words(page: str) -> None:
+    plain = page.replace("<wbr>", "")
+    assert "hole_web_mm at least 2.0" in plain
+    assert "to inf" not in plain
+
+
 def test_counts_and_means_are_those_of_the_rows(folder: Path, found: Aggregate) -> None:
     rows = cs.scan_dataset(folder).collect()
     ok = rows.filter(status="ok")

@@ -16,6 +16,7 @@ from cyclosweep.study_report.pictures import effect_svg, feasible_svg, figure_im
 from cyclosweep.study_report.words import (
     NOTHING,
     label,
+    limit_words,
     method_words,
     number,
     summary,
@@ -383,7 +384,7 @@ def _drive(facts: StudyFacts) -> str:
 
 def _provenance(facts: StudyFacts) -> str:
     study = facts.study
-    limits = [f"{name} {low} to {high}" for name, low, high in study.definition["limits"]]
+    limits = [limit_words(*limit) for limit in study.definition["limits"]]
     rows = [
         ("study, SHA-256", study.hash),
         ("cyclosweep", study.version),

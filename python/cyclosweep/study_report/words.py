@@ -8,7 +8,15 @@ from cyclosweep.design.units import quantity
 from cyclosweep.study_report.gather import StudyFacts
 from cyclosweep.sweep.objective import Objective
 
-__all__ = ["label", "method_words", "number", "summary", "why_not_robust", "wish"]
+__all__ = [
+    "label",
+    "limit_words",
+    "method_words",
+    "number",
+    "summary",
+    "why_not_robust",
+    "wish",
+]
 
 NOTHING = "–"
 
@@ -45,6 +53,26 @@ def with_unit(name: str, value: object) -> str:
 def wish(objective: Objective) -> str:
     """What is wanted of a column, as ``greatest hole_web_mm``."""
     return f"{'greatest' if objective.maximise else 'least'} {objective.column}"
+
+
+def limit_words(name: str, low: str, high: str) -> str:
+    """A limit of a study, whose ends are infinite where it has none.
+
+    Parameters
+    ----------
+    name : str
+        Column or expression.
+    low, high : str
+        Least and greatest value, as a study's definition writes them.
+
+    Examples
+    --------
+    >>> limit_words("hole_web_mm", "2.0", "inf"), limit_words("mass_kg", "1.0", "3.0")
+    ('hole_web_mm at least 2.0', 'mass_kg 1.0 to 3.0')
+    """
+    if math.isinf(float(high)):
+        return name if math.isinf(float(low)) else f"{name} at least {low}"
+    return f"{name} at most {high}" if math.isinf(float(low)) else f"{name} {low} to {high}"
 
 
 def method_words(facts: StudyFacts) -> str:

@@ -22,8 +22,9 @@ _PLACES = 4
 """Places of the study where some variants are computed: its ends need not be alike."""
 _ROWS = 1024
 """Variants computed at each place."""
-_SOLVED_ROWS = 16
-"""The same where equilibria are solved, about a millisecond each."""
+_SOLVED_ROWS = 512
+"""The same where equilibria are solved, up to a millisecond each: so many that what a table costs
+by itself, some ten milliseconds and kilobytes, does not count."""
 
 
 @dataclass(frozen=True)
