@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import json
 import os
@@ -22,6 +23,8 @@ DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
 RUN_WHOLE = sorted([*(DOCS / "tutorials").glob("*.md"), *(DOCS / "how-to").glob("*.md")])
 """Pages whose blocks build on each other: run from top to bottom in one folder."""
+ONE_SESSION = DOCS / "tutorials" / "better-drive.md"
+"""Page whose Python blocks go on from each other in one session, and which says so."""
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -81,6 +84,68 @@ def test_page_runs_from_top_to_bottom(page: Path, folder: Path) -> None:
             _run_in_shell(match[2], folder)
         elif match[1] == "python":
             exec(compile(match[2], page.name, "exec"), names)
+
+
+def _writers() -> Iterator[tuple[str, str]]:
+    """Folder of each sweep on the pages, and what decides what it holds."""
+    for page in PAGES:
+        for number, match in enumerate(_BLOCK.finditer(page.read_text("utf-8"))):
+            place = f"{page.name}, block {number}"
+            if match[1] == "sh":
+                for study, rows, out in re.findall(
+                    r"^cyclosweep (?:sweep|shard) (\S+)(?: --rows (\d+))?.* --out (\S+)",
+                    match[2],
+                    re.MULTILINE,
+                ):
+                    lasts = study.startswith("examples/")
+                    yield out.rstrip("/"), f"{study} {rows}" if lasts else f"{page.name}: {study}"
+            elif match[1] == "python":
+                for out in re.findall(r'cs\.sink\(.*"([\w-]+)"', match[2]):
+                    yield out, place
+
+
+def test_blocks_of_all_pages_run_one_after_the_other_in_one_folder() -> None:
+    writers: dict[str, set[str]] = {}
+    for folder, what in _writers():
+        writers.setdefault(folder, set()).add(what)
+    assert len(writers) > 8
+    assert {folder: sorted(what) for folder, what in writers.items() if len(what) > 1} == {}
+    made = [
+        name
+        for page in PAGES
+        for name in re.findall(
+            r"^cyclosweep new .*--out (\S+)", page.read_text("utf-8"), re.MULTILINE
+        )
+    ]
+    assert made
+    for name in made:  # new does not overwrite
+        others = [
+            page.name
+            for page in PAGES
+            if re.search(rf'(> |Path\("){re.escape(name)}\b', page.read_text("utf-8"))
+        ]
+        assert made.count(name) == 1
+        assert not others, name
+
+
+def test_every_python_block_imports_what_it_uses() -> None:
+    modules = {"cs", "duckdb", "np", "pa", "pd", "pl", "plt"}
+    missing = []
+    assert "one Python session" in ONE_SESSION.read_text("utf-8")
+    for page in (page for page in PAGES if page != ONE_SESSION):
+        for match in _BLOCK.finditer(page.read_text("utf-8")):
+            if match[1] != "python":
+                continue
+            nodes = list(ast.walk(ast.parse(match[2])))
+            imported = {
+                alias.asname or alias.name
+                for node in nodes
+                if isinstance(node, ast.Import)
+                for alias in node.names
+            }
+            used = {node.id for node in nodes if isinstance(node, ast.Name)} & modules
+            missing += [f"{page.name}: {name}" for name in sorted(used - imported)]
+    assert not missing
 
 
 def test_every_page_stands_in_the_contents_of_the_site() -> None:
