@@ -256,7 +256,7 @@ def test_measured_loop_is_described_as_an_expert_would(
         "staircase",
         "model error",
     ]
-    assert "N m/arcmin, 95 % interval" in rows["stiffness"]
+    assert "N m/arcmin at the output shaft, 95 % interval" in rows["stiffness"]
     hidden = {row["name"] for row in found.content["not_testable"]}
     assert {
         "independent_torque",
