@@ -14,7 +14,11 @@ DRIVE = cs.Drive.reference_87()
 
 def search_of(*values: EffectValue) -> Search:
     """Calibrated search of a recording made with these effects."""
-    recording = long_recording(3_000, values)
+    return search_of_recording(long_recording(3_000, values))
+
+
+def search_of_recording(recording: cs.Recording) -> Search:
+    """Calibrated search of a recording."""
     problem = prepare(recording, DRIVE.nominal_line("input"), int(DRIVE.output_pin_count))
     library = build_library(problem.history, problem.fitted, tuple(effects()))
     return calibrate(problem, library, 0)

@@ -16,6 +16,7 @@ from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.model_error_table import with_error_table
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.diagnosis.prepare.single_outliers import without_single_outliers
 from cyclosweep.diagnosis.refuse import (
     NoDiagnosisError,
     check_prepared,
@@ -111,6 +112,7 @@ def _run_stages(
         return sliding_diagnosis(recording, drive, sliding, effects, seed)
     line, pins = drive.nominal_line(recording.side), int(drive.output_pin_count)
     mesh_ratio = float(drive.ratio) if recording.side == "output" else 1.0
+    recording = without_single_outliers(recording, line)
     problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio)
     check_prepared(problem, drive)
     library = build_library(problem.history, problem.fitted, effects)

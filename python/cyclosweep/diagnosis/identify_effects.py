@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.identify.staged_search import (
     search_in_stages,
     visibility,
 )
-from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify.verdict import decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
 from cyclosweep.simulation.effects.history import Floats
@@ -81,20 +81,40 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         noise = noise_beyond(search.problem, search.library, best.fit)
         if _is_same(noise, search.noise) or is_far_likelier(search.noise, noise):
             break
-        given_up = mismatch > CLEAR and decide(search, [], 0.0).unexplained
+        given_up = mismatch > CLEAR and _leaves_something(search)
         say("starting over with better-known noise")
         search = Search(search.problem, noise, search.library, search.seed)
         if given_up:
             return search_in_stages(search, flexible, say)
     else:
         search.run(say)
-    if not decide(search, [], 0.0).unexplained:
+    if not _leaves_something(search):
         return search
     if pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
     return search_in_stages(search, flexible, say)
+
+
+def _leaves_something(search: Search) -> bool:
+    """Whether the best structure of a search leaves more than noise, or holds what has no name.
+
+    Noise of heavy tails may take the places where a fit in a bad optimum is far off for outliers.
+
+    Parameters
+    ----------
+    search : Search
+        After it has run.
+
+    Returns
+    -------
+    bool
+    """
+    decision = decide(search, [], 0.0)
+    if decision.best is None:
+        return decision.unexplained
+    return no_more_than_fits(decision, decision.best, search, 0.0).unexplained
 
 
 def pieces(noise: Noise) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from cyclosweep.errors import InputError, did_you_mean
 from cyclosweep.simulation.effects import Effect, find
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.json_fields import number_of, object_of, text_of
+from cyclosweep.simulation.json_fields import flag_of, number_of, object_of, text_of
 
 __all__ = ["EffectValue", "linear_twist"]
 
@@ -26,22 +26,32 @@ class EffectValue:
         Shape parameters by name, each in the unit that the effect states.
     amplitudes : tuple of float
         In the order of ``effect.amplitudes(shape)``, each in the unit stated there.
+    in_series : bool
+        An elastic effect lies in series with the part that friction holds: its twist follows from
+        the applied torque, not from the torque that friction leaves.
     """
 
     name: str
     shape: Mapping[str, float]
     amplitudes: tuple[float, ...]
+    in_series: bool = False
 
     @property
     def effect(self) -> Effect:
         """The registered effect of this name."""
         return find(self.name)
 
+    @property
+    def elastic(self) -> bool:
+        """Whether the twist follows from the torque that friction leaves alone."""
+        return self.effect.elastic and not self.in_series
+
     def as_dict(self) -> dict[str, Any]:
         """Entry of ``model.json``."""
         parameters = self.effect.amplitudes(self.shape)
         return {
             "name": self.name,
+            **({"in_series": True} if self.in_series else {}),
             "shape": dict(self.shape),
             "amplitudes": {
                 parameter.name: float(value)
@@ -76,9 +86,35 @@ class EffectValue:
             given = object_of(content, "shape", {})
             shape = effect.known_shape({key: number_of(given, key) for key in given})
             _require_positive(effect, shape)
-            return cls(effect.name, shape, _amplitudes(effect, shape, content))
+            in_series = _in_series(effect, content)
+            return cls(effect.name, shape, _amplitudes(effect, shape, content), in_series)
         except InputError as error:
             raise InputError(f"{effect.name}: {error}") from error
+
+
+def _in_series(effect: Effect, content: Mapping[str, Any]) -> bool:
+    """Whether an entry lies in series with the part that friction holds.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    content : mapping
+        Entry of ``model.json``.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InputError
+        The value is neither true nor false, or true for an effect that is not elastic.
+    """
+    in_series = flag_of(content, "in_series")
+    if in_series and not effect.elastic:
+        raise InputError("in_series: found true, expected only for an effect of the elastic law")
+    return in_series
 
 
 def _require_positive(effect: Effect, shape: Mapping[str, float]) -> None:
@@ -154,7 +190,8 @@ def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
     total = np.zeros(len(history))
     for value in effects:
         if not value.effect.slips:
-            columns = value.effect.columns(history, value.shape)
+            seen = history.under_applied_torque if value.in_series else history
+            columns = value.effect.columns(seen, value.shape)
             width = min(columns.shape[1], len(value.amplitudes))
             total += columns[:, :width] @ np.array(value.amplitudes[:width])
     return total

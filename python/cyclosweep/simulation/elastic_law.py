@@ -67,7 +67,9 @@ class ElasticLaw:
         return np.interp(torque_nm, self.torque_nm, self.twist_deg)
 
 
-def elastic_law(model: CalibratedLine, largest_torque_nm: float) -> ElasticLaw | None:
+def elastic_law(
+    model: CalibratedLine, largest_torque_nm: float, *, held_by_friction: bool = False
+) -> ElasticLaw | None:
     """Elastic law of the compliance and all effects that belong to it; see `law_of_twist`.
 
     Parameters
@@ -76,13 +78,19 @@ def elastic_law(model: CalibratedLine, largest_torque_nm: float) -> ElasticLaw |
         Line and effects, such as a Model.
     largest_torque_nm : float
         Largest torque of the programme [N m].
+    held_by_friction : bool
+        Leave out the effects in series with the part that friction holds.
 
     Returns
     -------
     ElasticLaw or None
         None where no effect of the model is elastic and it has no curve: the law is a line.
     """
-    effects = [value for value in model.effects if value.effect.elastic]
+    effects = [
+        value
+        for value in model.effects
+        if value.effect.elastic and not (held_by_friction and value.in_series)
+    ]
     if not effects and model.elastic_curve is None:
         return None
 

@@ -11,7 +11,7 @@ from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.orders import needed_columns
-from cyclosweep.simulation.effects.slip import Friction
+from cyclosweep.simulation.effects.slip import Friction, lies_behind_play
 from cyclosweep.simulation.elastic_law import ElasticLaw, elastic_law
 from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist
@@ -221,8 +221,10 @@ def settle(
         The same load with the settled path.
     """
     sliding = [value for value in model.effects if value.effect.slips]
-    law = elastic_law(model, history.largest_torque_nm) if sliding else None
-    others = [v for v in model.effects if not sliding or not v.effect.elastic]
+    law = None
+    if sliding:
+        law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
+    others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
     history = history.with_state(measured_deg=None)
     if moving:
@@ -251,7 +253,7 @@ def _slide(
     model: Model,
     history: History,
     sliding: Sequence[EffectValue],
-    added: Floats,
+    beyond: Floats,
     law: ElasticLaw | None,
     known_side: Floats | None,
 ) -> History:
@@ -265,8 +267,8 @@ def _slide(
         Load history.
     sliding : sequence of EffectValue
         Friction effects.
-    added : ndarray, shape (n,)
-        Twist that effects other than friction add [deg].
+    beyond : ndarray, shape (n,)
+        Twist that effects beyond the friction add [deg].
     law : ElasticLaw or None
         Elastic law; None for the straight line.
     known_side : ndarray, shape (n,), or None
@@ -280,14 +282,18 @@ def _slide(
     flank = 0.0 if known_side is None else known_side * model.free_play_deg
     play = model.free_play_deg if known_side is None else 0.0
     points = None if law is None else (law.torque_nm, law.twist_deg)
-    offset = model.datum_deg + added + flank
-    angle, friction = _friction(sliding).solve(history, offset, play, points)
-    elastic = history.applied_nm - friction
+    offset = np.full(len(history), model.datum_deg) + flank
+    friction = _friction(sliding)
+    held, torque = friction.solve(history, offset, play, points)
+    elastic = history.applied_nm - torque
+    state = {"elastic_nm": elastic, "angle_deg": held + beyond, "beyond_deg": beyond}
     if known_side is not None:
-        return history.with_state(elastic_nm=elastic, angle_deg=angle)
+        return history.with_state(**state)
     small = 1e-9 * history.largest_torque_nm
     side = _flanks(np.where(np.abs(elastic) < small, 0.0, elastic), history.restart)
-    return history.with_state(elastic_nm=elastic, angle_deg=angle, side=side)
+    if lies_behind_play(friction.shape):
+        state["angle_deg"] = held + beyond + side * model.free_play_deg
+    return history.with_state(side=side, **state)
 
 
 def _friction(sliding: Sequence[EffectValue]) -> Friction:
@@ -317,8 +323,14 @@ def _torque(model: Model, programme: Recording) -> Floats:
     held_back = _friction(sliding) if sliding else None
     history = history_of(programme, model)
     farthest = float(np.abs(angle - model.datum_deg).max(initial=0.0))
-    law = elastic_law(model, farthest / model.compliance_deg_per_nm)
-    others = [value for value in model.effects if not value.effect.elastic]
+    law = elastic_law(
+        model, farthest / model.compliance_deg_per_nm, held_by_friction=held_back is not None
+    )
+    others = [
+        value
+        for value in model.effects
+        if not (value.effect.elastic if held_back is None else value.elastic)
+    ]
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     for _ in range(ROUNDS):
@@ -327,7 +339,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
-        twist = angle - model.datum_deg - linear_twist(others, history)
+        beyond_friction = linear_twist(others, history)
+        twist = angle - model.datum_deg - beyond_friction
         beyond = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = beyond / model.compliance_deg_per_nm
         if law is not None:
@@ -335,7 +348,9 @@ def _torque(model: Model, programme: Recording) -> Floats:
         moved = float(np.max(np.abs(settled - elastic)))
         elastic = settled
         if held_back is not None:
-            friction = held_back.torque_nm(history.with_state(elastic_nm=elastic))
+            friction = held_back.torque_nm(
+                history.with_state(elastic_nm=elastic, beyond_deg=beyond_friction)
+            )
         if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9):
             break
     return elastic + friction + model.torque_zero_nm

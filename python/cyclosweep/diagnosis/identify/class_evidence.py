@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import class_columns
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_FAMILY, class_columns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import likelihood_gain
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
@@ -80,6 +80,15 @@ class ClassColumns:
         use = problem.fitted
         _, weight = noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
         made = class_columns(fitted.history)
+        in_series = {
+            name
+            for term in fitted.terms
+            if term.in_series
+            for name in CLASSES_OF_FAMILY.get(term.family, ())
+        }
+        if in_series:
+            applied = class_columns(fitted.history.under_applied_torque)
+            made |= {name: applied[name] for name in in_series & made.keys()}
         scale, freedom = 1.0, noise.freedom
         if noise.structured:
             freedom = min(INDEPENDENT_PIECES, freedom)

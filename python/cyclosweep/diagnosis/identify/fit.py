@@ -75,7 +75,9 @@ class ContactFit(FittedStructure):
                 notes += term.effect.notes(self.history, shape, found)
                 shape, amplitudes = term.effect.portable(self.history, shape, found)
             plain = {name: float(value) for name, value in shape.items()}
-            values.append(EffectValue(term.name, plain, tuple(map(float, amplitudes))))
+            values.append(
+                EffectValue(term.name, plain, tuple(map(float, amplitudes)), term.in_series)
+            )
         return Model(
             compliance_deg_per_nm=float(self.beta[1]),
             free_play_deg=self.history.free_play_deg,
@@ -218,7 +220,7 @@ def fit(
     # A model that is told the measured angle explains it by itself: it has to find the position.
     history = history.with_state(measured_deg=None)
     if start is not None and not any(term.slips for term in terms):
-        history = history.with_state(elastic_nm=history.applied_nm, angle_deg=mean)
+        history = history.with_state(elastic_nm=history.applied_nm, angle_deg=mean, beyond_deg=0.0)
     law = None if start is None else path_law(start.elastic_parts, start.history)
     work = JointFit(problem, noise, terms, parameters, history, mean, law)
     values = np.array([each.to_scale(_value(terms[each.term], each.name)) for each in parameters])

@@ -16,7 +16,12 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
-from cyclosweep.simulation.effects.slip import FrictionEffect
+from cyclosweep.simulation.effects.slip import (
+    STATES,
+    FrictionEffect,
+    in_other_state,
+    state_of,
+)
 
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
 """Friction limits and presliding distances to start from, as shares of torque and twist."""
@@ -228,18 +233,19 @@ def _fitted(noise: Noise, terms: Sequence[Term], before: FittedStructure) -> Fit
 
 
 def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> FittedStructure:
-    """Start the runs with friction in its other state, where that explains clearly more.
+    """Let friction meet the play in another way, where that explains clearly more.
 
-    Runs begin with fresh friction on the first flank, or with friction that has slipped.
+    Runs begin with fresh friction on the first flank, or with friction that has slipped, or
+    friction lies behind the play and does not notice it.
 
     Parameters
     ----------
     noise : Noise
         Noise and model error together.
     best : FittedStructure
-        The best fit, with friction in either state.
+        The best fit, with friction in any of these states.
     charge : float
-        What the other state must gain, see `PARAMETER_CHARGE`.
+        What another state must gain, see `PARAMETER_CHARGE`.
 
     Returns
     -------
@@ -247,16 +253,22 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
     """
     if best.problem.history.free_play_deg <= 0.0:
         return best
-    if not any("slack" in term.shape for term in best.terms):
+    own = next((state_of(term.shape) for term in best.terms if term.slips), None)
+    if own is None:
         return best
-    begun = [
-        replace(term, shape={**term.shape, "slack": 1.0 - term.shape["slack"]})
-        if "slack" in term.shape
-        else term
-        for term in best.terms
-    ]
-    other = _fitted(noise, begun, best)
-    return best if other is None or _cost(other) >= _cost(best) - charge else other
+    turned = best
+    for state in STATES:
+        if state == own:
+            continue
+        begun = [
+            replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
+            for term in best.terms
+        ]
+        other = _fitted(noise, begun, best)
+        least = _cost(best) - charge if turned is best else _cost(turned)
+        if other is not None and _cost(other) < least:
+            turned = other
+    return turned
 
 
 def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:

@@ -39,5 +39,8 @@ def friction_path(
         twist, points = history.compliance_deg_per_nm * history.elastic_nm, None
     else:
         twist, points = law.twist_at(history.elastic_nm), (law.torque_nm, law.twist_deg)
-    angle, torque = friction.solve(history, mean_deg - twist, 0.0, points)
-    return history.with_state(elastic_nm=history.applied_nm - torque, angle_deg=angle)
+    offset = mean_deg - history.beyond_deg - twist
+    held, torque = friction.solve(history, offset, 0.0, points)
+    return history.with_state(
+        elastic_nm=history.applied_nm - torque, angle_deg=held + history.beyond_deg
+    )

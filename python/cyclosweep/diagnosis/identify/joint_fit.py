@@ -8,7 +8,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter, usual_change
 from cyclosweep.diagnosis.identify.fit_state import Expansion, Linearisation
 from cyclosweep.diagnosis.identify.friction_path import friction_path
-from cyclosweep.diagnosis.identify.path_law import elastic_parts, path_law
+from cyclosweep.diagnosis.identify.path_law import beyond_friction, elastic_parts, path_law
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
@@ -215,6 +215,8 @@ class JointFit:
             mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
             if self.slides:
+                beyond = beyond_friction(terms, design, beta)
+                history = history.with_state(angle_deg=history.held_deg + beyond, beyond_deg=beyond)
                 law = path_law(elastic_parts(terms, design, beta), history)
             if self._is_settled(before, mean):
                 break

@@ -36,6 +36,8 @@ BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
 MOST_GROWN = 1.5
 """Size of an accepted effect with a new one in the fit, over its size without, above which the new
 one is refused: the two compensate each other in the odd or in the even part."""
+COMPLIANCE_PLACE = 1
+"""Place of the line's compliance among all parameters."""
 SHAPE_CHARGE = 1.0
 """Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
 
@@ -234,7 +236,15 @@ def basis_of_others(fitted: FittedStructure, places: Collection[int]) -> Floats:
         Whitened.
     """
     others = [k for k in range(fitted.sensitivity.shape[1]) if k not in places]
-    return orthonormal(fitted.sensitivity[:, others], 1e-6)
+    columns = fitted.sensitivity[:, others]
+    frictions = [k for k, term in enumerate(fitted.terms) if term.slips]
+    left_out = any(set(fitted.nonlinear_places(k)) <= set(places) for k in frictions)
+    if left_out and any(term.in_series for term in fitted.terms):
+        # A line of the elastic torque and a curve of the applied one together make the friction,
+        # unless the line moves with the twist by friction held.
+        applied = fitted.history.applied_nm[fitted.problem.fitted]
+        columns[:, others.index(COMPLIANCE_PLACE)] = fitted.whitened(applied, fitted.noise)
+    return orthonormal(columns, 1e-6)
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,6 +47,31 @@ def path_law(elastic: Sequence[tuple[Term, Floats]], history: History) -> Elasti
     return law_of_twist(twist, history.largest_torque_nm, compliance)
 
 
+def beyond_friction(terms: Sequence[Term], design: Sequence[Floats], beta: Floats) -> Floats:
+    """Twist that does not move the part that friction holds: of all that is not elastic.
+
+    Parameters
+    ----------
+    terms : sequence of Term
+        All terms of a structure.
+    design : sequence of ndarray, shape (n, m)
+        Columns of the line, then of each term that does not slip.
+    beta : ndarray
+        Linear parameters.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In deg.
+    """
+    parts = linear_parts(terms, design, beta)
+    twist = np.zeros(len(design[0]))
+    for term, columns, own in parts:
+        if not term.elastic:
+            twist += columns @ own
+    return twist
+
+
 def elastic_parts(
     terms: Sequence[Term], design: Sequence[Floats], beta: Floats
 ) -> list[tuple[Term, Floats]]:
@@ -65,10 +90,31 @@ def elastic_parts(
     -------
     list of (Term, ndarray)
     """
+    parts = linear_parts(terms, design, beta)
+    return [(term, own) for term, _, own in parts if term.elastic]
+
+
+def linear_parts(
+    terms: Sequence[Term], design: Sequence[Floats], beta: Floats
+) -> list[tuple[Term, Floats, Floats]]:
+    """Terms that do not slip, each with its columns and amplitudes.
+
+    Parameters
+    ----------
+    terms : sequence of Term
+        All terms of a structure.
+    design : sequence of ndarray, shape (n, m)
+        Columns of the line, then of each of these terms.
+    beta : ndarray
+        Linear parameters.
+
+    Returns
+    -------
+    list of (Term, ndarray, ndarray)
+    """
     ends = np.cumsum([part.shape[1] for part in design])
     linear = [term for term in terms if not term.slips]
     return [
-        (term, beta[start:end])
-        for term, start, end in zip(linear, ends[:-1], ends[1:], strict=True)
-        if term.elastic
+        (term, columns, beta[start:end])
+        for term, columns, start, end in zip(linear, design[1:], ends[:-1], ends[1:], strict=True)
     ]

@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.identify.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.freer_part import freer_part
+from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.scan import (
     Scan,
     evidence,
@@ -196,7 +197,10 @@ class Search:
         best: Candidate | None = None
         for term, rank, penalty in starting_terms(parent, hypothesis):
             terms = (*parent.fit.terms, term)
-            joint = with_right_signs(fit(self.problem, self.noise, terms, parent.fit))
+            fitted = fit(self.problem, self.noise, terms, parent.fit)
+            joint: FittedStructure | None = with_right_signs(fitted)
+            if joint is not None and term.slips:
+                joint = best_placed(joint)
             if joint is None or joint.chi2 > parent.fit.chi2:
                 # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue

@@ -8,15 +8,10 @@ noise, so that what is faint is judged against the noise alone.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
-    CLASSES_OF_EFFECT,
-    MOST_POSITIONS,
-    POSITION,
-)
-from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
@@ -31,22 +26,19 @@ from cyclosweep.diagnosis.identify.friction_first import (
     friction_first,
     from_better_start,
 )
-from cyclosweep.diagnosis.identify.law_in_class import (
-    LEAST_OF_CLASS,
-    amplitude_count,
-    cancels,
-    makes_others_grow,
-    share_class,
+from cyclosweep.diagnosis.identify.model_error_terms import (
+    TIMES_WHAT_IS_LEFT,
+    without_model_error,
 )
 from cyclosweep.diagnosis.identify.other_laws import with_better_laws
+from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
-from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
+from cyclosweep.diagnosis.identify.verdict import decide, likely, named_if_close, probabilities
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
-from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.history import Floats
 
 MODEL_ERROR_SHARE = 0.3
 """Model error over what a stage has to explain, as root mean squares."""
@@ -54,17 +46,8 @@ FAINT = 30.0
 """Signal-to-noise ratio up to which a mismatch is judged against the noise alone."""
 MOST_STAGES = 8
 """Stages of a search: two for each of four effects, as what was accepted may be given up again."""
-LEAST_OF_MISMATCH = 0.04
-"""Size from which an effect is told from the model error of the others, as a share of the mismatch
-of the calibrated model."""
-LEAST_OF_FAMILY = 0.25
-"""Size from which an effect is told from the model error of an effect of the same family that was
-accepted before, as a share of the other's size."""
-BY_CHANCE = 1e-4
-"""Probability of a law of run offsets, found among a hundred, up to which it is no chance."""
-TIMES_WHAT_IS_LEFT = 3.0
-"""Size of an effect over what the whole structure leaves beyond the noise, from which it is no
-model error in any case: laws that err by as much as the effect would leave more."""
+HARDLY_LESS_LIKELY = 10.0
+"""Log odds by which a structure that is accepted whole may be behind the best one [nat]."""
 
 
 def visibility(fitted: FittedStructure, noise: Noise, flexible: Floats) -> float:
@@ -199,13 +182,20 @@ def search_in_stages(
             doubtful = _doubtful(search, best)
             found = tuple(term for term in found if term.name not in doubtful)
         part = search.visited.get(frozenset(term.name for term in found), search.start)
+        before = {term.name for term in accepted}
+        if {term.name for term in found} == before and not decision.unexplained:
+            # Of two structures that leave nothing the likelier one may hold too much.
+            whole = _accepted_whole(search, best, mismatch)
+            if whole:
+                decision = replace(decision, explanations=likely(probabilities(whole)))
+                best, found = whole[0], whole[0].fit.terms
         freer_form = freer_instead_of_others(search, best, part)
         if freer_form is not None:
             fitted = refitted(freer_form.fit.terms, freer_form.fit)
             accepted, last = fitted.terms, _stage(searched, flexible, fitted)
             rivals.clear()
             continue
-        if {term.name for term in found} == {term.name for term in accepted}:
+        if {term.name for term in found} == before:
             break
         if not decision.unexplained:
             so_far = 1.0 - sum(share for _, share in rivals)
@@ -238,7 +228,7 @@ def _with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Sear
     """
     rivals = last.rivals_of_start
     if last.start is not last.baseline:
-        better = with_better_laws(last)
+        better = best_placed(with_better_laws(last))
         if better is not last.start.fit:
             last = _stage(searched, flexible, better)
         freer = with_freer_laws(last, last.start).fit
@@ -269,6 +259,34 @@ def _stage(searched: Search, flexible: Floats, accepted: FittedStructure) -> Sea
     return Search(searched.problem, noise, searched.library, searched.seed, accepted)
 
 
+def _accepted_whole(search: Search, best: Candidate, mismatch_deg: float) -> list[Candidate]:
+    """Structures that leave nothing, and of which no term may be model error.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the stage.
+    best : Candidate
+        Its best structure.
+    mismatch_deg : float
+        Root mean square error of the calibrated model without effects [deg].
+
+    Returns
+    -------
+    list of Candidate
+        Those that are hardly less likely than the best, most probable first.
+    """
+    least = max(best.score - HARDLY_LESS_LIKELY, search.start.score)
+
+    def is_whole(other: Candidate) -> bool:
+        if not (other.all_recognised and search.suffices(other)):
+            return False
+        kept = without_model_error(other.fit, search.start.fit, mismatch_deg)
+        return len(kept) == len(other.fit.terms) and search.start.names < other.names
+
+    return [each for each in search.explanations() if each.score >= least and is_whole(each)]
+
+
 def _doubtful(search: Search, best: Candidate) -> frozenset[str]:
     """Terms that are not to be accepted of a structure that leaves something, or holds the unnamed.
 
@@ -294,103 +312,3 @@ def _doubtful(search: Search, best: Candidate) -> frozenset[str]:
         if not (recognised and clear) or worth(search, term.name, best) < INDISPENSABLE:
             found.add(term.name)
     return frozenset(found)
-
-
-def without_model_error(
-    fitted: FittedStructure, accepted: FittedStructure, mismatch_deg: float
-) -> tuple[Term, ...]:
-    """Terms of a structure but those that may be model error of a term accepted before.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    accepted : FittedStructure
-        Structure of the terms accepted before.
-    mismatch_deg : float
-        Root mean square error of the calibrated model without effects [deg].
-
-    Returns
-    -------
-    tuple of Term
-    """
-    before = {t.name: float(np.std(size_of(accepted, k))) for k, t in enumerate(accepted.terms)}
-    size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
-    left = beyond_noise_deg(fitted)
-    errors = errors_of_larger(fitted)
-    kept = []
-    for k, term in enumerate(fitted.terms):
-        others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
-        family = max((s for s, each in others if each.family == term.family), default=0.0)
-        alike = max((s for s, each in others if share_class(each, term)), default=0.0)
-        if term.name in CLASSES_OF_EFFECT and _may_be_chance(fitted, k, size[k], left):
-            beside = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
-            alike = max(alike, *beside, 0.0)
-        mates = [j for j, each in enumerate(fitted.terms) if j != k and share_class(each, term)]
-        least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * family)
-        stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
-        stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
-        largest = max((size[j] for j in mates), default=0.0)
-        small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
-        shrunk = size[k] < LEAST_OF_CLASS * before.get(term.name, 0.0)
-        replaced = (small or shrunk) and size[k] < LEAST_OF_CLASS * largest
-        replaced |= small and term.name in errors
-        if (term.name in before and not replaced) or (
-            stands_out and not cancels(fitted, k) and not makes_others_grow(fitted, k, accepted)
-        ):
-            kept.append(term)
-    return tuple(kept)
-
-
-def offset_count(history: History, fitted: Flags, name: str) -> int:
-    """Number of offsets that a recording has for a law to follow.
-
-    Parameters
-    ----------
-    history : History
-        Load history of the recording.
-    fitted : ndarray of bool, shape (n,)
-        Rows that are fitted.
-    name : str
-        Name of the effect: one that goes with the position has an offset for each position of a
-        run, unless it moves steadily, the others one for each run.
-
-    Returns
-    -------
-    int
-    """
-    if history.crank_deg is None or POSITION not in CLASSES_OF_EFFECT[name]:
-        return history.run_count
-    place = positions(history.crank_deg[fitted])
-    if len(np.unique(place)) > MOST_POSITIONS:
-        return history.run_count
-    return len(np.unique(np.column_stack([history.run[fitted], place]), axis=0))
-
-
-def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
-    """Whether a law of run offsets may by chance hold what another one misses of them.
-
-    Offsets of runs are a few numbers. Of what is left of them, k columns drawn at random leave less
-    than a share s of the mean square with probability s to the half of their number less k.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    index : int
-        Place of the law's term.
-    size : float
-        Root mean square of its twist [deg].
-    left : float
-        Root mean square of what the whole structure leaves beyond the noise [deg].
-
-    Returns
-    -------
-    bool
-    """
-    offsets = [k for k, term in enumerate(fitted.terms) if term.name in CLASSES_OF_EFFECT]
-    counted = sum(amplitude_count(fitted, k) for k in offsets)
-    name = fitted.terms[index].name
-    free = offset_count(fitted.history, fitted.problem.fitted, name) - 1 - counted
-    share = left**2 / max(left**2 + size**2, 1e-300)
-    return free <= 0 or share ** (0.5 * free) > BY_CHANCE

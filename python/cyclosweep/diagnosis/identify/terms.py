@@ -24,12 +24,16 @@ class Term:
     amplitude : float
         Friction limit of an effect on slip elements [N m, or a share of the torque]. Amplitudes of
         all other effects enter linearly and belong to the fit.
+    in_series : bool
+        An elastic effect lies in series with the part that friction holds: its twist follows from
+        the applied torque, not from the elastic one.
     """
 
     effect: Effect | None
     shape: Shape
     unnamed: UnnamedShape | None = None
     amplitude: float = 0.0
+    in_series: bool = False
 
     @property
     def name(self) -> str:
@@ -53,11 +57,13 @@ class Term:
     def elastic(self) -> bool:
         """Whether it belongs to the elastic law: its twist follows from the elastic torque."""
         if self.effect is not None:
-            return self.effect.elastic
+            return self.effect.elastic and not self.in_series
         return self.unnamed is not None and self.unnamed.elastic
 
     def columns(self, history: History) -> Floats:
         """Columns for unit amplitudes [deg]."""
+        if self.in_series:
+            history = history.under_applied_torque
         if self.effect is not None:
             return self.effect.columns(history, self.shape)
         assert self.unnamed is not None

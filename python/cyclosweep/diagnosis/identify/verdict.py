@@ -76,13 +76,13 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     if not enough:
         best = structures[0]
         return Decision("UNKNOWN_PHYSICS", best, [(best, 1.0)], True)
-    probable = _probabilities(enough)
+    probable = probabilities(enough)
     unnamed = [(n, p) for n, p in probable if not n.all_recognised]
     if sum(p for _, p in unnamed) > 0.5:
-        return Decision("UNKNOWN_PHYSICS", unnamed[0][0], _likely(probable), True)
+        return Decision("UNKNOWN_PHYSICS", unnamed[0][0], likely(probable), True)
     best, probability = next((n, p) for n, p in probable if n.all_recognised)
     verdict: Verdict = "IDENTIFIED" if probability >= SURE else "AMBIGUOUS"
-    return Decision(verdict, best, _likely(probable), False)
+    return Decision(verdict, best, likely(probable), False)
 
 
 def named_if_close(search: Search, decision: Decision) -> Decision:
@@ -106,10 +106,10 @@ def named_if_close(search: Search, decision: Decision) -> Decision:
     named = [each for each in enough if each.all_recognised]
     if not named or named[0].score < decision.best.score - CLOSE_TO_UNNAMED:
         return decision
-    return Decision("AMBIGUOUS", named[0], _likely(_probabilities(named)), False)
+    return Decision("AMBIGUOUS", named[0], likely(probabilities(named)), False)
 
 
-def _probabilities(candidates: list[Candidate]) -> list[tuple[Candidate, float]]:
+def probabilities(candidates: list[Candidate]) -> list[tuple[Candidate, float]]:
     """Posterior probability of each of some structures, of which one is taken to be right.
 
     Parameters
@@ -127,7 +127,7 @@ def _probabilities(candidates: list[Candidate]) -> list[tuple[Candidate, float]]
     return list(zip(candidates, map(float, probability), strict=True))
 
 
-def _likely(probable: list[tuple[Candidate, float]]) -> list[tuple[Candidate, float]]:
+def likely(probable: list[tuple[Candidate, float]]) -> list[tuple[Candidate, float]]:
     """The most probable structures that together have a probability of `COVERAGE`.
 
     Parameters

@@ -190,7 +190,7 @@ def with_values(
         datum_deg=base["datum"],
         torque_zero_nm=base["zero"],
         effects=tuple(
-            EffectValue(t.name, shape, tuple(amplitude))
+            EffectValue(t.name, shape, tuple(amplitude), t.in_series)
             for t, shape, amplitude in zip(terms, shapes, amplitudes, strict=True)
         ),
     )

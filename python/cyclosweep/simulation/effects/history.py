@@ -33,6 +33,9 @@ class History:
         Torque that twists the drive: applied torque less friction [N m].
     angle_deg : ndarray, shape (n,)
         Twist according to the model, from the datum of the dial [deg].
+    beyond_deg : ndarray, shape (n,), or float
+        Part of it that lies beyond the friction: it turns the shaft where it is measured, but not
+        the part that friction holds [deg].
     side : ndarray, shape (n,)
         Flank in contact: +1 or -1.
     run : ndarray of int, shape (n,)
@@ -72,6 +75,7 @@ class History:
     output_pin_count: int = 8
     mesh_ratio: float = 1.0
     measured_deg: Floats | None = None
+    beyond_deg: Floats | float = 0.0
     resets_datum: bool = False
 
     def __len__(self) -> int:
@@ -99,6 +103,16 @@ class History:
     def load_nm(self) -> Floats:
         """Magnitude of the elastic torque on the flank in contact, never negative [N m]."""
         return np.maximum(self.elastic_nm * self.side, 0.0)
+
+    @cached_property
+    def under_applied_torque(self) -> "History":
+        """The same for a part in series with friction, which carries the whole applied torque."""
+        return self.with_state(elastic_nm=self.applied_nm)
+
+    @property
+    def held_deg(self) -> Floats:
+        """Angle of the part that friction holds, according to the model [deg]."""
+        return self.angle_deg - self.beyond_deg
 
     @property
     def travelled_deg(self) -> Floats:

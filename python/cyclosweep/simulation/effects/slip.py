@@ -40,10 +40,14 @@ SLIP_PARAMETERS = (
     Parameter("forgetting", "", "0: turning points are remembered, 1: Dahl's law", 0.0, 1.0),
     Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
 )
+OPTIONAL = ("skew", "slack", "forgetting", "behind_play")
 SLIP_FORMS = (
-    ShapeForm(("slip_deg", "scatter"), ("skew", "slack", "forgetting")),
-    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), ("skew", "slack", "forgetting")),
+    ShapeForm(("slip_deg", "scatter"), OPTIONAL),
+    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), OPTIONAL),
 )
+STATES: tuple[Shape, ...] = ({"slack": 0.0}, {"slack": 1.0}, {"behind_play": 1.0})
+"""How friction meets the play: it slides through it and starts on the first flank, or in the
+middle; or it lies behind the play, which then does not move it."""
 
 
 def start_of(history: History, shape: Shape) -> Floats:
@@ -55,15 +59,50 @@ def start_of(history: History, shape: Shape) -> Floats:
         Load history of n samples.
     shape : mapping
         `slack` 0: unloaded contact on the first flank; 1: the middle of the dead zone, so that the
-        elements have slipped before the flank is reached.
+        elements have slipped before the flank is reached. Friction behind the play starts unloaded.
 
     Returns
     -------
     ndarray, shape (n,)
         Angle [deg].
     """
+    if lies_behind_play(shape):
+        return np.full(len(history), history.datum_deg)
     contact = history.start_angle_deg
     return contact - float(shape.get("slack", 0.0)) * history.side * history.free_play_deg
+
+
+def lies_behind_play(shape: Shape) -> bool:
+    """Whether friction slides with the elastic twist alone and stands while play is crossed."""
+    return bool(shape.get("behind_play", 0.0))
+
+
+def state_of(shape: Shape) -> Shape | None:
+    """Which of `STATES` a shape is in; None for one that does not say."""
+    return next((each for each in STATES if each.items() <= dict(shape).items()), None)
+
+
+def in_other_state(shape: Shape, state: Shape) -> Shape:
+    """Shape of a friction that meets the play in another way.
+
+    Parameters
+    ----------
+    shape : mapping
+        Shape of a friction.
+    state : mapping
+        One of `STATES`.
+
+    Returns
+    -------
+    mapping
+    """
+    kept = {name: v for name, v in shape.items() if name not in ("slack", "behind_play")}
+    return {**kept, **state}
+
+
+def crossed_play(history: History, shape: Shape) -> Floats | float:
+    """Part of the angle by which friction does not slide because it lies behind the play [deg]."""
+    return history.side * history.free_play_deg if lies_behind_play(shape) else 0.0
 
 
 def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> Floats:
@@ -122,7 +161,7 @@ def slip_state(
     """
     elements = elements_of(shape) if elements is None else elements
     return _core.slip_state(
-        history.angle_deg,
+        np.ascontiguousarray(history.held_deg - crossed_play(history, shape)),
         history.restart,
         start_of(history, shape),
         np.ones(len(history)) if stretch is None else stretch,
@@ -188,12 +227,12 @@ def solve_slip(
 def slip_shapes(history: History) -> list[Shape]:
     """Presliding distances from a five-hundredth to a fifth of the elastic twist."""
     twist = history.largest_twist_deg
-    slack = (0.0, 1.0) if history.free_play_deg > 0 else (0.0,)
+    states = STATES if history.free_play_deg > 0 else STATES[:1]
     return [
-        {"slip_deg": share * twist, "scatter": scatter, "skew": 0.0, "slack": start}
+        {"slip_deg": share * twist, "scatter": scatter, "skew": 0.0, **state}
         for share in (0.002, 0.01, 0.03, 0.08, 0.2)
         for scatter in (0.4, 1.2)
-        for start in slack
+        for state in states
     ]
 
 
@@ -237,7 +276,7 @@ class FrictionEffect(Effect):
 
     def far_apart(self, shape: Shape, other: Shape) -> bool:
         """Whether presliding distances, or the starts, are worth a second start of a fit."""
-        if shape.get("slack") != other.get("slack"):
+        if any(shape.get(name) != other.get(name) for name in ("slack", "behind_play")):
             return True
         distances = [p.name for p in self.shape_parameters if p.unit == "deg" and p.logarithmic]
         return any(not 0.5 < shape[name] / other[name] < 2.0 for name in distances)
@@ -304,7 +343,7 @@ class Friction:
         history : History
             Load history of n samples with the calibrated line.
         offset : ndarray, shape (n,)
-            Everything that shifts the datum [deg].
+            Everything that shifts the datum [deg]; without free play the flank in contact, too.
         free_play : float
             Half width of the dead zone [deg].
         law : pair of ndarray, optional
@@ -315,7 +354,16 @@ class Friction:
         angle_deg, friction_nm : ndarray, shape (n,)
             Angle [deg] and friction torque [N m].
         """
-        return solve_slip(history, self.shape, offset, self.limits, free_play, law, self.elements)
+        crossed: Floats | float = 0.0
+        if lies_behind_play(self.shape):
+            if free_play == 0.0:
+                crossed = crossed_play(history, self.shape)
+            free_play = 0.0
+        offset = offset - crossed
+        angle, torque = solve_slip(
+            history, self.shape, offset, self.limits, free_play, law, self.elements
+        )
+        return angle + crossed, torque
 
     def torque_nm(self, history: History) -> Floats:
         """Friction torque along the path of a history, shape (n,) [N m]."""

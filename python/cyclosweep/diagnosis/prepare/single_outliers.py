@@ -1,0 +1,173 @@
+"""Single readings that no neighbour bears out: knocks, dropouts and signs that are read wrongly.
+
+One reading that is far off tells nothing of the drive, but outweighs all others where errors are
+squared. It is left out of the diagnosis, and the answer says which one. What comes back over
+several samples, or often, is not touched: it may be physics.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.prepare.flanks import NominalLine
+from cyclosweep.recording import Fault, Recording
+from cyclosweep.simulation.effects.history import Flags, Floats
+
+BEYOND_USUAL = 12.0
+"""Size of a spike over the usual change from sample to sample, as a robust standard deviation."""
+BEYOND_NEARBY = 4.0
+"""Size of a spike over the largest change nearby."""
+BACK_AGAIN = 0.25
+"""Change across a spike over its size, up to which the signal has come back."""
+NEARBY = 3
+"""Changes on either side that a spike is compared with."""
+FEWEST = 2
+"""The same at least, at the end of a run."""
+STEADY = 4.0
+"""How far the other signal may be from the middle of its neighbours, over its usual change."""
+STEPS = 4.0
+"""Steps of the reading that a spike exceeds."""
+MOST_SHARE = 0.01
+"""Share of the samples up to which they are single outliers, and not noise of heavy tails."""
+LISTED = 3
+"""Outliers that are listed one by one."""
+TO_SIGMA = 1.4826
+"""Median of absolute values over the standard deviation of normal noise, inverse."""
+
+
+def without_single_outliers(recording: Recording, line: NominalLine) -> Recording:
+    """Leave out single samples whose angle, or torque, is far from both neighbours'.
+
+    Parameters
+    ----------
+    recording : Recording
+        With an angle.
+    line : NominalLine
+        Compliance of the drive at the recorded shaft [deg/(N m)].
+
+    Returns
+    -------
+    Recording
+        The same recording where there are none; otherwise with a remark that names them.
+    """
+    assert recording.angle_deg is not None
+    torque, angle = recording.torque_nm, recording.angle_deg
+    twist = angle - line.compliance_deg_per_nm * torque
+    least = STEPS * recording.angle_resolution_deg
+    of_angle = _spikes(twist, recording.run, least) & _is_steady(torque, recording.run)
+    of_torque = _spikes(torque, recording.run, 0.0) & _is_steady(angle, recording.run)
+    of_torque &= ~of_angle
+    found = of_angle | of_torque
+    if not np.any(found) or np.count_nonzero(found) > max(MOST_SHARE * len(found), 1.0):
+        return recording
+    rows = np.flatnonzero(found)
+    parts = [_words(recording, int(row), in_torque=bool(of_torque[row])) for row in rows[:LISTED]]
+    more = f" and {len(rows) - LISTED} more" if len(rows) > LISTED else ""
+    reason = f"left out as single outliers: {'; '.join(parts)}{more}"
+    others = recording.take(~found)
+    return replace(others, faults=(*others.faults, Fault("single_outliers", None, reason)))
+
+
+def _words(recording: Recording, row: int, *, in_torque: bool) -> str:
+    """What a single outlier reads, and where.
+
+    Parameters
+    ----------
+    recording : Recording
+    row : int
+        Its sample, counted from zero.
+    in_torque : bool
+        Whether it is the torque that is off, and not the angle.
+
+    Returns
+    -------
+    str
+    """
+    values, unit, name = recording.angle_deg, "deg", "angle"
+    if in_torque:
+        values, unit, name = recording.torque_nm, "N m", "torque"
+    assert values is not None
+    middle = 0.5 * (values[row - 1] + values[row + 1])
+    when = "" if recording.time_s is None else f" ({recording.time_s[row]:.6g} s)"
+    return (
+        f"sample {row + 1}{when}, {name} {values[row]:.4g} {unit} between readings of about "
+        f"{middle:.4g} {unit}"
+    )
+
+
+def _changes(signal: Floats, run: np.ndarray) -> Floats:
+    """Change from each sample to the next.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        The signal.
+    run : ndarray of int, shape (n,)
+        Run of each sample.
+
+    Returns
+    -------
+    ndarray, shape (n - 1,)
+        NaN across runs.
+    """
+    return np.where(np.diff(run) == 0, np.diff(signal), np.nan)
+
+
+def _usual(changes: Floats) -> float:
+    """Usual change, by the median of those that are known and not zero."""
+    known = np.abs(changes[np.isfinite(changes)])
+    known = known[known > 0]
+    return float(TO_SIGMA * np.median(known)) if len(known) else 0.0
+
+
+def _spikes(signal: Floats, run: np.ndarray, least: float) -> Flags:
+    """Samples that leave both neighbours by far more than anything nearby.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        The signal.
+    run : ndarray of int, shape (n,)
+        Run of each sample.
+    least : float
+        Smallest size of a spike.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    found = np.zeros(len(signal), dtype=bool)
+    if len(signal) < 2 * FEWEST + 3:
+        return found
+    change = _changes(signal, run)
+    before, after = change[:-1], -change[1:]
+    size = np.minimum(np.abs(before), np.abs(after))
+    clear = (before * after > 0) & (size > max(BEYOND_USUAL * _usual(change), least))
+    clear &= np.abs(before - after) <= BACK_AGAIN * size
+    for place in np.flatnonzero(clear):
+        sides = change[max(place - NEARBY, 0) : place], change[place + 2 : place + 2 + NEARBY]
+        known = [np.abs(side[np.isfinite(side)]) for side in sides]
+        if min(map(len, known)) < FEWEST:
+            continue
+        found[place + 1] = size[place] > BEYOND_NEARBY * max(side.max() for side in known)
+    return found
+
+
+def _is_steady(signal: Floats, run: np.ndarray) -> Flags:
+    """Samples that lie as usual between their neighbours.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        The signal.
+    run : ndarray of int, shape (n,)
+        Run of each sample.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    steady = np.zeros(len(signal), dtype=bool)
+    off = np.abs(signal[1:-1] - 0.5 * (signal[:-2] + signal[2:]))
+    steady[1:-1] = off <= STEADY * _usual(_changes(signal, run))
+    return steady
