@@ -154,6 +154,9 @@ def test_a_diagnosis_names_a_curve_wherever_it_lies(in_series: bool) -> None:
     (slides,) = [v for v in found.model.effects if v.name == "friction_hysteresis"]
     assert curve.in_series == in_series
     assert slides.shape.get("behind_play") == 1.0
+    notes = found.content["notes"]
+    assert any("other side of the play" in note for note in notes)
+    assert any("between the friction and the load" in note for note in notes) == in_series
     forecast = cs.simulate(found.model, made).angle_deg
     loaded = np.abs(made.torque_nm) > 2.0
     assert np.std((forecast - made.angle_deg)[loaded]) < 0.06

@@ -68,6 +68,7 @@ class ContactFit(FittedStructure):
         values, notes = [], list[str]()
         for index, term in enumerate(self.terms):
             shape = term.shape
+            notes += term.place_in_words
             amplitudes: Sequence[float] = (term.amplitude,)
             if not term.slips:
                 assert term.effect is not None

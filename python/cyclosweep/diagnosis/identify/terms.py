@@ -7,6 +7,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.slip import lies_behind_play
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,21 @@ class Term:
         if self.effect is not None:
             return self.effect.elastic and not self.in_series
         return self.unnamed is not None and self.unnamed.elastic
+
+    @property
+    def place_in_words(self) -> tuple[str, ...]:
+        """Sentence on where the effect lies beside friction and play, where that is unusual."""
+        if self.in_series:
+            return (
+                f"{self.name} follows the applied torque, not what friction leaves of it: the part "
+                "that gives way lies between the friction and the load.",
+            )
+        if self.slips and lies_behind_play(self.shape):
+            return (
+                f"{self.name} does not slide while the play is crossed: it lies on the other side "
+                "of the play than the shaft that was measured.",
+            )
+        return ()
 
     def columns(self, history: History) -> Floats:
         """Columns for unit amplitudes [deg]."""
