@@ -5,7 +5,6 @@ carries the rest of it; a part between friction and load, such as the flange of 
 all of it. The two differ at every reversal.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,30 +13,54 @@ from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import orthonormal
 
 IN_SERIES_PENALTY = float(np.log(2.0))
 """What an elastic effect is charged that lies in series with friction and not where it holds the
 drive: the two are as likely beforehand [nat]."""
 
 
-def in_series(term: Term, others: Sequence[Term]) -> Term | None:
-    """Term of an elastic effect in series with the friction of a structure.
+def better_placed(term: Term, parent: FittedStructure) -> tuple[Term, float]:
+    """Place of a new term in which its columns explain more of what a structure leaves.
 
     Parameters
     ----------
     term : Term
-    others : sequence of Term
-        The other terms of the structure.
+        As it is where friction holds the drive.
+    parent : FittedStructure
+        The structure to which it is added.
 
     Returns
     -------
-    Term or None
-        None for what is not elastic, and where nothing slips.
+    Term
+        The same in series with friction, where that explains more by more than the charge.
+    float
+        What is charged for the place [nat].
     """
-    slips = any(each.slips for each in others)
-    if term.effect is None or not term.elastic or not slips:
-        return None
-    return replace(term, in_series=True)
+    if term.effect is None or not term.elastic or not any(each.slips for each in parent.terms):
+        return term, 0.0
+    moved = replace(term, in_series=True)
+    ahead = _explained(moved, parent) - _explained(term, parent)
+    return (moved, IN_SERIES_PENALTY) if ahead > IN_SERIES_PENALTY else (term, 0.0)
+
+
+def _explained(term: Term, parent: FittedStructure) -> float:
+    """Log likelihood that the columns of a term gain in the residual of a structure [nat].
+
+    Parameters
+    ----------
+    term : Term
+        Not one of its terms.
+    parent : FittedStructure
+
+    Returns
+    -------
+    float
+    """
+    columns = term.columns(parent.history)[parent.problem.fitted]
+    white = parent.whitened(columns, parent.noise)
+    basis = orthonormal(white - parent.tangent @ (parent.tangent.T @ white))
+    return 0.5 * float(np.sum((basis.T @ parent.residual) ** 2))
 
 
 def best_placed(fitted: FittedStructure) -> FittedStructure:

@@ -7,7 +7,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.library import Signature
 from cyclosweep.diagnosis.hypotheses.sinusoid import FAMILIES
 from cyclosweep.diagnosis.identify.candidate import Candidate, prior_penalty
-from cyclosweep.diagnosis.identify.placement import IN_SERIES_PENALTY, in_series
+from cyclosweep.diagnosis.identify.placement import better_placed
 from cyclosweep.diagnosis.identify.scan import Scan, evidence
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
@@ -77,10 +77,8 @@ def starting_terms(parent: Candidate, hypothesis: str) -> Iterator[tuple[Term, f
             shapes = signature.effect.variants(parent.fit.history, signature.shape)
         for shape in shapes:
             term = Term(signature.effect, shape, signature.unnamed, amplitude)
-            yield term, float(found.ranks[index]), choice
-            other = in_series(term, parent.fit.terms)
-            if other is not None:
-                yield other, float(found.ranks[index]), choice + IN_SERIES_PENALTY
+            term, charge = better_placed(term, parent.fit)
+            yield term, float(found.ranks[index]), choice + charge
         tried += 1
         if slips and tried >= 2:
             return
