@@ -218,3 +218,10 @@ def test_slow_noise_is_noise(rho: float) -> None:
     noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(angle)))
     assert not noise.structured
     assert noise.correlation >= rho - 0.02
+
+
+def test_columns_that_are_all_zero_span_nothing() -> None:
+    assert orthonormal(np.zeros((5, 2))).shape == (5, 0)
+    assert orthonormal(np.zeros((5, 0))).shape == (5, 0)
+    some = orthonormal(np.column_stack([np.zeros(5), np.ones(5)]))
+    np.testing.assert_allclose(np.abs(some), np.full((5, 1), 5**-0.5))

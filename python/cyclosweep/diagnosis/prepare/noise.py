@@ -357,9 +357,9 @@ def orthonormal(columns: Floats, tolerance: float = 1e-9) -> Floats:
     -------
     ndarray, shape (n, rank)
     """
-    if columns.shape[1] == 0:
-        return columns
     norm = np.linalg.norm(columns, axis=0)
     kept = columns[:, norm > 0] / norm[norm > 0]
+    if kept.shape[1] == 0:
+        return kept
     left, singular, _ = np.linalg.svd(kept, full_matrices=False)
     return np.asarray(left[:, singular > tolerance * singular[0]])
