@@ -99,3 +99,50 @@ def long_recording(
     assert angle is not None
     noise = noise_deg * np.random.default_rng(seed).normal(size=len(programme))
     return programme.with_angle(angle + noise)
+
+
+def driven_through_friction(
+    samples: int, limit_nm: float, noise_deg: float, *, loops: int = 4, seed: int = 2
+) -> cs.Recording:
+    """Drive behind a friction that takes this torque, by arithmetic of its own.
+
+    The play is crossed where friction lets the torque through, and not where it changes sign. Until
+    the load first exceeds the friction, the shaft stands in the middle of the play.
+
+    Parameters
+    ----------
+    samples : int
+    limit_nm : float
+        Friction torque [N m].
+    noise_deg : float
+        Standard deviation of the noise of a sample [deg].
+    loops : int
+        Loops between -12 and 12 N m, sinusoidal in time.
+    seed : int
+        Seed of the noise.
+
+    Returns
+    -------
+    Recording
+        Its clock goes on for 300 s a loop.
+    """
+    torque = 12.0 * np.sin(2.0 * np.pi * loops * np.arange(samples) / samples)
+    passed = _past_friction(torque, limit_nm)
+    angle = 28.0 * np.sign(passed) + 2.73 * passed
+    noise = noise_deg * np.random.default_rng(seed).normal(size=samples)
+    time = 300.0 * loops * np.arange(samples) / samples
+    return cs.Recording.from_arrays(torque, angle + noise, time_s=time)
+
+
+def flanks_through_friction(recording: cs.Recording, limit_nm: float) -> npt.NDArray[Any]:
+    """Flank in contact in a recording of `driven_through_friction`; zero before the first load."""
+    return np.asarray(np.sign(_past_friction(recording.torque_nm, limit_nm)))
+
+
+def _past_friction(torque_nm: npt.NDArray[Any], limit_nm: float) -> npt.NDArray[Any]:
+    """Torque behind a friction that takes up to its limit (play operator) [N m]."""
+    passed = np.zeros(len(torque_nm))
+    state = 0.0
+    for k, torque in enumerate(torque_nm):
+        passed[k] = state = min(max(state, torque - limit_nm), torque + limit_nm)
+    return passed

@@ -18,7 +18,12 @@ from cyclosweep.diagnosis.prepare.thinning import (
 )
 from cyclosweep.recording.structure import turning_points
 from tests.support.arrays import Floats, Integers
-from tests.support.long_recording import friction, long_recording
+from tests.support.long_recording import (
+    driven_through_friction,
+    flanks_through_friction,
+    friction,
+    long_recording,
+)
 
 LINE = cs.Drive.reference_87().nominal_line("input")
 NOISY = long_recording(40_000, [friction()], noise_deg=0.5)
@@ -52,6 +57,43 @@ def test_rows_cross_no_bend_of_the_load_history(recording: cs.Recording) -> None
         assert len(np.unique(recording.run[samples])) == 1
         assert len(np.unique(np.sign(recording.torque_nm[samples]))) == 1
         assert len(np.unique(turn[samples[:-1]])) <= 1, "a reversal or the start of a dwell"
+
+
+@pytest.mark.parametrize("limit_nm", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("noise_deg", [0.3, 3.0])
+def test_rows_hold_one_flank_wherever_friction_lets_the_play_be_crossed(
+    limit_nm: float, noise_deg: float
+) -> None:
+    recording = driven_through_friction(40_000, limit_nm, noise_deg)
+    flank = flanks_through_friction(recording, limit_nm)
+    rows = thin(recording, LINE)
+    assert rows.averaged > 4
+    for samples in values_by_row(rows, flank):
+        assert len(np.unique(samples)) == 1
+
+
+def test_rows_hold_one_flank_where_the_play_is_crossed_slowly() -> None:
+    recording = driven_through_friction(40_000, 1.0, 0.3)
+    flank = flanks_through_friction(recording, 1.0)
+    # Over 30 samples the shaft moves from the one flank to the other.
+    angle = 28.0 * np.convolve(np.pad(flank, 15, mode="edge"), np.ones(31) / 31, mode="valid")
+    angle[flank == 0] = 0.0
+    noise = 0.3 * np.random.default_rng(5).normal(size=len(angle))
+    slowly = recording.with_angle(angle + 2.7 * recording.torque_nm + noise)
+    rows = thin(slowly, LINE)
+    assert rows.averaged > 4
+    for samples in values_by_row(rows, flank):
+        assert len(np.unique(samples)) == 1
+
+
+def test_where_a_shaft_stood_in_its_play_before_the_first_load_is_not_fitted() -> None:
+    recording = driven_through_friction(4_000, 0.5, 0.05)
+    flank = flanks_through_friction(recording, 0.5)
+    loose = flank == 0
+    assert loose.sum() > 5
+    problem = prepared(recording)
+    assert not np.any(problem.whole_fitted & loose)
+    assert np.array_equal(problem.whole_fitted, ~loose)
 
 
 @pytest.mark.parametrize("recording", [NOISY, QUIET], ids=["averaged", "passed over"])

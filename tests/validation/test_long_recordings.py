@@ -5,7 +5,13 @@ from typing import Any
 import pytest
 
 import cyclosweep as cs
-from tests.support.long_recording import COMPLIANCE, friction, long_recording, warming
+from tests.support.long_recording import (
+    COMPLIANCE,
+    driven_through_friction,
+    friction,
+    long_recording,
+    warming,
+)
 
 LONG = 100_000
 
@@ -73,3 +79,17 @@ def test_friction_of_two_hundred_thousand_rows_is_named_alone() -> None:
     assert set(sizes(content)) == {"friction_hysteresis"}
     found = content["effects"][0]["parameters"]["friction_torque_nm"]["estimate"]
     assert found == pytest.approx(0.15 / COMPLIANCE, rel=0.05)
+
+
+def test_friction_that_moves_the_crossings_is_named_alone() -> None:
+    # With rows that mixed both flanks, or that count where the shaft stood before the first load:
+    # mostly explained, with a load asymmetry named beside it.
+    whole, tenth = both(driven_through_friction(300_000, 0.3, 0.3, loops=10))
+    for content in (whole, tenth):
+        assert content["verdict"] == "IDENTIFIED"
+        assert set(sizes(content)) == {"friction_hysteresis"}
+        assert content["repaired"]["rmse_deg"] == pytest.approx(
+            content["noise"]["sigma_deg"], rel=0.05
+        )
+    found, few = sizes(whole)["friction_hysteresis"], sizes(tenth)["friction_hysteresis"]
+    assert found == pytest.approx(few, rel=0.05)

@@ -1,8 +1,9 @@
 """Pieces of a recording along which its load history does not bend, cut into blocks of samples."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Self
 
 import numpy as np
 
@@ -41,6 +42,16 @@ class Pieces:
     def of_sample(self) -> Ints:
         """Number of the piece of each sample, shape (samples,)."""
         return np.repeat(np.arange(len(self.start)), self.stop - self.start)
+
+    def cut(self, samples: Ints) -> Self:
+        """The same with a piece beginning at each of these samples as well."""
+        start = np.union1d(self.start, samples)
+        return replace(
+            self,
+            start=start,
+            stop=np.r_[start[1:], self.stop[-1]],
+            dwell=self.dwell[self.of_sample[start]],
+        )
 
     def blocks(self, size: int) -> Rows:
         """Cut each piece into blocks of nearly equal length.

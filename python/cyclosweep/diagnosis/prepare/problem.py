@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
 from cyclosweep.recording import Recording
-from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,8 +167,10 @@ def prepare(
     play = flanks.free_play_deg
     if rows.on_one_flank is not None:
         contact &= rows.on_one_flank
-    # No torque tells at which angle the shaft stands within a play through which it was turned.
-    predicted = counts & contact if flanks.turned is not None else counts
+    # No torque tells at which angle the shaft stands within a play through which it was turned, nor
+    # where it stood before it first touched a flank.
+    turned = flanks.turned is not None
+    predicted = counts & (contact if turned else _since_first_contact(contact, restart))
     kept = np.isin(run_label, list(recording.holdout_runs))
     held = kept & contact & counts
     fitted = contact & counts & ~kept
@@ -211,6 +213,26 @@ def prepare(
         nominal_compliance=line.compliance_deg_per_nm,
         nominal_free_play=line.free_play_deg,
     )
+
+
+def _since_first_contact(contact: Flags, restart: Flags) -> Flags:
+    """Rows from the first one in contact on, of each stretch that begins with a restart.
+
+    Parameters
+    ----------
+    contact : ndarray of bool, shape (n,)
+        Rows in contact with a flank.
+    restart : ndarray of bool, shape (n,)
+        Rows before which nothing is known of the state; the first one among them.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    so_far = np.cumsum(contact)
+    begin = np.flatnonzero(restart)
+    before: Ints = (so_far - contact)[begin]
+    return np.asarray(so_far > before[np.cumsum(restart) - 1])
 
 
 def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats) -> float:

@@ -1,11 +1,12 @@
 """Rows of a long recording: neighbours averaged where noise hides the error, others passed over.
 
 A recording is cut where its load history bends: at runs, reversals of the torque, dwells, changes
-of its sign, breaks of the clock and moves of the mesh position. Within each piece neighbouring
-samples are averaged, as many as possible while the curvature that averaging loses stays below what
-any test could see; what is then still too long is thinned by passing over rows evenly. The first
-and the last sample of each piece stay rows of their own, so that friction and creep are driven
-through the true extremes of the torque; they are not fitted where the other rows are averages.
+of its sign, breaks of the clock and moves of the mesh position; and where the twist shows that the
+play is crossed. Within each piece neighbouring samples are averaged, as many as possible while the
+curvature that averaging loses stays below what any test could see; what is then still too long is
+thinned by passing over rows evenly. The first and the last sample of each piece stay rows of their
+own, so that friction and creep are driven through the true extremes of the torque; they are not
+fitted where the other rows are averages.
 """
 
 from dataclasses import replace
@@ -13,7 +14,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import median_filter
 
-from cyclosweep.diagnosis.prepare.flanks import NominalLine, find_flanks
+from cyclosweep.diagnosis.prepare.crossings import cut_at_crossings
+from cyclosweep.diagnosis.prepare.flanks import Flanks, NominalLine, find_flanks
 from cyclosweep.diagnosis.prepare.pieces import Pieces, find_pieces
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.recording import Recording
@@ -55,8 +57,15 @@ def thin(recording: Recording, line: NominalLine, most_rows: int = MOST_ROWS) ->
     count = len(recording)
     if count <= most_rows:
         return Rows(np.arange(count), np.ones(count, dtype=bool))
-    pieces = find_pieces(recording)
-    curve, side = _curve(recording, line, most_rows)
+    torque, angle = recording.torque_nm, recording.angle_deg
+    assert angle is not None
+    flanks = _flanks(recording, line, most_rows)
+    scored = None if recording.unscored is None else ~recording.unscored
+    side, contact = flanks.at(torque, angle, scored)
+    curve = angle - flanks.compliance_deg_per_nm * torque - side * flanks.free_play_deg
+    curve = _without_outliers(curve)
+    pieces = cut_at_crossings(find_pieces(recording), torque, angle, flanks, contact)
+    side = np.where(contact, side, 0.0)
     wanted = _wanted_size(recording, curve, side, pieces, most_rows)
     for size in _sizes(wanted):
         blocks = pieces.blocks(size)
@@ -78,8 +87,8 @@ def _sizes(wanted: int) -> list[int]:
     return [int(np.ceil(wanted / part)) for part in parts] + [1]
 
 
-def _curve(recording: Recording, line: NominalLine, most_rows: int) -> tuple[Floats, Floats]:
-    """What a straight line leaves of the twist, and the flank of each sample.
+def _flanks(recording: Recording, line: NominalLine, most_rows: int) -> Flanks:
+    """Line through the loaded samples.
 
     Parameters
     ----------
@@ -91,23 +100,21 @@ def _curve(recording: Recording, line: NominalLine, most_rows: int) -> tuple[Flo
 
     Returns
     -------
-    curve : ndarray, shape (samples,)
-        Without single outliers [deg].
-    side : ndarray, shape (samples,)
-        +1 or -1; zero where no flank is in contact.
+    Flanks
     """
     torque, angle = recording.torque_nm, recording.angle_deg
     assert angle is not None
     few = slice(None, None, max(len(torque) // most_rows, 1))
-    scored = None if recording.unscored is None else ~recording.unscored
-    flanks = find_flanks(torque[few], angle[few], line, None if scored is None else scored[few])
-    side, contact = flanks.at(torque, angle, scored)
-    curve = angle - flanks.compliance_deg_per_nm * torque - side * flanks.free_play_deg
+    scored = None if recording.unscored is None else ~recording.unscored[few]
+    return find_flanks(torque[few], angle[few], line, scored)
+
+
+def _without_outliers(curve: Floats) -> Floats:
+    """What a straight line leaves of the twist, shape (samples,) [deg], without single outliers."""
     smooth = median_filter(curve, 5)
     apart = curve - smooth
     most = SPIKE * 1.4826 * float(np.median(np.abs(apart)))
-    curve = np.where(np.abs(apart) > most, smooth, curve)
-    return curve, np.where(contact, side, 0.0)
+    return np.where(np.abs(apart) > most, smooth, curve)
 
 
 def _wanted_size(
