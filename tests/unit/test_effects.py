@@ -1,5 +1,6 @@
 """Every effect of the vocabulary: words, shapes, columns, and what makes it untestable."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -323,6 +324,33 @@ def test_balanced_loops_push_the_datum_by_no_rounding() -> None:
     biased = history(applied_nm=torque, elastic_nm=torque)
     pushes = {s.get("push") for s in effects.find("datum_drift").shapes(biased)}
     assert pushes & {mean, balance}
+
+
+@pytest.mark.parametrize("name", ["friction_hysteresis", "load_dependent_friction"])
+def test_loading_alone_hides_friction(name: str) -> None:
+    effect = effects.find(name)
+
+    def reason(*turns: float, restart: bool = True) -> str | None:
+        """Why three runs through these torques, 61 rows a leg, hide friction."""
+        legs = [np.linspace(a, b, 61) for a, b in pairwise(turns)]
+        torque = np.tile(np.concatenate(legs), 3)
+        run = np.repeat([0, 1, 2], len(torque) // 3)
+        return effect.untestable(
+            History(
+                applied_nm=torque, elastic_nm=torque, angle_deg=2.7 * torque,
+                side=np.where(torque >= 0, 1.0, -1.0), run=run,
+                restart=np.r_[True, (np.diff(run) != 0) & restart],
+                compliance_deg_per_nm=2.7, free_play_deg=28.0,
+            )
+        )  # fmt: skip
+
+    assert "unloaded" in str(reason(0.5, 12.0))
+    assert "unloaded" in str(reason(-0.5, -12.0))
+    assert "unloaded" in str(reason(0.5, 12.0, 11.9)), "next to nothing"
+    assert reason(0.5, 12.0, 11.0) is None, "in part"
+    assert reason(0.5, 6.0, 4.0, 12.0) is None, "a small loop on the way"
+    assert reason(12.0, 0.5) is None, "unloading alone"
+    assert reason(0.5, 12.0, restart=False) is None, "unloaded between the runs"
 
 
 def test_one_direction_hides_asymmetry() -> None:

@@ -83,7 +83,7 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         ("Explanations that fit", sentences.explanations(data)[:4]),
         ("Possible (95 % upper bound)", sentences.possible(data)[:6]),
         ("Not found (95 % upper bound)", sentences.bounds(data)[:6]),
-        ("What this recording cannot show", sentences.untestable(data)[:4]),
+        ("What this recording cannot show", sentences.untestable(data)[:6]),
         ("Remarks on the recording", _remarks(data)),
     ):
         if lines:

@@ -41,6 +41,9 @@ SLIP_PARAMETERS = (
     Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
 )
 OPTIONAL = ("skew", "slack", "forgetting", "behind_play")
+LEAST_UNLOADED = 0.02
+"""Unloading, as a share of the largest torque, below which no friction shows. The usual tolerance
+is one percent of the twist; a friction worth that is reversed only after twice its torque."""
 SLIP_FORMS = (
     ShapeForm(("slip_deg", "scatter"), OPTIONAL),
     ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), OPTIONAL),
@@ -248,6 +251,20 @@ class FrictionEffect(Effect):
     shape_parameters: ClassVar[tuple[Parameter, ...]] = SLIP_PARAMETERS
     forms: ClassVar[tuple[ShapeForm, ...]] = SLIP_FORMS
     slips = True
+
+    def untestable(self, history: History) -> str | None:
+        """Need unloading: of loading alone, the line takes up a friction that slips."""
+        load = history.side * history.applied_nm
+        begins = history.restart | np.r_[True, np.diff(history.side) != 0]
+        # Lifted by more than the range of the torque each time that a flank is loaded anew.
+        lift = 4.0 * history.largest_torque_nm * np.cumsum(begins)
+        unloaded = np.maximum.accumulate(load + lift) - lift - load
+        if np.max(unloaded) < LEAST_UNLOADED * history.largest_torque_nm:
+            return (
+                "no flank was unloaded by more than a fiftieth of the largest torque, so that the "
+                "calibration takes up what friction does"
+            )
+        return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Presliding distances and scatters; see `slip_shapes`."""
