@@ -7,6 +7,11 @@ import numpy as np
 from scipy import stats
 
 from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.elasticity import (
+    added_twist,
+    beside_calibration,
+    compliance_with_curve,
+)
 from cyclosweep.diagnosis.identify.alarm import DRAWS, probability
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import candidates_of
@@ -14,7 +19,6 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import (
     Testability,
-    size_of,
     spread_of_size,
     strength_of,
 )
@@ -76,7 +80,7 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
     fitted = accepted.fit
     effect = fitted.terms[index].effect
     assert effect is not None
-    twist = size_of(fitted, index)
+    twist = beside_calibration(fitted, added_twist(fitted, index))
     size = float(np.max(np.abs(twist), initial=0.0))
     strength = strength_of(search, fitted, index)
     if fitted.follows_path(index):
@@ -94,7 +98,7 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
         parameters=_parameters(fitted, index),
         size_deg=Size(estimate=size, ci95=(max(size - half, 0.0), size + half)),
         size_arcmin=60.0 * size,
-        size_nm=finite(size / fitted.history.compliance_deg_per_nm),
+        size_nm=finite(size / compliance_with_curve(fitted)[0]),
         rms_deg=float(np.sqrt(np.mean(twist**2))),
         p_value=p_value,
         e_value=finite(e_value),

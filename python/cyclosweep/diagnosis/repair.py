@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.elasticity import compliance_with_curve
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.result import Baseline, CalibratedParameter, LearnedError
@@ -102,17 +103,21 @@ def calibrated_parameters(
     Returns
     -------
     mapping of str to CalibratedParameter
-        By name; with the torque read without load where that is fitted.
+        By name; with the torque read without load where that is fitted. The compliance scale
+        compares the whole elasticity with the drive's: line, and effects that bend it.
     """
     errors = fitted.line_errors
     nominal = problem.nominal_compliance
-    compliance = float(fitted.beta[1])
+    whole, whole_error = compliance_with_curve(fitted)
     found = {
         "compliance_scale": CalibratedParameter(
-            nominal=1.0, estimate=compliance / nominal, std_error=finite(errors[1] / nominal)
+            nominal=1.0, estimate=whole / nominal, std_error=finite(whole_error / nominal)
         ),
         "compliance_deg_per_nm": CalibratedParameter(
-            nominal=nominal, estimate=compliance, std_error=finite(errors[1]), unit="deg/(N m)"
+            nominal=nominal,
+            estimate=float(fitted.beta[1]),
+            std_error=finite(errors[1]),
+            unit="deg/(N m)",
         ),
         "free_play_deg": CalibratedParameter(
             nominal=problem.nominal_free_play,

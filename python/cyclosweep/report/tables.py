@@ -110,7 +110,8 @@ def parameter_table(data: ReportData) -> Table | None:
         "physics. The shift is how far the repair moved a parameter, in standard errors of the "
         "fit before; behind ± stands the half width of the 95 % interval. With effects in the "
         "model, its compliance and play are what these leave: the drive's own stand at the top of "
-        "the page.",
+        "the page. The compliance scale counts the effects that bend the line, between half and "
+        "full torque.",
         frozenset({1}),
     )
 

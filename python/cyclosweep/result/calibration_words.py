@@ -1,6 +1,7 @@
 """What was read from the loop and what the calibration found, in sentences."""
 
 from collections.abc import Mapping, Sequence
+from math import isclose
 
 from cyclosweep.result.answer import Finding
 from cyclosweep.result.calibration import CalibratedParameter
@@ -100,11 +101,15 @@ def _read(reading: Reading, unit: str) -> str:
 def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
     """What the calibration found, against nominal."""
     scale = parameters["compliance_scale"].estimate
+    line = parameters.get("compliance_deg_per_nm")
+    # Where effects bend the line, its own slope is no compliance of the drive.
+    bent = line is not None and not isclose(scale * (line.nominal or 0.0), line.estimate)
     play = parameters["free_play_deg"]
     datum = parameters["datum_deg"].estimate
     # Adding zero turns a negative zero into zero.
     change = round(100 * (scale - 1), 1) + 0.0
     words = f"Calibration: compliance {change:+.1f} % against nominal"
+    words += " (between half and full torque)" if bent else ""
     if play.std_error is not None:
         words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
     return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
