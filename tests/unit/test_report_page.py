@@ -5,12 +5,14 @@ import shutil
 import subprocess
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.recording.unbroken_runs import UNBROKEN
 from cyclosweep.report import ReportData, write_html
 from cyclosweep.report.charts import Line, nice_ticks
 from cyclosweep.report.figures import main_figure
@@ -167,6 +169,12 @@ def test_foreign_text_is_escaped(whole: ReportData) -> None:
     assert "<script>x" not in text
     assert "<img" not in text
     assert "&lt;b&gt;bold&lt;/b&gt; &amp; more" in text
+
+
+def test_a_question_of_the_diagnosis_is_shown(whole: ReportData) -> None:
+    result = replace(whole.result, notes=(UNBROKEN,))
+    assert escape(UNBROKEN) in page(replace(whole, result=result))
+    assert escape(UNBROKEN) not in page(whole)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from rich.console import Console
 
 import cyclosweep as cs
 from cyclosweep.recording.faults import Fault
+from cyclosweep.recording.unbroken_runs import UNBROKEN
 from cyclosweep.report import ReportData, print_summary, write_png, write_report
 from cyclosweep.report.figures import all_figures
 from cyclosweep.report.png import _write
@@ -82,6 +83,14 @@ def test_brackets_in_remarks_are_not_markup() -> None:
     fault = Fault("clock_ticks", None, "use [merge] same_time = true")
     text = printed(replace(data, recording=replace(data.recording, faults=(fault,))), 80)
     assert "[merge]" in text
+
+
+def test_a_question_of_the_diagnosis_is_shown() -> None:
+    data = make()
+    result = replace(data.result, notes=("Side not given.", UNBROKEN))
+    text = " ".join(printed(replace(data, result=result), 80).split())
+    assert 'write history = "continuous"' in text
+    assert 'write history = "continuous"' not in " ".join(printed(data, 80).split())
 
 
 def test_pictures(tmp_path: Path) -> None:

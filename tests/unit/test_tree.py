@@ -62,7 +62,6 @@ STAGES = {
     "provenance": set[str](),
     "plausibility": set[str](),
     "elasticity": FITTING,
-    "unbroken_runs": set[str](),
     "refuse": FITTING | {"outcome", "provenance", "plausibility"},
     "sliding": {"outcome", "provenance"},
     "series": {"outcome"},
@@ -83,7 +82,7 @@ STAGES = {
     "finish": DECIDED | {"verification", "repair"},
     "compose": DECIDED
     | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility", "finish"}
-    | {"model_error_table", "unbroken_runs"},
+    | {"model_error_table"},
 }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.unbroken_runs import UNBROKEN, unbroken_runs
+from cyclosweep.recording.unbroken_runs import UNBROKEN, unbroken_runs
 
 LOOP = np.concatenate([np.linspace(0, 20, 60), np.linspace(19, -20, 120), np.linspace(-19, 0, 60)])
 

@@ -25,10 +25,10 @@ from cyclosweep.diagnosis.prepare.torque_noise import smoothed_in_words
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
-from cyclosweep.diagnosis.unbroken_runs import unbroken_runs
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.diagnosis.whole_loop.rig_limits import rig_limits
 from cyclosweep.recording import Recording
+from cyclosweep.recording.unbroken_runs import unbroken_runs
 from cyclosweep.result import (
     Answer,
     Bound,

@@ -199,7 +199,8 @@ def _recording(data: ReportData) -> str:
         ("conditioning runs", ", ".join(map(str, recording.conditioning_runs)) or "none"),
         ("holdout runs", ", ".join(map(str, recording.holdout_runs)) or "chosen by blocks"),
     ]  # fmt: skip
-    remarks = [*recording.notes, *(fault.reason for fault in recording.faults)]
+    faults = (fault.reason for fault in recording.faults)
+    remarks = [*sentences.asked(data), *recording.notes, *faults]
     listed = "".join(f"<li>{escape(text)}</li>" for text in remarks)
     return section("The recording", definitions(rows) + (f"<ul>{listed}</ul>" if listed else ""))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from cyclosweep.recording.unbroken_runs import UNBROKEN
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import (
@@ -146,6 +147,11 @@ def untestable(data: ReportData) -> list[str]:
         needs = f" Needs: {row.needs}." if row.needs else ""
         rows.append(f"{plain(row.name)}: {row.reason.rstrip('.')}.{needs}")
     return rows
+
+
+def asked(data: ReportData) -> list[str]:
+    """What the diagnosis asks about the recording because its file does not say it."""
+    return [note for note in data.result.notes if note == UNBROKEN]
 
 
 def explanations(data: ReportData) -> list[str]:

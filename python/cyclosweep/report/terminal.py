@@ -96,10 +96,11 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
 
 
 def _remarks(data: ReportData) -> list[str]:
-    """First remarks on the recording, without the one that is the verdict's own statement."""
+    """What the diagnosis asks, and first remarks without the verdict's own statement."""
     said = data.result.statement
     reasons = [fault.reason for fault in data.recording.faults]
-    return [reason for reason in reasons if reason.rstrip(".") not in said][:4]
+    asked = sentences.asked(data)
+    return [*asked, *(reason for reason in reasons if reason.rstrip(".") not in said)][:4]
 
 
 def _facts(data: ReportData) -> list[tuple[str, str]]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.recording import Recording
+from cyclosweep.recording.recording import Recording
 
 NEXT_READING = 3.0
 """Time from run to run over the usual one between readings, up to which there is no pause."""
