@@ -14,7 +14,7 @@ from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects import effects
-from cyclosweep.simulation.effects.slip import STATES, in_other_state, state_of
+from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep.simulation.simulate import predict_history
 from cyclosweep_challenge.scoreboard.made import Recipe, make

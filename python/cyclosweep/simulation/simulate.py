@@ -11,7 +11,8 @@ from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.orders import needed_columns
-from cyclosweep.simulation.effects.slip import Friction, lies_behind_play
+from cyclosweep.simulation.effects.slip import Friction
+from cyclosweep.simulation.effects.slip_start import lies_behind_play
 from cyclosweep.simulation.elastic_law import ElasticLaw, elastic_law
 from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist

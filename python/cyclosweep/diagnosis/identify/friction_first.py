@@ -16,12 +16,8 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
-from cyclosweep.simulation.effects.slip import (
-    STATES,
-    FrictionEffect,
-    in_other_state,
-    state_of,
-)
+from cyclosweep.simulation.effects.slip import FrictionEffect
+from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
 """Friction limits and presliding distances to start from, as shares of torque and twist."""

@@ -7,7 +7,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip import lies_behind_play
+from cyclosweep.simulation.effects.slip_start import lies_behind_play
 
 
 @dataclass(frozen=True, eq=False)

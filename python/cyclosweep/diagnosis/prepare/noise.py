@@ -360,6 +360,6 @@ def orthonormal(columns: Floats, tolerance: float = 1e-9) -> Floats:
     norm = np.linalg.norm(columns, axis=0)
     kept = columns[:, norm > 0] / norm[norm > 0]
     if kept.shape[1] == 0:
-        return kept
+        return np.asarray(kept)
     left, singular, _ = np.linalg.svd(kept, full_matrices=False)
     return np.asarray(left[:, singular > tolerance * singular[0]])

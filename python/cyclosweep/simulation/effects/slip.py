@@ -15,6 +15,12 @@ from cyclosweep.simulation.effects.slip_elements import (
     elements_of,
     spread_elements,
 )
+from cyclosweep.simulation.effects.slip_start import (
+    STATES,
+    crossed_play,
+    lies_behind_play,
+    start_of,
+)
 
 __all__ = [
     "ELEMENTS",
@@ -48,64 +54,6 @@ SLIP_FORMS = (
     ShapeForm(("slip_deg", "scatter"), OPTIONAL),
     ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), OPTIONAL),
 )
-STATES: tuple[Shape, ...] = ({"slack": 0.0}, {"slack": 1.0}, {"behind_play": 1.0})
-"""How friction meets the play: it slides through it and starts on the first flank, or in the
-middle; or it lies behind the play, which then does not move it."""
-
-
-def start_of(history: History, shape: Shape) -> Floats:
-    """Angle at which fresh elements are anchored.
-
-    Parameters
-    ----------
-    history : History
-        Load history of n samples.
-    shape : mapping
-        `slack` 0: unloaded contact on the first flank; 1: the middle of the dead zone, so that the
-        elements have slipped before the flank is reached. Friction behind the play starts unloaded.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Angle [deg].
-    """
-    if lies_behind_play(shape):
-        return np.full(len(history), history.datum_deg)
-    contact = history.start_angle_deg
-    return contact - float(shape.get("slack", 0.0)) * history.side * history.free_play_deg
-
-
-def lies_behind_play(shape: Shape) -> bool:
-    """Whether friction slides with the elastic twist alone and stands while play is crossed."""
-    return bool(shape.get("behind_play", 0.0))
-
-
-def state_of(shape: Shape) -> Shape | None:
-    """Which of `STATES` a shape is in; None for one that does not say."""
-    return next((each for each in STATES if each.items() <= dict(shape).items()), None)
-
-
-def in_other_state(shape: Shape, state: Shape) -> Shape:
-    """Shape of a friction that meets the play in another way.
-
-    Parameters
-    ----------
-    shape : mapping
-        Shape of a friction.
-    state : mapping
-        One of `STATES`.
-
-    Returns
-    -------
-    mapping
-    """
-    kept = {name: v for name, v in shape.items() if name not in ("slack", "behind_play")}
-    return {**kept, **state}
-
-
-def crossed_play(history: History, shape: Shape) -> Floats | float:
-    """Part of the angle by which friction does not slide because it lies behind the play [deg]."""
-    return history.side * history.free_play_deg if lies_behind_play(shape) else 0.0
 
 
 def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> Floats:
