@@ -50,7 +50,8 @@ def finished(
     if answer.plausibility and plan is not None:
         plan = _after_check(plan)
     answer = replace(answer, play_and_stiffness=read, next_experiment=plan)
-    answer = replace(answer, statement=statement_of(answer))
+    sentences = (statement_of(answer), verified.held_out.missed)
+    answer = replace(answer, statement=" ".join(filter(None, sentences)))
     answer = replace(answer, summary=summary_of(answer), do_now=do_now(answer))
     faults = tuple(f"This answer contradicts itself: {each}." for each in contradictions(answer))
     return replace(answer, notes=(*answer.notes, *faults))

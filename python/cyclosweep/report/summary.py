@@ -4,7 +4,7 @@ from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
-from cyclosweep.result.words import degrees, listed, readable, shape_in_words
+from cyclosweep.result.words import degrees, falls, listed, readable, shape_in_words
 
 NEARLY_ALL = 0.995
 """Share of the mismatch that would be written as all of it, though something is left."""
@@ -103,6 +103,8 @@ def _errors(answer: Answer) -> str:
         before, after = answer.baseline.holdout_rmse_deg, answer.repaired.holdout_rmse_deg
         on = " on data not used"
     them = "it" if len(answer.effects) == 1 else "them"
+    if not falls(before, after):
+        return f"with {them} the error{on} is {number(after)} deg, without {number(before)}"
     return f"with {them} the error{on} falls from {number(before)} to {number(after)} deg"
 
 

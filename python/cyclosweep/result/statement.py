@@ -15,6 +15,7 @@ from cyclosweep.result.effects import Explanation
 from cyclosweep.result.proof import HeldOutBlock
 from cyclosweep.result.words import (
     degrees,
+    falls,
     listed,
     place_of,
     readable,
@@ -266,10 +267,11 @@ def _improvement(answer: Answer) -> str:
     before, after = answer.baseline, answer.repaired
     text = f" With it the error falls from {degrees(before.rmse_deg)} to {degrees(after.rmse_deg)}"
     if before.holdout_rmse_deg is not None and before.holdout_rmse_deg > 0.0:
-        text += (
-            f", on data not used from {degrees(before.holdout_rmse_deg)} to "
-            f"{degrees(after.holdout_rmse_deg)}"
-        )
+        left_out = degrees(before.holdout_rmse_deg), degrees(after.holdout_rmse_deg)
+        if falls(before.holdout_rmse_deg, after.holdout_rmse_deg):
+            text += f", on data not used from {left_out[0]} to {left_out[1]}"
+        else:
+            text += f"; on data not used it is {left_out[1]}, without {left_out[0]}"
     return f"{text}."
 
 

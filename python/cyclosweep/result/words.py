@@ -4,6 +4,9 @@ from collections.abc import Sequence
 
 from cyclosweep.result.mismatch import Region
 
+FALLEN = 0.95
+"""Error over the one before, below which it has fallen."""
+
 
 def place_of(regions: Sequence[Region]) -> str:
     """Where the strongest region lies, in words."""
@@ -75,6 +78,17 @@ def degrees(value: float | None, digits: int = 3) -> str:
         return "an unknown angle"
     small = f" ({60 * value:.{digits - 1}g} arcmin)" if abs(value) < 1.0 else ""
     return f"{value:.{digits}g} deg{small}"
+
+
+def falls(before: float | None, after: float | None) -> bool:
+    """Whether an error falls by so much that one may say so; not known counts as falling.
+
+    Parameters
+    ----------
+    before, after : float or None
+        Errors [deg].
+    """
+    return before is None or after is None or after < FALLEN * before
 
 
 def readable(name: str) -> str:

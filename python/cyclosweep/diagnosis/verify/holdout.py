@@ -6,6 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure, LeftOutPrediction
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.verify.kept_runs import kept_runs_in_words
 from cyclosweep.result import HeldOutBlock
 from cyclosweep.simulation.effects.history import Flags, Floats
 
@@ -27,6 +28,8 @@ class HeldOutResult:
         searched (see `FittedStructure.left_out_evidence`); NaN where nothing was held out.
     label : str
         What was held out.
+    missed : str
+        Sentence on how kept runs differ from those that were fitted; empty where they do not.
     """
 
     blocks: tuple[HeldOutBlock, ...]
@@ -34,6 +37,7 @@ class HeldOutResult:
     after_deg: float
     e_value: float
     label: str
+    missed: str = ""
 
 
 def judge_left_out(structure: FittedStructure) -> HeldOutResult:
@@ -46,7 +50,9 @@ def judge_left_out(structure: FittedStructure) -> HeldOutResult:
     before = float(np.sqrt(np.average([b.before_deg**2 for b in blocks], weights=weight)))
     after = float(np.sqrt(np.average([b.after_deg**2 for b in blocks], weights=weight)))
     evidence = structure.left_out_evidence(predictions, before, after)
-    return HeldOutResult(blocks, before, after, evidence, "; ".join(b.block for b in blocks))
+    label = "; ".join(b.block for b in blocks)
+    missed = kept_runs_in_words(structure, predictions)
+    return HeldOutResult(blocks, before, after, evidence, label, missed)
 
 
 def _block(problem: Problem, prediction: LeftOutPrediction) -> HeldOutBlock:
