@@ -141,3 +141,15 @@ def test_the_summary_names_what_stands_in_for_what_is_left() -> None:
     text = summary_of(replace(UNKNOWN, repaired=repaired))
     assert "no listed effect explains" not in text
     assert "behaves like overload softening" in text
+
+
+def test_a_structure_that_was_found_twice_is_one_explanation() -> None:
+    def candidate(*names: str) -> SimpleNamespace:
+        terms = tuple(SimpleNamespace(name=name, effect=object()) for name in names)
+        return SimpleNamespace(fit=SimpleNamespace(terms=terms), recognised=(True,) * len(terms))
+
+    found = ((candidate("a"), 0.4), (candidate("b"), 0.35), (candidate("b"), 0.25))
+    decision = SimpleNamespace(unexplained=False, explanations=found)
+    listed = explanations(cast(Conclusion, SimpleNamespace(decision=decision)))
+    assert [each.effects for each in listed] == [("b",), ("a",)]
+    assert [each.probability for each in listed] == pytest.approx([0.6, 0.4])

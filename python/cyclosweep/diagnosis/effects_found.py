@@ -241,14 +241,21 @@ def classes_shown(concluded: Conclusion) -> tuple[BehaviourClass, ...]:
 def explanations(concluded: Conclusion) -> tuple[Explanation, ...]:
     """Return the explanations with their probabilities, the most probable first.
 
-    The calibrated model alone explains nothing where something is left.
+    The calibrated model alone explains nothing where something is left. Stages may have found one
+    structure more than once, beside others: it is one explanation.
     """
     decision = concluded.decision
-    return tuple(
-        _explanation(each, p)
-        for each, p in decision.explanations
-        if each.fit.terms or not decision.unexplained
-    )
+    found: dict[tuple[frozenset[str], frozenset[str]], Explanation] = {}
+    for each, share in decision.explanations:
+        if not each.fit.terms and decision.unexplained:
+            continue
+        one = _explanation(each, share)
+        key = frozenset(one.effects), frozenset(one.without_name)
+        known = found.get(key)
+        if known is not None:
+            one = replace(known, probability=known.probability + share)
+        found[key] = one
+    return tuple(sorted(found.values(), key=lambda each: -each.probability))
 
 
 def _explanation(candidate: Candidate, probability: float) -> Explanation:
