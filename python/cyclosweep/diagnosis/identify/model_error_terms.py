@@ -6,6 +6,9 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_EFFECT,
     MOST_POSITIONS,
     POSITION,
+    POSITION_COMPLIANCE,
+    RUN,
+    TEMPERATURE,
 )
 from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
@@ -15,16 +18,23 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     amplitude_count,
     cancels,
     makes_others_grow,
+    own_classes,
     share_class,
 )
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Flags, History
+from cyclosweep.simulation.effects.orders import from_recorded_position, travels
 
-LEAST_OF_MISMATCH = 0.02
+LEAST_OF_MISMATCH = 0.04
 """Size from which an effect is told from the model error of the others, as a share of the mismatch
 of the calibrated model."""
+LEAST_OF_RECORDED = 0.02
+"""The same of an effect that follows what was recorded beside the torque: the run, the position or
+the temperature. What a law of the torque misses does not."""
+RECORDED = frozenset({RUN, POSITION, POSITION_COMPLIANCE, TEMPERATURE})
+"""Classes of such effects."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
@@ -66,11 +76,12 @@ def without_model_error(
             beside = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
             alike = max(alike, *beside, 0.0)
         mates = [j for j, each in enumerate(fitted.terms) if j != k and share_class(each, term)]
-        least = max(LEAST_OF_MISMATCH * mismatch_deg, LEAST_OF_FAMILY * family)
+        least_alone = _least_share(term) * mismatch_deg
+        least = max(least_alone, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
         largest = max((size[j] for j in mates), default=0.0)
-        small = size[k] < LEAST_OF_MISMATCH * mismatch_deg
+        small = size[k] < least_alone
         shrunk = size[k] < LEAST_OF_CLASS * before.get(term.name, 0.0)
         replaced = (small or shrunk) and size[k] < LEAST_OF_CLASS * largest
         replaced |= small and term.name in errors
@@ -79,6 +90,25 @@ def without_model_error(
         ):
             kept.append(term)
     return tuple(kept)
+
+
+def _least_share(term: Term) -> float:
+    """Size from which a term is told from the model error of others, over the whole mismatch.
+
+    Parameters
+    ----------
+    term : Term
+
+    Returns
+    -------
+    float
+    """
+    own = set() if term.effect is None else set(own_classes(term))
+    if not own or not own <= RECORDED:
+        return LEAST_OF_MISMATCH
+    # The travel of the mesh is the twist itself, and so a function of the torque.
+    of_travel = travels(term.shape) and not from_recorded_position(term.shape)
+    return LEAST_OF_MISMATCH if of_travel else LEAST_OF_RECORDED
 
 
 def offset_count(history: History, fitted: Flags, name: str) -> int:
