@@ -327,15 +327,15 @@ def test_balanced_loops_push_the_datum_by_no_rounding() -> None:
 
 
 @pytest.mark.parametrize("name", ["friction_hysteresis", "load_dependent_friction"])
-def test_loading_alone_hides_friction(name: str) -> None:
+def test_loading_alone_bounds_no_friction(name: str) -> None:
     effect = effects.find(name)
 
     def reason(*turns: float, restart: bool = True) -> str | None:
-        """Why three runs through these torques, 61 rows a leg, hide friction."""
+        """Why three runs through these torques, 61 rows a leg, give no bound of friction."""
         legs = [np.linspace(a, b, 61) for a, b in pairwise(turns)]
         torque = np.tile(np.concatenate(legs), 3)
         run = np.repeat([0, 1, 2], len(torque) // 3)
-        return effect.untestable(
+        return effect.unbounded(
             History(
                 applied_nm=torque, elastic_nm=torque, angle_deg=2.7 * torque,
                 side=np.where(torque >= 0, 1.0, -1.0), run=run,

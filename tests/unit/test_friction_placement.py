@@ -73,6 +73,40 @@ def test_friction_behind_the_play_stands_while_it_is_crossed() -> None:
     assert (slid.applied_nm - slid.elastic_nm)[-1] == pytest.approx(-0.5, abs=1e-3)
 
 
+def test_friction_behind_the_play_leaves_it_the_whole_torque() -> None:
+    torque = np.r_[np.linspace(0.0, 6.0, 60), np.linspace(6.0, -6.0, 121)]
+    model = cs.Model(COMPLIANCE, PLAY_DEG, effects=(friction(behind_play=1.0),))
+    there = predict_history(model, cs.Recording.from_arrays(torque))
+    loaded = torque != 0.0
+    np.testing.assert_array_equal(there.side[loaded], np.sign(torque)[loaded])
+    # What friction keeps of the twist at zero torque stays while the play is crossed.
+    assert there.held_deg[180] - PLAY_DEG * there.side[180] < 0.0
+    kept = np.interp(0.0, -torque[60:], there.held_deg[60:] - PLAY_DEG * there.side[60:])
+    assert kept > 0.5
+
+
+def test_torque_at_an_angle_within_the_play_is_zero_behind_it() -> None:
+    model = cs.Model(COMPLIANCE, PLAY_DEG, effects=(friction(behind_play=1.0),))
+    torque = np.r_[
+        np.linspace(0.5, 8.0, 60), np.linspace(8.0, -8.0, 161), np.linspace(-8.0, 8.0, 161)
+    ]
+    there = cs.simulate(model, cs.Recording.from_arrays(torque[torque != 0.0]))
+    angle = np.array(there.angle_deg)
+    jumps = np.flatnonzero(np.abs(np.diff(angle)) > PLAY_DEG)
+    between = [np.linspace(angle[k], angle[k + 1], 30)[1:-1] for k in jumps]
+    first, second = jumps + 1
+    parts = (angle[:first], between[0], angle[first:second], between[1], angle[second:])
+    dense = np.concatenate(parts)
+    within = np.zeros(dense.size, dtype=bool)
+    within[first : first + 28] = within[second + 28 : second + 56] = True
+    programme = cs.Recording.from_arrays(np.zeros(dense.size), dense)
+    back = cs.simulate(model, programme, predict="torque").torque_nm
+    assert np.count_nonzero(back[within] == 0.0) > 50
+    # Near zero the angle alone does not tell how far the part behind the play had come back.
+    clear = np.abs(there.torque_nm) > 2.0
+    np.testing.assert_allclose(back[~within][clear], there.torque_nm[clear], atol=0.01)
+
+
 def test_a_part_in_series_follows_the_applied_torque() -> None:
     programme = make(Recipe(4_420))
     line = cs.Model(COMPLIANCE, PLAY_DEG, effects=(friction(slack=0.0),))
@@ -166,6 +200,25 @@ def test_the_file_of_a_model_says_what_lies_in_series() -> None:
     value = replace(SOFT, in_series=True)
     assert EffectValue.from_dict(value.as_dict()) == value
     assert "in_series" not in SOFT.as_dict()
+    for shape, found in (
+        ({"behind_play": 0.3}, "behind_play: found 0.3"),
+        ({"behind_play": 1.0, "slack": 0.0}, "slack: found beside behind_play"),
+    ):
+        with pytest.raises(InputError, match=found):
+            EffectValue.from_dict(friction(**shape).as_dict())
     content = friction(slack=0.0).as_dict() | {"in_series": True}
     with pytest.raises(InputError, match="in_series: found true"):
         EffectValue.from_dict(content)
+
+
+def test_friction_that_gets_no_bound_is_still_looked_for() -> None:
+    torque = np.linspace(0.1, 12.0, 400)
+    model = cs.Model(COMPLIANCE, PLAY_DEG, effects=(friction(slack=0.0),))
+    angle = cs.simulate(model, cs.Recording.from_arrays(torque)).angle_deg
+    assert angle is not None
+    noise = np.random.default_rng(2).normal(0.0, 0.05, angle.size)
+    found = cs.diagnose(cs.Recording.from_arrays(torque, angle + noise), DRIVE, full=False)
+    said = {name for each in found.content["explanation_set"] for name in each["effects"]}
+    assert found.verdict != "IDENTIFIED" or "friction_hysteresis" in said
+    bounded = {row["name"] for row in found.content["ruled_out"] + found.content["undecided"]}
+    assert not bounded & {"friction_hysteresis", "load_dependent_friction"}

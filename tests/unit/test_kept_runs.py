@@ -30,12 +30,19 @@ def recording(
         ({"zero_deg": 0.6}, "their zero is another one, by 0.6"),
         ({"softer": 0.05}, "their compliance is another one, by +5 %"),
         ({"wider_deg": 0.4}, "their free play is wider by 0.4 deg each side"),
+        ({"wider_deg": -0.4}, "their free play is narrower by 0.4 deg each side"),
     ],
 )
 def test_how_a_kept_run_differs_is_said(change: dict[str, float], words: str) -> None:
     found = cs.diagnose(recording(**change), DRIVE)
     assert "The runs that were kept are missed by" in found.statement
     assert words in found.statement
+
+
+def test_of_one_flank_no_play_is_told() -> None:
+    whole = recording(zero_deg=0.6)
+    found = cs.diagnose(whole.take(whole.torque_nm > 0.0), DRIVE)
+    assert "their zero is another one, by 0.6" in found.statement
 
 
 def test_a_kept_run_like_the_others_is_not_mentioned() -> None:

@@ -80,6 +80,24 @@ def test_loads_to_and_fro_without_readings_between_are_kept() -> None:
     assert left_out(cs.Recording.from_arrays(torque, angle)) == 0
 
 
+def test_a_reading_on_the_other_flank_near_zero_is_kept() -> None:
+    down = np.linspace(12.0, 0.1, 60)
+    torque = np.tile(np.r_[down[::-1], down, -0.05], 3)
+    angle = 28.0 * np.sign(torque) + 2.7 * torque
+    assert left_out(cs.Recording.from_arrays(torque, angle)) == 0
+
+
+def test_changes_of_another_run_are_not_nearby() -> None:
+    recording = loops()
+    angle, run = np.array(recording.angle_deg), np.ones(len(recording), dtype=int)
+    run[300:] = 2
+    for row in (1, 301):
+        spoiled = angle.copy()
+        spoiled[row] += 20.0
+        made = cs.Recording.from_arrays(recording.torque_nm, spoiled, run=run)
+        assert left_out(made) == 0
+
+
 def test_turning_points_of_a_quiet_recording_are_kept() -> None:
     torque = np.tile(np.r_[np.linspace(1.0, 12.0, 20), np.linspace(12.0, 1.0, 20)], 4)
     angle = 28.0 + 2.7 * torque + 0.5 * torque**2

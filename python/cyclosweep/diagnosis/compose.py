@@ -282,7 +282,8 @@ def _not_testable(concluded: Conclusion) -> tuple[Untestable, ...]:
         rows += rig_limits(concluded.search.problem)
     if concluded.accepted.fit.torque_zero is not None:
         rows = [row for row in rows if row.name != "torque_offset"]
-    return tuple(rows)
+    found = set(concluded.accepted.fit.names)
+    return tuple(row for row in rows if row.name not in found)
 
 
 def _sufficiency(concluded: Conclusion) -> Sufficiency:

@@ -64,7 +64,9 @@ def compliance_with_curve(fitted: FittedStructure) -> tuple[float, float]:
         if step > 0.0 and np.isfinite(step):
             by_parameter[j] = (slope(fitted.moved(place, step)) - here) / step
     variance = float(by_parameter @ covariance[np.ix_(places, places)] @ by_parameter)
-    return here, float(np.sqrt(max(variance, 0.0)))
+    # Where what is left is error of the model, standard errors are larger by one factor.
+    usual = float(np.sqrt(max(covariance[1, 1], 1e-300)))
+    return here, float(np.sqrt(max(variance, 0.0))) * error / usual
 
 
 def added_twist(fitted: FittedStructure, index: int) -> Floats:

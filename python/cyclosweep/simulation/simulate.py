@@ -290,9 +290,12 @@ def _slide(
     state = {"elastic_nm": elastic, "angle_deg": held + beyond, "beyond_deg": beyond}
     if known_side is not None:
         return history.with_state(**state)
+    # Friction behind the play leaves the play the whole applied torque.
+    behind = lies_behind_play(friction.shape)
+    carried = history.applied_nm if behind else elastic
     small = 1e-9 * history.largest_torque_nm
-    side = _flanks(np.where(np.abs(elastic) < small, 0.0, elastic), history.restart)
-    if lies_behind_play(friction.shape):
+    side = _flanks(np.where(np.abs(carried) < small, 0.0, carried), history.restart)
+    if behind:
         state["angle_deg"] = held + beyond + side * model.free_play_deg
     return history.with_state(side=side, **state)
 
@@ -332,6 +335,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         for value in model.effects
         if not (value.effect.elastic if held_back is None else value.elastic)
     ]
+    behind = held_back is not None and lies_behind_play(held_back.shape)
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     for _ in range(ROUNDS):
@@ -342,16 +346,22 @@ def _torque(model: Model, programme: Recording) -> Floats:
         )
         beyond_friction = linear_twist(others, history)
         twist = angle - model.datum_deg - beyond_friction
-        beyond = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
-        settled = beyond / model.compliance_deg_per_nm
+        held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
+        settled = held / model.compliance_deg_per_nm
         if law is not None:
-            settled = np.interp(beyond, law.twist_deg, law.torque_nm)
+            settled = np.interp(held, law.twist_deg, law.torque_nm)
         moved = float(np.max(np.abs(settled - elastic)))
         elastic = settled
         if held_back is not None:
-            friction = held_back.torque_nm(
-                history.with_state(elastic_nm=elastic, beyond_deg=beyond_friction)
-            )
+            state = {"elastic_nm": elastic, "beyond_deg": beyond_friction}
+            if behind:
+                # It stands while the play is crossed, where the shaft carries nothing.
+                crossed = side * model.free_play_deg + beyond_friction
+                state["angle_deg"] = model.datum_deg + held + crossed
+            friction = held_back.torque_nm(history.with_state(**state))
+            if behind:
+                carries = np.sign(twist) * (elastic + friction) > 0.0
+                friction = np.where(carries & (held != 0.0), friction, -elastic)
         if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9):
             break
     return elastic + friction + model.torque_zero_nm

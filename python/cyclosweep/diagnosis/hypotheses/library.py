@@ -1,7 +1,7 @@
 """All hypotheses of one recording as columns of twist: effects by name and unnamed shapes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -60,11 +60,14 @@ class Library:
         Twist on the fitted rows, each column divided by its root mean square.
     untestable : dict of str to str
         Effects that the recording cannot show, each with the reason.
+    unbounded : dict of str to str
+        Effects that it may show, but of which it gives no upper bound, each with the reason.
     """
 
     signatures: tuple[Signature, ...]
     columns: Floats
     untestable: dict[str, str]
+    unbounded: dict[str, str] = field(default_factory=dict)
 
     @cached_property
     def effects(self) -> dict[str, Signature]:
@@ -95,6 +98,7 @@ def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) ->
     signatures: list[Signature] = []
     parts: list[Floats] = []
     untestable: dict[str, str] = {}
+    unbounded: dict[str, str] = {}
 
     def add(
         name: str,
@@ -132,6 +136,9 @@ def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) ->
         if reason is not None:
             untestable[effect.name] = reason
             continue
+        reason = effect.unbounded(history)
+        if reason is not None:
+            unbounded[effect.name] = reason
         for shape in effect.shapes(history):
             made = effect.columns(history, shape)
             add(effect.name, made, _signs(effect, shape, made.shape[1]), effect, shape)
@@ -140,7 +147,7 @@ def build_library(history: History, fitted: Flags, effects: Sequence[Effect]) ->
         signs = np.full(made.shape[1], 1.0 if unnamed.positive else 0.0)
         add(unnamed.family, made, signs, unnamed=unnamed)
     columns = np.column_stack(parts) if parts else np.zeros((int(fitted.sum()), 0))
-    return Library(tuple(signatures), columns, untestable)
+    return Library(tuple(signatures), columns, untestable, unbounded)
 
 
 def _signs(effect: Effect, shape: Shape, count: int) -> Floats:

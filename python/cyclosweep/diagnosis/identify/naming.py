@@ -141,7 +141,11 @@ def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tup
     -------
     tuple of LawCheck
     """
-    elastic = {term.name for term in fitted.terms if term.elastic}
+    elastic = {
+        term.name
+        for term in fitted.terms
+        if term.elastic or (term.effect is not None and term.effect.elastic)
+    }
     if fitted.keeps_line or not elastic:
         return tuple(checks)
     # The others were fitted beside a wrong line: they are judged when they are fitted without it.

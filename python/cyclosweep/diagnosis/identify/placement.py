@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.prepare.noise import orthonormal
 
 IN_SERIES_PENALTY = float(np.log(2.0))
 """What an elastic effect is charged that lies in series with friction and not where it holds the
-drive: the two are as likely beforehand [nat]."""
+drive: half as likely beforehand [nat]."""
 
 
 def better_placed(term: Term, parent: FittedStructure) -> tuple[Term, float]:

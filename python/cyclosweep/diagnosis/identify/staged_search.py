@@ -184,7 +184,8 @@ def search_in_stages(
         part = search.visited.get(frozenset(term.name for term in found), search.start)
         before = {term.name for term in accepted}
         if {term.name for term in found} == before and not decision.unexplained:
-            # Of two structures that leave nothing the likelier one may hold too much.
+            # The likelier of two structures that leave nothing may hold too much. It is no rival
+            # then: what makes it likelier may be model error.
             whole = _accepted_whole(search, best, mismatch)
             if whole:
                 decision = replace(decision, explanations=likely(probabilities(whole)))

@@ -82,15 +82,15 @@ def testability(
     Returns
     -------
     list of Testability
-        Effects that the recording can show and the structure does not have.
+        Effects that the recording can show and bound, and the structure does not have.
     """
     fitted = candidate.fit
     raw = _recalibration(fitted)(search.library.columns)
     scan = candidate.scan
     out: list[Testability] = []
-    accepted = set(fitted.names)
+    passed_over = {*fitted.names, *search.library.unbounded}
     for name, members in scan.groups.items():
-        if scan.library.signatures[members[0]].effect is None or name in accepted:
+        if scan.library.signatures[members[0]].effect is None or name in passed_over:
             continue
         upper, estimate, detect, absorbed = 0.0, 0.0, np.inf, 1.0
         best_gain = -1.0
@@ -213,7 +213,7 @@ def _recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
 
 def hidden_effects(search: Search) -> list[Untestable]:
     """Effects that this recording cannot show, with reason and remedy."""
-    hidden = dict(search.library.untestable)
+    hidden = search.library.untestable | search.library.unbounded
     shown = set(search.baseline.scan.groups)
     hidden |= dict.fromkeys(
         sorted(search.library.effects.keys() - shown),

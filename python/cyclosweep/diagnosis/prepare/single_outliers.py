@@ -23,6 +23,8 @@ NEARBY = 3
 """Changes on either side that a spike is compared with."""
 FEWEST = 2
 """The same at least, at the end of a run."""
+NEAR_ZERO = 0.1
+"""Torque over the largest one, up to which a sample of the other sign may be on the other flank."""
 STEADY = 4.0
 """How far the other signal may be from the middle of its neighbours, over its usual change."""
 STEPS = 4.0
@@ -57,6 +59,8 @@ def without_single_outliers(recording: Recording, line: NominalLine) -> Recordin
     of_angle = _spikes(twist, recording.run, least) & _is_steady(torque, recording.run)
     of_torque = _spikes(torque, recording.run, 0.0) & _is_steady(angle, recording.run)
     of_torque &= ~of_angle
+    crosses = _may_cross_play(torque)
+    of_angle, of_torque = of_angle & ~crosses, of_torque & ~crosses
     found = of_angle | of_torque
     if not np.any(found) or np.count_nonzero(found) > max(MOST_SHARE * len(found), 1.0):
         return recording
@@ -140,17 +144,46 @@ def _spikes(signal: Floats, run: np.ndarray, least: float) -> Flags:
     if len(signal) < 2 * FEWEST + 3:
         return found
     change = _changes(signal, run)
-    before, after = change[:-1], -change[1:]
-    size = np.minimum(np.abs(before), np.abs(after))
-    clear = (before * after > 0) & (size > max(BEYOND_USUAL * _usual(change), least))
-    clear &= np.abs(before - after) <= BACK_AGAIN * size
+    up, down = change[:-1], -change[1:]
+    size = np.minimum(np.abs(up), np.abs(down))
+    clear = (up * down > 0) & (size > max(BEYOND_USUAL * _usual(change), least))
+    clear &= np.abs(up - down) <= BACK_AGAIN * size
     for place in np.flatnonzero(clear):
-        sides = change[max(place - NEARBY, 0) : place], change[place + 2 : place + 2 + NEARBY]
-        known = [np.abs(side[np.isfinite(side)]) for side in sides]
-        if min(map(len, known)) < FEWEST:
+        before = _of_one_run(change[max(place - NEARBY, 0) : place][::-1])
+        after = _of_one_run(change[place + 2 : place + 2 + NEARBY])
+        if min(len(before), len(after)) < FEWEST:
             continue
-        found[place + 1] = size[place] > BEYOND_NEARBY * max(side.max() for side in known)
+        largest = max(np.abs(before).max(), np.abs(after).max())
+        found[place + 1] = size[place] > BEYOND_NEARBY * largest
     return found
+
+
+def _of_one_run(changes: Floats) -> Floats:
+    """Changes up to the first one that leads into another run."""
+    breaks = np.flatnonzero(np.isnan(changes))
+    return changes[: breaks[0]] if len(breaks) else changes
+
+
+def _may_cross_play(torque: Floats) -> Flags:
+    """Samples at which the shaft may be on the other flank: near zero, the torque turns about.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        Torque [N m].
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Where the sample and both neighbours are small, and not all of one sign.
+    """
+    small = np.abs(torque) <= NEAR_ZERO * float(np.abs(torque).max(initial=0.0))
+    sign = np.sign(torque)
+    crosses = np.zeros(len(torque), dtype=bool)
+    near = small[:-2] & small[1:-1] & small[2:]
+    one_sign = (sign[:-2] == sign[1:-1]) & (sign[1:-1] == sign[2:]) & (sign[1:-1] != 0)
+    crosses[1:-1] = near & ~one_sign
+    return crosses
 
 
 def _is_steady(signal: Floats, run: np.ndarray) -> Flags:

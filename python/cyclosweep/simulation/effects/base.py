@@ -14,6 +14,8 @@ from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
 
 __all__ = ["Effect", "Parameter", "Shape", "ShapeForm", "listed", "spread"]
 
+COLUMNS = {"time_s": "a clock", "crank_deg": "the mesh position", "temperature_c": "a temperature"}
+"""What an effect may need of a recording, in words."""
 FEWEST_STEPS = 3.0
 """Steps between samples below which a delay cannot be told from drag."""
 MOST_FRICTION = 0.95
@@ -387,14 +389,12 @@ class Effect(FormerNames):
         """
         return None
 
+    def unbounded(self, history: History) -> str | None:
+        """Reason why no upper bound can be given of an effect that is looked for; else None."""
+
     def untestable(self, history: History) -> str | None:
         """Reason why this recording cannot show the effect; None where it can."""
-        labels = {
-            "time_s": "a clock",
-            "crank_deg": "the position of the mesh zone",
-            "temperature_c": "a temperature",
-        }
         for column in self.needs:
             if getattr(history, column) is None:
-                return f"the recording has no {column}: it needs {labels.get(column, column)}"
+                return f"the recording has no {column}: it needs {COLUMNS.get(column, column)}"
         return None

@@ -107,7 +107,8 @@ class History:
     @cached_property
     def under_applied_torque(self) -> "History":
         """The same for a part in series with friction, which carries the whole applied torque."""
-        return self.with_state(elastic_nm=self.applied_nm)
+        side = np.where(self.applied_nm == 0.0, self.side, np.sign(self.applied_nm))
+        return self.with_state(elastic_nm=self.applied_nm, side=side)
 
     @property
     def held_deg(self) -> Floats:

@@ -7,6 +7,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 import cyclosweep._core as _core
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip_elements import (
@@ -200,7 +201,7 @@ class FrictionEffect(Effect):
     forms: ClassVar[tuple[ShapeForm, ...]] = SLIP_FORMS
     slips = True
 
-    def untestable(self, history: History) -> str | None:
+    def unbounded(self, history: History) -> str | None:
         """Need unloading: of loading alone, the line takes up a friction that slips."""
         load = history.side * history.applied_nm
         begins = history.restart | np.r_[True, np.diff(history.side) != 0]
@@ -212,7 +213,7 @@ class FrictionEffect(Effect):
                 "no flank was unloaded by more than a fiftieth of the largest torque, so that the "
                 "calibration takes up what friction does"
             )
-        return super().untestable(history)
+        return super().unbounded(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Presliding distances and scatters; see `slip_shapes`."""
@@ -232,6 +233,30 @@ class FrictionEffect(Effect):
         state = slip_state(history, shape, stretch, self.slip_elements(shape))
         limit = plain + loaded * history.load_nm
         return np.asarray(-history.compliance_deg_per_nm * limit * state)[:, None]
+
+    def known_shape(self, shape: Shape) -> Shape:
+        """Refuse a place that is none, or that leaves no state to start in; see `Effect`.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape parameters by name, in any order.
+
+        Returns
+        -------
+        mapping
+
+        Raises
+        ------
+        InputError
+            A shape parameter is unknown or missing, or these two contradict each other.
+        """
+        behind = shape.get("behind_play", 0.0)
+        if behind not in (0.0, 1.0):
+            raise InputError(f"behind_play: found {behind:g}, expected 0 or 1")
+        if behind and "slack" in shape:
+            raise InputError("slack: found beside behind_play, expected one of the two")
+        return super().known_shape(shape)
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Shape of elements that may forget their turning points, which no search offers."""
