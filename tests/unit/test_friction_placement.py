@@ -12,7 +12,6 @@ from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
 from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects import effects
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 from cyclosweep.simulation.model import EffectValue
@@ -204,10 +203,10 @@ def test_the_file_of_a_model_says_what_lies_in_series() -> None:
         ({"behind_play": 0.3}, "behind_play: found 0.3"),
         ({"behind_play": 1.0, "slack": 0.0}, "slack: found beside behind_play"),
     ):
-        with pytest.raises(InputError, match=found):
+        with pytest.raises(cs.InputError, match=found):
             EffectValue.from_dict(friction(**shape).as_dict())
     content = friction(slack=0.0).as_dict() | {"in_series": True}
-    with pytest.raises(InputError, match="in_series: found true"):
+    with pytest.raises(cs.InputError, match="in_series: found true"):
         EffectValue.from_dict(content)
 
 

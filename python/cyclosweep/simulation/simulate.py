@@ -231,10 +231,12 @@ def settle(
     if moving:
         rounds += MESH_ROUNDS
         history = on_the_mesh(moving, history, history.angle_deg)
+    beyond = [value for value in others if value not in moving]
     for _ in range(rounds):
         added = linear_twist(others, history)
         before = history.angle_deg
         if sliding:
+            history = history.with_state(beyond_deg=linear_twist(beyond, history))
             history = _slide(model, history, sliding, added, law, known_side)
         else:
             base = model.datum_deg + history.side * model.free_play_deg
@@ -254,7 +256,7 @@ def _slide(
     model: Model,
     history: History,
     sliding: Sequence[EffectValue],
-    beyond: Floats,
+    added: Floats,
     law: ElasticLaw | None,
     known_side: Floats | None,
 ) -> History:
@@ -265,11 +267,11 @@ def _slide(
     model : Model
         Calibrated model.
     history : History
-        Load history.
+        Load history, with the twist that lies beyond the friction.
     sliding : sequence of EffectValue
         Friction effects.
-    beyond : ndarray, shape (n,)
-        Twist that effects beyond the friction add [deg].
+    added : ndarray, shape (n,)
+        Twist that effects other than friction add, that beyond it included [deg].
     law : ElasticLaw or None
         Elastic law; None for the straight line.
     known_side : ndarray, shape (n,), or None
@@ -283,11 +285,12 @@ def _slide(
     flank = 0.0 if known_side is None else known_side * model.free_play_deg
     play = model.free_play_deg if known_side is None else 0.0
     points = None if law is None else (law.torque_nm, law.twist_deg)
-    offset = np.full(len(history), model.datum_deg) + flank
+    beyond = history.beyond_deg
+    offset = model.datum_deg + added - beyond + flank
     friction = _friction(sliding)
     held, torque = friction.solve(history, offset, play, points)
     elastic = history.applied_nm - torque
-    state = {"elastic_nm": elastic, "angle_deg": held + beyond, "beyond_deg": beyond}
+    state = {"elastic_nm": elastic, "angle_deg": held + beyond}
     if known_side is not None:
         return history.with_state(**state)
     # Friction behind the play leaves the play the whole applied torque.
@@ -336,6 +339,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
         if not (value.effect.elastic if held_back is None else value.elastic)
     ]
     behind = held_back is not None and lies_behind_play(held_back.shape)
+    moving = travelling(others)
+    beyond = [value for value in others if value not in moving]
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     for _ in range(ROUNDS):
@@ -344,8 +349,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
-        beyond_friction = linear_twist(others, history)
-        twist = angle - model.datum_deg - beyond_friction
+        added = linear_twist(others, history)
+        twist = angle - model.datum_deg - added
         held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = held / model.compliance_deg_per_nm
         if law is not None:
@@ -353,10 +358,10 @@ def _torque(model: Model, programme: Recording) -> Floats:
         moved = float(np.max(np.abs(settled - elastic)))
         elastic = settled
         if held_back is not None:
-            state = {"elastic_nm": elastic, "beyond_deg": beyond_friction}
+            state = {"elastic_nm": elastic, "beyond_deg": linear_twist(beyond, history)}
             if behind:
                 # It stands while the play is crossed, where the shaft carries nothing.
-                crossed = side * model.free_play_deg + beyond_friction
+                crossed = side * model.free_play_deg + added
                 state["angle_deg"] = model.datum_deg + held + crossed
             friction = held_back.torque_nm(history.with_state(**state))
             if behind:

@@ -48,7 +48,7 @@ def path_law(elastic: Sequence[tuple[Term, Floats]], history: History) -> Elasti
 
 
 def beyond_friction(terms: Sequence[Term], design: Sequence[Floats], beta: Floats) -> Floats:
-    """Twist that does not move the part that friction holds: of all that is not elastic.
+    """Twist that does not move the part that friction holds.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def beyond_friction(terms: Sequence[Term], design: Sequence[Floats], beta: Float
     parts = linear_parts(terms, design, beta)
     twist = np.zeros(len(design[0]))
     for term, columns, own in parts:
-        if not term.elastic:
+        if term.lies_beyond_friction:
             twist += columns @ own
     return twist
 

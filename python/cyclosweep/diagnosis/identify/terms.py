@@ -7,6 +7,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.orders import travels
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
 
 
@@ -60,6 +61,14 @@ class Term:
         if self.effect is not None:
             return self.effect.elastic and not self.in_series
         return self.unnamed is not None and self.unnamed.elastic
+
+    @property
+    def lies_beyond_friction(self) -> bool:
+        """Whether it turns the measured shaft without turning the part that friction holds.
+
+        What is elastic twists that part; along the travel of the mesh the part itself turns.
+        """
+        return not self.elastic and not travels(self.shape)
 
     @property
     def place_in_words(self) -> tuple[str, ...]:
