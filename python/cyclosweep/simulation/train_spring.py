@@ -20,7 +20,7 @@ def spring_of(model: CalibratedLine, largest_torque_nm: float) -> TrainSpring:
     limits and how these follow the load are the model's. They remember their turning points
     (`forgetting` is left out), and their stiffness is constant: the one that they have at the
     torque for which the model states its presliding distances, or at half of the largest torque
-    where it states none.
+    where it states none. Friction behind the play is taken as if it slid through it.
 
     Parameters
     ----------

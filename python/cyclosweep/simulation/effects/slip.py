@@ -48,6 +48,8 @@ SLIP_PARAMETERS = (
     Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
 )
 OPTIONAL = ("skew", "slack", "forgetting", "behind_play")
+BEHIND_PLAY_PENALTY = 1.0
+"""Log prior odds against friction behind the play [nat]."""
 LEAST_UNLOADED = 0.02
 """Unloading, as a share of the largest torque, below which no friction shows. The usual tolerance
 is one percent of the twist; a friction worth that is reversed only after twice its torque."""
@@ -257,6 +259,10 @@ class FrictionEffect(Effect):
         if behind and "slack" in shape:
             raise InputError("slack: found beside behind_play, expected one of the two")
         return super().known_shape(shape)
+
+    def penalty(self, shape: Shape) -> float:
+        """Friction behind the play is less usual: loops that cross zero slipping do not tell."""
+        return BEHIND_PLAY_PENALTY if lies_behind_play(shape) else 0.0
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Shape of elements that may forget their turning points, which no search offers."""
