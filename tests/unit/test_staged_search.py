@@ -1,10 +1,14 @@
 """Stages of a search: how large what a structure leaves is, what is accepted, freer laws."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
+import cyclosweep.diagnosis.identify.staged_search as staged_search
+import cyclosweep.diagnosis.identify_effects as identify_effects
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.candidate import Candidate
@@ -24,6 +28,7 @@ from cyclosweep.diagnosis.identify.staged_search import FAINT, search_in_stages,
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_left, size_of
+from cyclosweep.diagnosis.identify.verdict import Decision
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
@@ -256,3 +261,48 @@ def test_the_noise_beside_what_was_accepted_is_that_of_the_next_stage() -> None:
     last = search_in_stages(search, flexible, lambda words: None, None, renewed)
     assert all("friction_hysteresis" in names for names in accepted)
     assert last.noise.spread_deg == pytest.approx(2.0 * search.noise.sigma_deg)
+
+
+def test_a_structure_that_is_accepted_whole_stands_for_one_that_holds_too_much(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def candidate(score: float, *names: str, recognised: bool = True) -> SimpleNamespace:
+        fitted = SimpleNamespace(terms=tuple(SimpleNamespace(name=name) for name in names))
+        return SimpleNamespace(
+            score=score, names=frozenset(names), fit=fitted, all_recognised=recognised
+        )
+
+    start = candidate(0.0, "friction")
+    best = candidate(80.0, "friction", "wave", "offsets")
+    whole = candidate(75.0, "friction", "offsets")
+    others = [
+        candidate(79.0, "friction", "bump", recognised=False),
+        candidate(78.0, "offsets"),
+        candidate(69.0, "friction", "drift"),
+    ]
+    search = SimpleNamespace(
+        start=start,
+        explanations=lambda: [best, *others[:2], whole, others[2]],
+        suffices=lambda _: True,
+    )
+
+    def kept(fitted: SimpleNamespace, *_: object) -> tuple[SimpleNamespace, ...]:
+        return tuple(term for term in fitted.terms if term.name != "wave")
+
+    monkeypatch.setattr(staged_search, "without_model_error", kept)
+    found = staged_search._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0)
+    assert found == [whole]
+    search.suffices = lambda each: each is not whole
+    assert staged_search._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0) == []
+
+
+@pytest.mark.parametrize(("times", "leaves"), [(1.0, False), (5.0, True)])
+def test_a_fit_far_above_the_noise_leaves_something_whatever_the_tests_say(
+    times: float, leaves: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search = search_of()
+    fitted = SimpleNamespace(rmse_deg=times * search.noise.spread_deg)
+    best = cast("Candidate", SimpleNamespace(fit=fitted))
+    decision = Decision("IDENTIFIED", best, [(best, 1.0)], unexplained=False)
+    monkeypatch.setattr(identify_effects, "decide", lambda *_: decision)
+    assert identify_effects._leaves_something(search) == leaves
