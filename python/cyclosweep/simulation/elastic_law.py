@@ -10,10 +10,7 @@ from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.elastic_curve import ElasticCurve
 
-LAW_SHARES = np.union1d(np.geomspace(1e-5, 1.0, 128), np.arange(1, 64) / 64)
-"""Loads of the points of an elastic law over the farthest one: a constant ratio apart near zero, a
-constant distance at large loads."""
-LAW_POINTS = len(LAW_SHARES)
+LAW_POINTS = 128
 """Points of an elastic law on each side of zero."""
 
 
@@ -162,7 +159,7 @@ def law_of_twist(
     -------
     ElasticLaw
     """
-    half = 3.0 * max(largest_torque_nm, 1e-9) * LAW_SHARES
+    half = 3.0 * max(largest_torque_nm, 1e-9) * np.geomspace(1e-5, 1.0, LAW_POINTS)
     twists = twist(np.r_[-half[::-1], half])
     least = 1e-3 * compliance_deg_per_nm
     upper = np.maximum.accumulate(np.r_[0.0, twists[LAW_POINTS:]] - least * np.r_[0.0, half])
