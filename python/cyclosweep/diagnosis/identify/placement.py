@@ -37,11 +37,28 @@ def better_placed(term: Term, parent: FittedStructure) -> tuple[Term, float]:
     float
         What is charged for the place [nat].
     """
-    if term.effect is None or not term.elastic or not any(each.slips for each in parent.terms):
+    if term.effect is None or not term.elastic or not _tells_places(parent):
         return term, 0.0
     moved = replace(term, in_series=True)
     ahead = _explained(moved, parent) - _explained(term, parent)
     return (moved, IN_SERIES_PENALTY) if ahead > IN_SERIES_PENALTY else (term, 0.0)
+
+
+def _tells_places(fitted: FittedStructure) -> bool:
+    """Whether there is friction, and more than one run to tell the two places apart.
+
+    Of one loop, a line of the elastic torque and a curve of the applied one make any loop.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+
+    Returns
+    -------
+    bool
+    """
+    return fitted.problem.run_count > 1 and any(term.slips for term in fitted.terms)
 
 
 def _explained(term: Term, parent: FittedStructure) -> float:
@@ -76,7 +93,7 @@ def best_placed(fitted: FittedStructure) -> FittedStructure:
     FittedStructure
         The same structure where no effect moves.
     """
-    if not any(term.slips for term in fitted.terms):
+    if not _tells_places(fitted):
         return fitted
     for index, term in enumerate(fitted.terms):
         if term.effect is None or not term.effect.elastic:
