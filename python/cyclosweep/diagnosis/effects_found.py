@@ -9,7 +9,6 @@ from scipy import stats
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.elasticity import (
     added_twist,
-    beside_calibration,
     compliance_with_curve,
 )
 from cyclosweep.diagnosis.identify.alarm import DRAWS, probability
@@ -19,6 +18,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import (
     Testability,
+    recalibration,
     spread_of_size,
     strength_of,
 )
@@ -80,7 +80,7 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
     fitted = accepted.fit
     effect = fitted.terms[index].effect
     assert effect is not None
-    twist = beside_calibration(fitted, added_twist(fitted, index))
+    twist = recalibration(fitted)(added_twist(fitted, index)[fitted.problem.fitted])
     size = float(np.max(np.abs(twist), initial=0.0))
     strength = strength_of(search, fitted, index)
     if fitted.follows_path(index):

@@ -3,8 +3,6 @@
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.prepare.noise import orthonormal
-from cyclosweep.diagnosis.prepare.problem import line_design
 from cyclosweep.simulation.effects.history import Floats, History
 
 HALF = 0.5
@@ -99,23 +97,3 @@ def added_twist(fitted: FittedStructure, index: int) -> Floats:
         return np.asarray(np.sum(parts, axis=0))
 
     return by_the_line + bent(history) - bent(without)
-
-
-def beside_calibration(fitted: FittedStructure, twist_deg: Floats) -> Floats:
-    """What no other calibration of the line would take up of a twist.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-    twist_deg : ndarray, shape (n,)
-        On all rows [deg].
-
-    Returns
-    -------
-    ndarray, shape (fitted,)
-        In deg.
-    """
-    problem, history = fitted.problem, fitted.history
-    line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
-    basis, part = orthonormal(line[problem.fitted]), twist_deg[problem.fitted]
-    return np.asarray(part - basis @ (basis.T @ part))

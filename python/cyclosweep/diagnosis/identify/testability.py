@@ -85,7 +85,7 @@ def testability(
         Effects that the recording can show and bound, and the structure does not have.
     """
     fitted = candidate.fit
-    raw = _recalibration(fitted)(search.library.columns)
+    raw = recalibration(fitted)(search.library.columns)
     scan = candidate.scan
     out: list[Testability] = []
     passed_over = {*fitted.names, *search.library.unbounded}
@@ -135,7 +135,7 @@ def size_of(fitted: FittedStructure, index: int) -> Floats:
     -------
     ndarray, shape (fitted,)
     """
-    return _recalibration(fitted)(fitted.contribution(index)[fitted.problem.fitted])
+    return recalibration(fitted)(fitted.contribution(index)[fitted.problem.fitted])
 
 
 def size_left(fitted: FittedStructure, term: Term) -> float:
@@ -164,7 +164,7 @@ def size_left(fitted: FittedStructure, term: Term) -> float:
         return 0.0
     columns, white, beside = columns[:, left], white[:, left], beside[:, left]
     amplitudes = np.linalg.lstsq(beside, fitted.residual, rcond=LEAST_BESIDE)[0]
-    whole = _recalibration(fitted)(columns @ amplitudes)
+    whole = recalibration(fitted)(columns @ amplitudes)
     all_of_it = max(float(np.linalg.norm(white @ amplitudes)), 1e-300)
     seen = float(np.linalg.norm(beside @ amplitudes)) / all_of_it
     return seen * float(np.max(np.abs(whole)))
@@ -185,7 +185,7 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
         In deg.
     """
     use = fitted.problem.fitted
-    recalibrated = _recalibration(fitted)
+    recalibrated = recalibration(fitted)
 
     def twist(changed: FittedStructure) -> Floats:
         return recalibrated(changed.contribution(index)[use])
@@ -203,7 +203,7 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
     return float(np.sqrt(max(variance, 0.0)))
 
 
-def _recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
+def recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
     """Function that takes out of twists on the fitted rows all that a calibration takes up."""
     problem, history = fitted.problem, fitted.history
     line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
