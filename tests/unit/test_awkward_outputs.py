@@ -161,3 +161,28 @@ def test_an_interruption_that_python_ignores_ends_the_command() -> None:
     assert ended.returncode == 130
     assert "went on" not in ended.stdout
     assert ended.stderr == ""
+
+
+INTERRUPTED_IMPORT = """
+from cyclosweep.cli import app, main
+
+@app.command()
+def load() -> None:
+    try:
+        {cause}
+    except BaseException as before:
+        raise ImportError("initialization failed") from before
+
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("cause", "status"), [("raise KeyboardInterrupt", 130), ("raise RuntimeError", 1)]
+)
+def test_an_interruption_of_an_extension_module_ends_the_command(cause: str, status: int) -> None:
+    """pybind11 raises an ImportError from whatever ends the first lines of its modules."""
+    command = [sys.executable, "-c", INTERRUPTED_IMPORT.format(cause=cause), "load"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == status
+    assert ("Traceback" in ended.stderr) == (status == 1)

@@ -32,7 +32,7 @@ from cyclosweep.cli import (
     torque_twist,
     validate,
 )
-from cyclosweep.cli.output import fail, keep_interruptions, survive_encoding
+from cyclosweep.cli.output import fail, is_interruption, keep_interruptions, survive_encoding
 from cyclosweep.errors import DesignError, InputError, SweepError
 
 __all__ = ["main"]
@@ -42,6 +42,9 @@ _UsageError = cast(type[Exception], typer.BadParameter.__bases__[0])
 
 READER_ENDED = 141
 """Exit status where the reader of a pipe has ended: 128 and the number of SIGPIPE, as of shells."""
+
+INTERRUPTED = 130
+"""Exit status after Ctrl-C: 128 and the number of SIGINT, as of shells."""
 
 app = typer.Typer(
     add_completion=False,
@@ -148,5 +151,9 @@ def main() -> None:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         fail(f"{where}{error.strerror or error}", 1)
+    except ImportError as error:
+        if is_interruption(error):
+            sys.exit(INTERRUPTED)
+        raise
     else:
         sys.exit(status if isinstance(status, int) else 0)

@@ -103,3 +103,14 @@ def keep_interruptions() -> None:
             others(ignored)
 
     sys.unraisablehook = again
+
+
+def is_interruption(error: BaseException) -> bool:
+    """Tell whether Ctrl-C lies behind an error.
+
+    An extension module that is interrupted while it is imported raises an ImportError instead.
+    """
+    seen: BaseException | None = error
+    while seen is not None and not isinstance(seen, KeyboardInterrupt):
+        seen = seen.__cause__ or seen.__context__
+    return seen is not None
