@@ -8,7 +8,12 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import FAMILIES_ALIKE, UnnamedShape
 from cyclosweep.diagnosis.identify.alarm import Alarm
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.scan import Scan, shape_choice_penalty
+from cyclosweep.diagnosis.identify.scan import (
+    Scan,
+    evidence,
+    shape_choice_penalty,
+    vector_penalty,
+)
 from cyclosweep.simulation.effects import Effect, Shape
 
 FURTHER = 6.0
@@ -187,3 +192,34 @@ class Candidate:
         family = {name: each.effect.family for name, each in named.items() if each.effect}
         families = {family[name] for name in first if name in family}
         return first + [n for n in others if n not in first and family[n] in families]
+
+
+def added_evidence(
+    gain: float, joint: FittedStructure, before: Scan, rank: float, penalty: float
+) -> float:
+    """Log evidence that the last term of a joint fit adds to a structure [nat].
+
+    Parameters
+    ----------
+    gain : float
+        Twice the log likelihood that it gains.
+    joint : FittedStructure
+        With the new term as the last.
+    before : Scan
+        Of the structure without it.
+    rank : float
+        Number of its amplitudes that the recording tells apart.
+    penalty : float
+        Charge for the choice of its shape [nat].
+
+    Returns
+    -------
+    float
+    """
+    effect = joint.terms[-1].effect
+    if effect is not None and effect.vector:
+        places = joint.amplitude_places(len(joint.terms) - 1)
+        return 0.5 * gain - vector_penalty(joint.beta[places], joint.information(places))
+    if effect is None or not effect.dense:
+        penalty = max(penalty, shape_penalty(joint, before))
+    return float(evidence(gain, rank)) - penalty

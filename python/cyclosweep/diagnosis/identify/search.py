@@ -7,7 +7,12 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.identify.alarm import Alarm
-from cyclosweep.diagnosis.identify.candidate import FURTHER, Candidate, prior_penalty, shape_penalty
+from cyclosweep.diagnosis.identify.candidate import (
+    FURTHER,
+    Candidate,
+    added_evidence,
+    prior_penalty,
+)
 from cyclosweep.diagnosis.identify.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -18,7 +23,6 @@ from cyclosweep.diagnosis.identify.scan import (
     evidence,
     likelihood_gain,
     scan,
-    vector_penalty,
 )
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms
@@ -74,6 +78,10 @@ class Search:
         Whitened columns of the library.
     visited : dict of frozenset of str to Candidate
         The best fit of each structure, by the names of its terms.
+    tried : set of (Candidate, str)
+        Structures, each with a hypothesis by which it was extended.
+    not_extended : frozenset of frozenset of str
+        Structures, by the names of their terms, that are not worth to be extended.
     chosen : Candidate or None
         The structure chosen on whole loops; None where structures are compared by their evidence.
     rivals_of_start : list of (Candidate, probability)
@@ -102,7 +110,8 @@ class Search:
         if terms:
             self.start = self.judged(first, 0.0, 0.0)
             self.visited[self.start.names] = self.start
-        self._tried: set[tuple[Candidate, str]] = set()
+        self.tried: set[tuple[Candidate, str]] = set()
+        self.not_extended: frozenset[frozenset[str]] = frozenset()
         self.chosen: Candidate | None = None
         self.flexible: Floats | None = None
         self.rivals_of_start: list[tuple[Candidate, float]] = []
@@ -114,7 +123,7 @@ class Search:
         front = [self.start]
         for depth in range(MOST_TERMS):
             found: list[Candidate] = []
-            for parent in front:
+            for parent in (n for n in front if n.names not in self.not_extended):
                 for name in parent.hypotheses_to_add(6 if depth == 0 else 3, 3 - depth):
                     if parent.names | {name} in self.visited and depth:
                         continue
@@ -193,7 +202,7 @@ class Search:
         Candidate or None
             None where no fit is better and has amplitudes of the sign that physics asks for.
         """
-        self._tried.add((parent, hypothesis))
+        self.tried.add((parent, hypothesis))
         best: Candidate | None = None
         for term, rank, penalty in starting_terms(parent, hypothesis):
             terms = (*parent.fit.terms, term)
@@ -204,7 +213,8 @@ class Search:
             if joint is None or joint.chi2 > parent.fit.chi2:
                 # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue
-            added = self._added(parent, joint, rank, penalty)
+            gain = self.gain(parent.fit, joint)
+            added = added_evidence(gain, joint, parent.scan, rank, penalty)
             prior = parent.prior - (FURTHER if parent.fit.terms else 0.0)
             prior -= prior_penalty(term.name, term.effect, term.shape)
             if best is None or parent.gain + added > best.gain:
@@ -319,36 +329,6 @@ class Search:
                 return richer
         return None
 
-    def _added(
-        self, parent: Candidate, joint: FittedStructure, rank: float, penalty: float
-    ) -> float:
-        """Log evidence that the last term of a joint fit adds to a structure [nat].
-
-        Parameters
-        ----------
-        parent : Candidate
-            The structure to which something is added.
-        joint : FittedStructure
-            With the new term as the last.
-        rank : float
-            Number of its amplitudes that the recording tells apart.
-        penalty : float
-            Charge for the choice of its shape [nat].
-
-        Returns
-        -------
-        float
-            In nat.
-        """
-        gain = self.gain(parent.fit, joint)
-        effect = joint.terms[-1].effect
-        if effect is not None and effect.vector:
-            places = joint.amplitude_places(len(joint.terms) - 1)
-            return 0.5 * gain - vector_penalty(joint.beta[places], joint.information(places))
-        if effect is None or not effect.dense:
-            penalty = max(penalty, shape_penalty(joint, parent.scan))
-        return float(evidence(gain, rank)) - penalty
-
     def _visit_parts(self) -> None:
         """Leave each term out of the best structures: the others may explain it all."""
         for candidate in sorted(self.visited.values(), key=lambda n: -n.score)[:4]:
@@ -378,7 +358,7 @@ class Search:
 
     def _child(self, parent: Candidate, name: str) -> Candidate | None:
         """Structure with one more hypothesis; from one parent it is fitted once."""
-        if (parent, name) in self._tried:
+        if (parent, name) in self.tried:
             return self.visited.get(parent.names | {name})
         return self.extend(parent, name)
 
