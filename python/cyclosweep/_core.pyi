@@ -268,6 +268,7 @@ def dragged(
     lag: float,
     power: float = 1.0,
     reference_rate: float = 1.0,
+    by_sample: bool = False,
 ) -> _Reals: ...
 def remembered_datum(push: _Reals, memory: float) -> _Reals: ...
 def write_parquet(

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from tests.support.arrays import Floats, Mask
 
@@ -150,17 +151,18 @@ def dragged(
     power: float = 1.0,
     reference_rate: float = 1.0,
 ) -> list[float]:
-    """Root of ``u = x + drag(rate)``, found by bisection instead of Newton's method."""
-    out, before = [], 0.0
+    """Solution of ``u = x + drag(dx/dt)`` by an integrator that controls its error."""
+    drag = lag * reference_rate
+    out, state, before = [], 0.0, 0.0
     for u, h, fresh in zip(load, lapse, restart, strict=True):
-        before = 0.0 if fresh else before
-        low, high = min(u, before) - 1.0, max(u, before) + 1.0
-        for _ in range(200):
-            x = 0.5 * (low + high)
-            rate = (x - before) / h
-            drag = lag * reference_rate * (abs(rate) / reference_rate) ** power
-            beyond = u - x - (drag if rate > 0 else -drag)
-            low, high = (x, high) if beyond > 0 else (low, x)
-        before = x
-        out.append(x)
+        state, before = (0.0, 0.0) if fresh else (state, before)
+
+        def rate(t: float, x: Floats, u: float = u, h: float = h, start: float = before) -> Floats:
+            gap = start + (u - start) * t / h - x
+            size = reference_rate * (np.abs(gap) / drag) ** (1.0 / power)
+            return np.asarray(np.sign(gap) * size)
+
+        solved = solve_ivp(rate, (0.0, h), [state], "Radau", rtol=1e-8, atol=1e-10)
+        state, before = float(solved.y[0, -1]), u
+        out.append(state)
     return out

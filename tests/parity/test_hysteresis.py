@@ -150,8 +150,11 @@ def test_creep() -> None:
     np.testing.assert_allclose(fast, slow.creep_state(load, time, restart, 7.0), atol=2e-3)
 
 
-@pytest.mark.parametrize(("power", "rate"), [(1.0, 1.0), (0.75, 0.4), (0.5, 3.0)])
-def test_drag(power: float, rate: float) -> None:
+# One step backwards from sample to sample misses 0.33 to 0.42 of loads that reach 15.
+@pytest.mark.parametrize(
+    ("power", "rate", "within"), [(1.0, 1.0, 1e-6), (0.75, 0.4, 0.01), (0.5, 3.0, 0.02)]
+)
+def test_drag(power: float, rate: float, within: float) -> None:
     rng = np.random.default_rng(6)
     lapse = rng.uniform(0.2, 3.0, 60)
     load = np.cumsum(rng.normal(size=60))
@@ -159,7 +162,7 @@ def test_drag(power: float, rate: float) -> None:
     restart[30] = True
     fast = core.dragged(load, lapse, restart, 0.7, power, rate)
     expected = slow.dragged(load, lapse, restart, 0.7, power, rate)
-    np.testing.assert_allclose(fast, expected, rtol=1e-11, atol=1e-11)
+    np.testing.assert_allclose(fast, expected, rtol=0.0, atol=within)
 
 
 def test_lengths_must_agree() -> None:

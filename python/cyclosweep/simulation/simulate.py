@@ -288,9 +288,10 @@ def _slide(
     beyond = history.beyond_deg
     offset = model.datum_deg + added - beyond + flank
     friction = _friction(sliding)
-    held, torque = friction.solve(history, offset, play, points)
-    elastic = history.applied_nm - torque
-    state = {"elastic_nm": elastic, "angle_deg": held + beyond}
+    path = friction.solve(history, offset, play, points)
+    elastic = history.applied_nm - path.friction_nm
+    state: dict[str, object] = {"elastic_nm": elastic, "angle_deg": path.angle_deg + beyond}
+    state |= {"corner_deg": path.corner_deg, "corner_nm": path.corner_nm}
     if known_side is not None:
         return history.with_state(**state)
     # Friction behind the play leaves the play the whole applied torque.
@@ -299,7 +300,7 @@ def _slide(
     small = 1e-9 * history.largest_torque_nm
     side = _flanks(np.where(np.abs(carried) < small, 0.0, carried), history.restart)
     if behind:
-        state["angle_deg"] = held + beyond + side * model.free_play_deg
+        state["angle_deg"] = path.angle_deg + beyond + side * model.free_play_deg
     return history.with_state(side=side, **state)
 
 

@@ -137,7 +137,8 @@ fn play<'py>(
 
 /// Input that a dashpot in parallel lets through.
 #[pyfunction]
-#[pyo3(signature = (signal, lapse, restart, lag, power=1.0, reference_rate=1.0))]
+#[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+#[pyo3(signature = (signal, lapse, restart, lag, power=1.0, reference_rate=1.0, by_sample=false))]
 fn dragged<'py>(
     py: Python<'py>,
     signal: Column<'py>,
@@ -146,6 +147,7 @@ fn dragged<'py>(
     lag: f64,
     power: f64,
     reference_rate: f64,
+    by_sample: bool,
 ) -> PyResult<Reals<'py>> {
     let n = signal.len()?;
     let mut out = vec![0.0; n];
@@ -157,6 +159,7 @@ fn dragged<'py>(
             lag,
             power,
             reference_rate,
+            by_sample,
         },
         &mut out,
     )?;

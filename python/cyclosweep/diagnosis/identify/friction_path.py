@@ -40,7 +40,10 @@ def friction_path(
     else:
         twist, points = law.twist_at(history.elastic_nm), (law.torque_nm, law.twist_deg)
     offset = mean_deg - history.beyond_deg - twist
-    held, torque = friction.solve(history, offset, 0.0, points)
+    path = friction.solve(history, offset, 0.0, points)
     return history.with_state(
-        elastic_nm=history.applied_nm - torque, angle_deg=held + history.beyond_deg
+        elastic_nm=history.applied_nm - path.friction_nm,
+        angle_deg=path.angle_deg + history.beyond_deg,
+        corner_deg=path.corner_deg,
+        corner_nm=path.corner_nm,
     )

@@ -6,17 +6,15 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from cyclosweep.simulation.effects.corners import Corners, Flags, Floats, Ints, find_corners
 
+__all__ = ["Flags", "Floats", "History", "Ints"]
 
 _OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s"))
 """What the values that are computed once for a load history follow from."""
 _BY_THE_LOAD = frozenset(
-    ("largest_torque_nm", "run_starts", "run_count", "sense", "usual_step_s", "lapse_s")
+    ("largest_torque_nm", "run_starts", "run_count", "sense", "usual_step_s", "lapse_s", "corners")
 )
 """Those values; another state of the model on the same load leaves them as they are."""
 
@@ -42,6 +40,9 @@ class History:
         Index of the run, counted from zero in the order recorded.
     restart : ndarray of bool, shape (n,)
         True where play, slip and creep start afresh.
+    corner_deg, corner_nm : ndarray, shape (m,), or None
+        Angle of the part that friction holds [deg], and elastic torque [N m], at the corners of the
+        load between the samples; None where friction has not been solved.
     compliance_deg_per_nm, free_play_deg : float
         Of the baseline as calibrated so far [deg/(N m)], [deg].
     datum_deg : float
@@ -77,12 +78,16 @@ class History:
     measured_deg: Floats | None = None
     beyond_deg: Floats | float = 0.0
     resets_datum: bool = False
+    corner_deg: Floats | None = None
+    corner_nm: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.applied_nm)
 
     def with_state(self, **state: object) -> Self:
         """Return the same load history with another state of the model."""
+        if "elastic_nm" in state:
+            state = {"corner_deg": None, "corner_nm": None} | state
         other = replace(self, **state)  # type: ignore[arg-type]
         if state.keys().isdisjoint(_OF_THE_LOAD):
             for name in _BY_THE_LOAD & self.__dict__.keys():
@@ -109,6 +114,11 @@ class History:
         """The same for a part in series with friction, which carries the whole applied torque."""
         side = np.where(self.applied_nm == 0.0, self.side, np.sign(self.applied_nm))
         return self.with_state(elastic_nm=self.applied_nm, side=side)
+
+    @cached_property
+    def corners(self) -> Corners:
+        """Corners of the applied torque between the samples."""
+        return find_corners(self.applied_nm, self.time_s, self.restart)
 
     @property
     def held_deg(self) -> Floats:

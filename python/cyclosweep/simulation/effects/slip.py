@@ -6,7 +6,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-import cyclosweep._core as _core
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
@@ -16,6 +15,7 @@ from cyclosweep.simulation.effects.slip_elements import (
     elements_of,
     spread_elements,
 )
+from cyclosweep.simulation.effects.slip_path import SlipPath, slip_state, solve_slip
 from cyclosweep.simulation.effects.slip_start import (
     STATES,
     crossed_play,
@@ -30,6 +30,7 @@ __all__ = [
     "Elements",
     "Friction",
     "FrictionEffect",
+    "SlipPath",
     "elements_of",
     "on_shared_elements",
     "slip_shapes",
@@ -87,95 +88,6 @@ def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> F
     at_reference = plain + loaded * float(shape["reference_nm"])
     ratio = (plain + loaded * history.load_nm) / at_reference
     return np.asarray(np.maximum(ratio, 1e-9) ** growth)
-
-
-def slip_state(
-    history: History,
-    shape: Shape,
-    stretch: Floats | None = None,
-    elements: Elements | None = None,
-) -> Floats:
-    """State of the elements along the model's path.
-
-    Parameters
-    ----------
-    history : History
-        Load history of n samples with the model's path.
-    shape : mapping
-        Shape of a friction.
-    stretch : ndarray, shape (n,), optional
-        Factor on the presliding distances, see `stretch_of`; default: one.
-    elements : Elements, optional
-        Default: those of the shape's ``slip_deg``, ``scatter`` and ``skew``.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Friction over its limit, between -1 and 1.
-    """
-    elements = elements_of(shape) if elements is None else elements
-    return _core.slip_state(
-        np.ascontiguousarray(history.held_deg - crossed_play(history, shape)),
-        history.restart,
-        start_of(history, shape),
-        np.ones(len(history)) if stretch is None else stretch,
-        elements.slip_deg,
-        elements.share,
-        forgetting=float(shape.get("forgetting", 0.0)),
-    )
-
-
-def solve_slip(
-    history: History,
-    shape: Shape,
-    offset: Floats,
-    limits: tuple[float, float],
-    free_play: float,
-    law: tuple[Floats, Floats] | None = None,
-    elements: Elements | None = None,
-) -> tuple[Floats, Floats]:
-    """Angle and friction torque along the applied torque.
-
-    Parameters
-    ----------
-    history : History
-        Load history of n samples with the calibrated line.
-    shape : mapping
-        Shape of the friction.
-    offset : ndarray, shape (n,)
-        Everything that shifts the datum [deg].
-    limits : tuple of float
-        Friction limit without load [N m], and in proportion to the transmitted torque.
-    free_play : float
-        Half width of the dead zone; zero where `offset` already holds the flank in contact [deg].
-    law : pair of ndarray, optional
-        Elastic torques [N m] and twists [deg] of an elastic law that is no line.
-    elements : Elements, optional
-        Default: those of the shape's ``slip_deg``, ``scatter`` and ``skew``.
-
-    Returns
-    -------
-    angle_deg, friction_nm : ndarray, shape (n,)
-        Angle [deg] and friction torque [N m].
-    """
-    elements = elements_of(shape) if elements is None else elements
-    return _core.solve_slip(
-        history.applied_nm,
-        np.ascontiguousarray(offset),
-        history.restart,
-        np.ascontiguousarray(start_of(history, shape)),
-        elements.slip_deg,
-        elements.share,
-        free_play=free_play,
-        compliance=history.compliance_deg_per_nm,
-        limit=limits[0],
-        load_factor=limits[1],
-        growth=float(shape.get("growth", 0.0)),
-        reference_torque=float(shape.get("reference_nm", 1.0)),
-        forgetting=float(shape.get("forgetting", 0.0)),
-        law_torque=None if law is None else law[0],
-        law_twist=None if law is None else law[1],
-    )
 
 
 def slip_shapes(history: History) -> list[Shape]:
@@ -331,7 +243,7 @@ class Friction:
         offset: Floats,
         free_play: float,
         law: tuple[Floats, Floats] | None = None,
-    ) -> tuple[Floats, Floats]:
+    ) -> SlipPath:
         """Angle and friction torque along the applied torque; see `solve_slip`.
 
         Parameters
@@ -347,8 +259,7 @@ class Friction:
 
         Returns
         -------
-        angle_deg, friction_nm : ndarray, shape (n,)
-            Angle [deg] and friction torque [N m].
+        SlipPath
         """
         crossed: Floats | float = 0.0
         if lies_behind_play(self.shape):
@@ -356,10 +267,8 @@ class Friction:
                 crossed = crossed_play(history, self.shape)
             free_play = 0.0
         offset = offset - crossed
-        angle, torque = solve_slip(
-            history, self.shape, offset, self.limits, free_play, law, self.elements
-        )
-        return angle + crossed, torque
+        path = solve_slip(history, self.shape, offset, self.limits, free_play, law, self.elements)
+        return replace(path, angle_deg=path.angle_deg + crossed)
 
     def torque_nm(self, history: History) -> Floats:
         """Friction torque along the path of a history, shape (n,) [N m]."""

@@ -18,6 +18,11 @@ class ViscousDrag(Effect):
     The rate is that of the twist itself, which lags behind the torque:
     ``T = theta/C + D (dtheta/dt)^n``, which shows at reversals. `lag_s` is the time constant, the
     drag over the rate and times the compliance, at the usual rate of the recording.
+
+    The torque grows evenly from reading to reading, and the twist follows it in between. With
+    `by_reading` 1 the rate is instead that from one reading to the next, as in simulations that
+    take one implicit step a reading. The two differ where the lag is not much shorter than the time
+    between readings.
     """
 
     name = "viscous_drag"
@@ -31,12 +36,16 @@ class ViscousDrag(Effect):
     family = "hysteresis"
     needs = ("time_s",)
     shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
-    forms = (ShapeForm(("power", "lag_s")),)
+    forms = (ShapeForm(("power", "lag_s"), ("by_reading",)),)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Newtonian and thinning drag, too small yet to lag."""
         lag = SHORTEST_LAG * history.rate_step_s
         return [{"power": power, "lag_s": lag} for power in (1.0, 0.7)] if lag > 0 else []
+
+    def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Rates between the readings and from reading to reading."""
+        return [shape, {**shape, "by_reading": 1.0}]
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
@@ -49,7 +58,18 @@ class ViscousDrag(Effect):
         lag, power = float(shape["lag_s"]), float(shape["power"])
         compliance, usual = history.compliance_deg_per_nm, _usual_rate(history)
         torque, rate_nm = history.elastic_nm, usual / compliance
-        carried = _core.dragged(torque, history.lapse_s, history.restart, lag, power, rate_nm)
+        by_sample = bool(shape.get("by_reading", 0.0))
+        through, lapse, restart = torque, history.lapse_s, history.restart
+        corners = history.corners
+        if len(corners) and not by_sample:
+            at_corner = history.corner_nm
+            if at_corner is None:
+                at_corner = corners.torque_nm - corners.between(history.applied_nm - torque)
+            through = corners.insert(torque, at_corner)
+            lapse, restart = corners.lapse_s(lapse), corners.insert(restart, False)
+        carried = _core.dragged(through, lapse, restart, lag, power, rate_nm, by_sample)
+        if len(through) > len(torque):
+            carried = np.delete(carried, corners.places)
         # What is not carried is drag: lag times the usual rate where the twist moves at that rate.
         resisted = (torque - carried) / (lag * rate_nm)
         return np.asarray(-compliance * usual**power * resisted)[:, None]

@@ -1,4 +1,4 @@
-//! Operators without friction limits: play, creep, drag, and a datum that remembers earlier runs.
+//! Operators without friction limits: play, creep, and a datum that remembers earlier runs.
 
 use crate::model::hysteresis::checks::{
     HistoryError, not_negative, numbers, numbers_at_starts, same_length, within,
@@ -59,71 +59,6 @@ pub fn creep_state(
             // x' = (u - x)/tau with u linear over the step.
             state = input[i] - slope + (state - input[i - 1] + slope) * decay;
         }
-        out[i] = state;
-    }
-    Ok(())
-}
-
-/// Resistance to motion that grows with a power of the rate.
-#[derive(Clone, Copy, Debug)]
-pub struct Dashpot {
-    /// Drag over rate at the reference rate, as a time.
-    pub lag: f64,
-    /// Power of the rate, above zero and up to one.
-    pub power: f64,
-    /// Rate at which the drag is `lag` times the rate.
-    pub reference_rate: f64,
-}
-
-impl Dashpot {
-    /// Way `w` in which the balance `w + factor |w|^power = |gap|` holds, with the sign of the gap.
-    fn way(self, gap: f64, lapse: f64) -> f64 {
-        // Without a lapse nothing can have moved.
-        let lapse = lapse.max(1e-12 * self.lag.abs().max(1e-300));
-        if self.power == 1.0 {
-            return gap / (1.0 + self.lag / lapse);
-        }
-        let drag_at_reference = self.lag * self.reference_rate;
-        let factor = drag_at_reference / (self.reference_rate * lapse).powf(self.power);
-        let (size, inverse) = (gap.abs(), 1.0 / self.power);
-        if size == 0.0 || factor == 0.0 {
-            return gap;
-        }
-        // In y = |w|^power the balance is convex and rises: from above Newton's steps only descend.
-        let mut y = (size / factor).min(size.powf(self.power));
-        for _ in 0..60 {
-            let way = y.powf(inverse);
-            let step = (way + factor * y - size) / (inverse * way / y + factor);
-            if step <= 1e-14 * y {
-                break;
-            }
-            y -= step;
-        }
-        gap.signum() * y.powf(inverse)
-    }
-}
-
-/// Input that a dashpot in parallel lets through: the torque balance `u = x + drag(dx/dt)`, solved
-/// sample by sample with the rate taken backwards.
-///
-/// `lapse[i]` is the time that led to sample `i`; `restart[i]` marks a sample reached from rest.
-///
-/// # Errors
-/// [`HistoryError`] when columns differ in length.
-pub fn dragged(
-    input: &[f64],
-    lapse: &[f64],
-    restart: &[bool],
-    dashpot: Dashpot,
-    out: &mut [f64],
-) -> Result<(), HistoryError> {
-    same_length(input.len(), &[lapse.len(), restart.len(), out.len()])?;
-    let mut state = 0.0;
-    for i in 0..input.len() {
-        if i == 0 || restart[i] {
-            state = 0.0;
-        }
-        state += dashpot.way(input[i] - state, lapse[i]);
         out[i] = state;
     }
     Ok(())

@@ -64,6 +64,7 @@ fn drag_delays_a_ramp_by_its_lag() {
         lag,
         power: 1.0,
         reference_rate: 4.0,
+        by_sample: false,
     };
     assert!((let_through(newtonian(2.0)) - 2.0).abs() < 1e-6);
     assert!(let_through(newtonian(0.0)).abs() < 1e-9);
@@ -72,32 +73,71 @@ fn drag_delays_a_ramp_by_its_lag() {
         lag: 0.5,
         power: 0.5,
         reference_rate: 4.0,
+        by_sample: false,
     };
     assert!((let_through(thinning) - 1.0).abs() < 1e-6);
 }
 
 #[test]
-fn a_dashpot_holds_the_balance_of_torques() {
+fn a_dashpot_by_sample_holds_the_balance_of_torques() {
     let input: Vec<f64> = (0..300).map(|k| (f64::from(k) * 0.1).sin() * 7.0).collect();
-    let (lag, power, rate, lapse) = (0.8, 0.6, 2.5, 0.2);
-    let dashpot = Dashpot {
-        lag,
-        power,
-        reference_rate: rate,
+    let (lag, rate, lapse) = (0.8, 2.5, 0.2);
+    for power in [1.0, 0.6] {
+        let dashpot = Dashpot {
+            lag,
+            power,
+            reference_rate: rate,
+            by_sample: true,
+        };
+        let mut out = vec![0.0; 300];
+        let flags = vec![false; 300];
+        dragged(&input, &vec![lapse; 300], &flags, dashpot, &mut out).expect("lengths");
+        for i in 1..input.len() {
+            let speed = (out[i] - out[i - 1]) / lapse;
+            let drag = speed.signum() * lag * rate * (speed.abs() / rate).powf(power);
+            assert!((input[i] - out[i] - drag).abs() < 1e-8, "row {i}");
+        }
+    }
+}
+
+/// Largest difference of a dashpot from itself on a grid forty times as fine.
+fn against_fine_grid(dashpot: Dashpot, lapse: f64) -> f64 {
+    let (rows, fine) = (120, 40);
+    let corner = |k: f64| (k * 0.7).sin().asin() * 5.0;
+    let coarse: Vec<f64> = (1..=rows).map(|k| corner(f64::from(k))).collect();
+    let mut before = 0.0;
+    let mut between = vec![];
+    for &value in &coarse {
+        between.extend((1..=fine).map(|k| before + (value - before) * f64::from(k) / 40.0));
+        before = value;
+    }
+    let run = |input: &[f64], lapse: f64| {
+        let (mut out, flags) = (vec![0.0; input.len()], vec![false; input.len()]);
+        dragged(input, &vec![lapse; input.len()], &flags, dashpot, &mut out).expect("lengths");
+        out
     };
-    let mut out = vec![0.0; input.len()];
-    dragged(
-        &input,
-        &vec![lapse; 300],
-        &vec![false; 300],
-        dashpot,
-        &mut out,
-    )
-    .expect("lengths");
-    for i in 1..input.len() {
-        let speed = (out[i] - out[i - 1]) / lapse;
-        let drag = speed.signum() * lag * rate * (speed.abs() / rate).powf(power);
-        assert!((input[i] - out[i] - drag).abs() < 1e-9, "row {i}");
+    let (few, many) = (run(&coarse, lapse), run(&between, lapse / 40.0));
+    let far = |i: usize| (few[i] - many[(i + 1) * 40 - 1]).abs();
+    (0..coarse.len()).map(far).fold(0.0, f64::max)
+}
+
+#[test]
+fn drag_does_not_depend_on_how_often_it_is_sampled() {
+    for lag in [0.02, 0.3, 1.0, 4.0, 30.0] {
+        let newtonian = Dashpot {
+            lag,
+            power: 1.0,
+            reference_rate: 4.0,
+            by_sample: false,
+        };
+        assert!(against_fine_grid(newtonian, 1.0) < 1e-12, "lag {lag}");
+        let thinning = Dashpot {
+            power: 0.6,
+            ..newtonian
+        };
+        // Of a signal that reaches 7.9, which one step backwards misses by up to 0.6.
+        let missed = against_fine_grid(thinning, 1.0);
+        assert!(missed < 0.05, "lag {lag}: {missed}");
     }
 }
 

@@ -1,0 +1,164 @@
+"""Corners of a load programme between two readings, which neither of them shows.
+
+A torque that rises evenly and then falls evenly turns where the two lines meet, as a rule between
+two readings. Friction starts its new way there, and not at the last reading before.
+"""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+Kind = TypeVar("Kind", bound=np.generic)
+
+EVEN = 0.02
+"""Change of the rate from step to step, as a share of it, up to which a torque changes evenly."""
+BEND = 0.1
+"""The same, from which there is a corner between two even stretches."""
+INSIDE = 0.02
+"""Least distance of a corner from the readings, in steps; nearer ones are at the reading."""
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Points of a load history between its readings.
+
+    Attributes
+    ----------
+    before : ndarray of int, shape (m,)
+        Reading before each corner.
+    share : ndarray, shape (m,)
+        Part of the time to the next reading that has passed at the corner, from 0 to 1.
+    torque_nm : ndarray, shape (m,)
+        Applied torque at the corner [N m].
+    """
+
+    before: Ints
+    share: Floats
+    torque_nm: Floats
+
+    def __len__(self) -> int:
+        return len(self.before)
+
+    def between(self, values: Floats) -> Floats:
+        """Values at the corners, on the lines between those of the readings.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n,)
+            At the readings.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+        """
+        first = values[self.before]
+        return np.asarray(first + self.share * (values[self.before + 1] - first))
+
+    def beyond(self, torque_nm: Floats, values: Floats) -> Floats:
+        """Values at the corners, on the lines over the torque that lead to them.
+
+        Parameters
+        ----------
+        torque_nm : ndarray, shape (n,)
+            Applied torque at the readings [N m].
+        values : ndarray, shape (n,)
+            At the readings.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+        """
+        last, first = values[self.before], values[self.before - 1]
+        step_nm = torque_nm[self.before] - torque_nm[self.before - 1]
+        ahead_nm = self.torque_nm - torque_nm[self.before]
+        held = step_nm == 0.0
+        ahead = np.where(held, 0.0, ahead_nm / np.where(held, 1.0, step_nm))
+        return np.asarray(last + ahead * (last - first))
+
+    def insert(self, values: NDArray[Kind], here: NDArray[Kind] | float) -> NDArray[Kind]:
+        """Values of readings and corners, in order.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n,)
+            At the readings.
+        here : array_like
+            At the corners: one each, or one for all.
+
+        Returns
+        -------
+        ndarray, shape (n + m,)
+        """
+        return np.asarray(np.insert(values, self.before + 1, here), dtype=values.dtype)
+
+    def lapse_s(self, lapse_s: Floats) -> Floats:
+        """Time that leads to each reading and corner, shape (n + m,) [s].
+
+        Parameters
+        ----------
+        lapse_s : ndarray, shape (n,)
+            Time that leads to each reading [s].
+
+        Returns
+        -------
+        ndarray, shape (n + m,)
+        """
+        to_corner = self.share * lapse_s[self.before + 1]
+        rest = lapse_s.copy()
+        rest[self.before + 1] -= to_corner
+        return np.insert(rest, self.before + 1, to_corner)
+
+    @property
+    def places(self) -> Ints:
+        """Places of the corners among readings and corners, shape (m,)."""
+        return self.before + 1 + np.arange(len(self))
+
+
+def find_corners(torque_nm: Floats, time_s: Floats | None, restart: Flags) -> Corners:
+    """Find where even changes of the torque meet between two readings.
+
+    Parameters
+    ----------
+    torque_nm : ndarray, shape (n,)
+        Applied torque [N m].
+    time_s : ndarray, shape (n,), or None
+        Clock [s]; without it no corner is known.
+    restart : ndarray of bool, shape (n,)
+        Readings before which nothing is known.
+
+    Returns
+    -------
+    Corners
+        Those with the same sign of the torque on both sides: what friction does where flanks
+        change hangs on the play.
+    """
+    count = len(torque_nm)
+    none = Corners(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
+    if time_s is None or count < 6:
+        return none
+    step_s = np.diff(time_s)
+    known = (step_s > 0) & ~restart[1:]
+    rate = np.where(known, np.diff(torque_nm) / np.where(known, step_s, 1.0), 0.0)
+    # Rates of the two steps before, and after, the step from reading k to reading k + 1.
+    k = np.arange(2, count - 3)
+    earlier, before, after, later = rate[k - 2], rate[k - 1], rate[k + 1], rate[k + 2]
+    all_known = known[k - 2] & known[k - 1] & known[k] & known[k + 1] & known[k + 2]
+    even = np.abs(before - earlier) <= EVEN * np.abs(before)
+    even &= np.abs(later - after) <= EVEN * np.abs(after)
+    bend = before - after
+    bent = np.abs(bend) > BEND * np.maximum(np.abs(before), np.abs(after))
+    lines_meet = torque_nm[k + 1] - torque_nm[k] - after * step_s[k]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(bent, lines_meet / (bend * step_s[k]), 0.0)
+    torque = torque_nm[k] + before * share * step_s[k]
+    inside = (share > INSIDE) & (share < 1.0 - INSIDE)
+    sign = np.sign(torque_nm)
+    same = (sign[k] == sign[k + 1]) & (np.sign(torque) == sign[k])
+    found = all_known & even & bent & inside & same
+    return Corners(k[found], share[found], torque[found])

@@ -1,0 +1,145 @@
+"""Path of friction on slip elements: solved under the torque, or followed along an angle."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import cyclosweep._core as _core
+from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.parameters import Shape
+from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
+from cyclosweep.simulation.effects.slip_start import crossed_play, start_of
+
+
+@dataclass(frozen=True, eq=False)
+class SlipPath:
+    """Angle and friction along a load history.
+
+    Attributes
+    ----------
+    angle_deg, friction_nm : ndarray, shape (n,)
+        Angle of the part that friction holds [deg], and friction torque [N m], at the samples.
+    corner_deg, corner_nm : ndarray, shape (m,), or None
+        Angle by which friction slides [deg], and elastic torque [N m], at the corners of the load
+        between the samples; None without corners.
+    """
+
+    angle_deg: Floats
+    friction_nm: Floats
+    corner_deg: Floats | None = None
+    corner_nm: Floats | None = None
+
+
+def slip_state(
+    history: History,
+    shape: Shape,
+    stretch: Floats | None = None,
+    elements: Elements | None = None,
+) -> Floats:
+    """State of the elements along the model's path.
+
+    Parameters
+    ----------
+    history : History
+        Load history of n samples with the model's path.
+    shape : mapping
+        Shape of a friction.
+    stretch : ndarray, shape (n,), optional
+        Factor on the presliding distances, see `stretch_of`; default: one.
+    elements : Elements, optional
+        Default: those of the shape's ``slip_deg``, ``scatter`` and ``skew``.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Friction over its limit, between -1 and 1.
+    """
+    elements = elements_of(shape) if elements is None else elements
+    corners = history.corners
+    angle = history.held_deg - crossed_play(history, shape)
+    restart, start = history.restart, start_of(history, shape)
+    stretch = np.ones(len(history)) if stretch is None else stretch
+    if len(corners):
+        at_corner = history.corner_deg
+        if at_corner is None:
+            at_corner = corners.beyond(history.applied_nm, angle)
+        angle = corners.insert(angle, at_corner)
+        restart, start = corners.insert(restart, False), corners.insert(start, 0.0)
+        stretch = corners.insert(stretch, corners.between(stretch))
+    state = _core.slip_state(
+        np.ascontiguousarray(angle),
+        restart,
+        start,
+        stretch,
+        elements.slip_deg,
+        elements.share,
+        forgetting=float(shape.get("forgetting", 0.0)),
+    )
+    return np.delete(state, corners.places) if len(corners) else state
+
+
+def solve_slip(
+    history: History,
+    shape: Shape,
+    offset: Floats,
+    limits: tuple[float, float],
+    free_play: float,
+    law: tuple[Floats, Floats] | None = None,
+    elements: Elements | None = None,
+) -> SlipPath:
+    """Angle and friction torque along the applied torque.
+
+    Parameters
+    ----------
+    history : History
+        Load history of n samples with the calibrated line.
+    shape : mapping
+        Shape of the friction.
+    offset : ndarray, shape (n,)
+        Everything that shifts the datum [deg].
+    limits : tuple of float
+        Friction limit without load [N m], and in proportion to the transmitted torque.
+    free_play : float
+        Half width of the dead zone; zero where `offset` already holds the flank in contact [deg].
+    law : pair of ndarray, optional
+        Elastic torques [N m] and twists [deg] of an elastic law that is no line.
+    elements : Elements, optional
+        Default: those of the shape's ``slip_deg``, ``scatter`` and ``skew``.
+
+    Returns
+    -------
+    SlipPath
+    """
+    elements = elements_of(shape) if elements is None else elements
+    corners = history.corners
+    torque, restart, start = history.applied_nm, history.restart, start_of(history, shape)
+    if len(corners):
+        torque = corners.insert(torque, corners.torque_nm)
+        offset = corners.insert(offset, corners.between(offset))
+        restart, start = corners.insert(restart, False), corners.insert(start, 0.0)
+    angle, friction = _core.solve_slip(
+        torque,
+        np.ascontiguousarray(offset),
+        restart,
+        np.ascontiguousarray(start),
+        elements.slip_deg,
+        elements.share,
+        free_play=free_play,
+        compliance=history.compliance_deg_per_nm,
+        limit=limits[0],
+        load_factor=limits[1],
+        growth=float(shape.get("growth", 0.0)),
+        reference_torque=float(shape.get("reference_nm", 1.0)),
+        forgetting=float(shape.get("forgetting", 0.0)),
+        law_torque=None if law is None else law[0],
+        law_twist=None if law is None else law[1],
+    )
+    if not len(corners):
+        return SlipPath(angle, friction)
+    there = corners.places
+    return SlipPath(
+        np.delete(angle, there),
+        np.delete(friction, there),
+        angle[there],
+        corners.torque_nm - friction[there],
+    )

@@ -1,0 +1,98 @@
+"""Corners of a load programme between two readings."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+import cyclosweep.simulation.effects.history as history_module
+from cyclosweep.simulation.effects.corners import Corners, find_corners
+from cyclosweep.simulation.model import EffectValue, Model
+from tests.support.arrays import Floats
+
+PEAKS_NM = (0.0, 12.6, 4.1, 13.3, -11.7, -3.2, -12.4, 0.0)
+RATE_NM_S = 0.9
+COMPLIANCE = 1.4
+MODEL = Model(compliance_deg_per_nm=COMPLIANCE, free_play_deg=14.0)
+FRICTION = EffectValue("friction_hysteresis", {"slip_deg": 0.5, "scatter": 0.4}, (1.2,))
+BEHIND = EffectValue(
+    "friction_hysteresis", {"slip_deg": 0.5, "scatter": 0.4, "behind_play": 1.0}, (1.2,)
+)
+LOADED = EffectValue("load_dependent_friction", {"slip_deg": 0.5, "scatter": 0.4}, (0.1,))
+DRAG = EffectValue("viscous_drag", {"power": 0.7, "lag_s": 0.8}, (0.9,))
+
+
+def programme(step_s: float, begun_s: float = 0.37) -> tuple[Floats, Floats]:
+    """Clock and torque of even ramps between the peaks, read with this step."""
+    peaks = np.array(PEAKS_NM)
+    at_peak = np.r_[0.0, np.cumsum(np.abs(np.diff(peaks)) / RATE_NM_S)]
+    time = np.arange(begun_s, at_peak[-1], step_s)
+    return time, np.interp(time, at_peak, peaks)
+
+
+def corners_of(time: Floats, torque: Floats) -> Corners:
+    return find_corners(torque, time, np.arange(len(time)) == 0)
+
+
+def test_even_ramps_turn_where_their_lines_meet() -> None:
+    time, torque = programme(1.0)
+    found = corners_of(time, torque)
+    np.testing.assert_allclose(found.torque_nm, PEAKS_NM[1:-1], atol=1e-12)
+    at_s = time[found.before] + found.share * np.diff(time)[found.before]
+    at_peak = np.cumsum(np.abs(np.diff(PEAKS_NM)) / RATE_NM_S)
+    np.testing.assert_allclose(at_s, at_peak[:-1], atol=1e-9)
+
+
+def test_a_ramp_that_is_held_has_a_corner_at_the_load_held() -> None:
+    time = np.arange(0.3, 30.0, 1.0)
+    found = corners_of(time, np.minimum(0.7 * time, 9.1))
+    np.testing.assert_allclose(found.torque_nm, [9.1], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "torque",
+    [
+        np.tile(np.r_[np.arange(1.0, 9.0), np.arange(9.0, 1.0, -1.0)], 3),
+        9.0 + 5.0 * np.sin(np.arange(60) / 3.0),
+        programme(1.0)[1][:40] + np.random.default_rng(1).normal(0.0, 0.1, 40),
+        np.r_[np.arange(-8.3, 8.0, 1.0), np.arange(7.2, -8.0, -1.0)][8:26],
+    ],
+    ids=["turns at readings", "smooth", "noise", "too few readings"],
+)
+def test_what_is_not_known_is_no_corner(torque: Floats) -> None:
+    found = corners_of(np.arange(float(len(torque))), torque)
+    assert len(found) == 0 or np.all(np.abs(found.torque_nm) < 8.4)
+
+
+def test_without_a_clock_or_across_a_restart_no_corner_is_known() -> None:
+    time, torque = programme(1.0)
+    assert not len(find_corners(torque, None, np.arange(len(time)) == 0))
+    all_found = corners_of(time, torque)
+    restart = np.arange(len(time)) == 0
+    restart[all_found.before[0] + 1] = True
+    assert len(find_corners(torque, time, restart)) == len(all_found) - 1
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [(FRICTION,), (BEHIND,), (LOADED,), (DRAG,), (FRICTION, DRAG)],
+    ids=["friction", "behind the play", "load-dependent", "drag", "friction and drag"],
+)
+def test_a_forecast_does_not_hang_on_how_often_the_torque_is_read(
+    effects: tuple[EffectValue, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = replace(MODEL, effects=effects)
+
+    def twist(every: int) -> Floats:
+        time, torque = programme(0.05)
+        load = cs.Recording.from_arrays(torque[::every], time_s=time[::every])
+        return np.asarray(cs.simulate(model, load).angle_deg)
+
+    fine = twist(1)[::20]
+    missed = np.max(np.abs(twist(20) - fine))
+    none = find_corners(np.zeros(0), None, np.zeros(0, dtype=bool))
+    monkeypatch.setattr(history_module, "find_corners", lambda *_: none)
+    without_corners = np.max(np.abs(twist(20) - fine))
+    assert without_corners > 0.3
+    assert missed < 0.1
