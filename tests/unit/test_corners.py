@@ -44,6 +44,20 @@ def test_even_ramps_turn_where_their_lines_meet() -> None:
     np.testing.assert_allclose(at_s, at_peak[:-1], atol=1e-9)
 
 
+def test_a_leg_of_two_readings_turns_by_the_rate_of_the_others() -> None:
+    peaks = np.array([0.0, 12.6, 10.2, 12.3, 0.4])
+    at_s = np.r_[0.0, np.cumsum(np.abs(np.diff(peaks)) / RATE_NM_S)]
+    time = np.arange(0.5, at_s[-1], 1.0)
+    found = corners_of(time, np.interp(time, at_s, peaks))
+    np.testing.assert_allclose(found.torque_nm, peaks[1:-1], atol=1e-12)
+
+
+def test_rates_that_agree_by_chance_make_no_corner() -> None:
+    for seed in range(20):
+        torque = 20.0 + np.cumsum(np.random.default_rng(seed).normal(0.0, 1.0, 2000))
+        assert not len(corners_of(np.arange(2000.0), torque))
+
+
 def test_a_ramp_that_is_held_has_a_corner_at_the_load_held() -> None:
     time = np.arange(0.3, 30.0, 1.0)
     found = corners_of(time, np.minimum(0.7 * time, 9.1))

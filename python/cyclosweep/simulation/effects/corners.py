@@ -20,6 +20,8 @@ EVEN = 0.02
 """Change of the rate from step to step, as a share of it, up to which a torque changes evenly."""
 BEND = 0.1
 """The same, from which there is a corner between two even stretches."""
+MOSTLY = 0.5
+"""Share of even steps from which a programme is one of even ramps, that repeat their rates."""
 INSIDE = 0.02
 """Least distance of a corner from the readings, in steps; nearer ones are at the reading."""
 
@@ -140,25 +142,58 @@ def find_corners(torque_nm: Floats, time_s: Floats | None, restart: Flags) -> Co
     """
     count = len(torque_nm)
     none = Corners(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
-    if time_s is None or count < 6:
+    if time_s is None or count < 4:
         return none
     step_s = np.diff(time_s)
     known = (step_s > 0) & ~restart[1:]
     rate = np.where(known, np.diff(torque_nm) / np.where(known, step_s, 1.0), 0.0)
-    # Rates of the two steps before, and after, the step from reading k to reading k + 1.
-    k = np.arange(2, count - 3)
-    earlier, before, after, later = rate[k - 2], rate[k - 1], rate[k + 1], rate[k + 2]
-    all_known = known[k - 2] & known[k - 1] & known[k] & known[k + 1] & known[k + 2]
-    even = np.abs(before - earlier) <= EVEN * np.abs(before)
-    even &= np.abs(later - after) <= EVEN * np.abs(after)
+    even = _even_steps(rate, known, np.cumsum(restart, dtype=np.int64)[1:])
+    # The step from reading k to reading k + 1, between the one before and the one after it.
+    k = np.arange(1, count - 2)
+    before, after = rate[k - 1], rate[k + 1]
     bend = before - after
     bent = np.abs(bend) > BEND * np.maximum(np.abs(before), np.abs(after))
     lines_meet = torque_nm[k + 1] - torque_nm[k] - after * step_s[k]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(bent, lines_meet / (bend * step_s[k]), 0.0)
+    bent &= known[k]
+    share = np.where(bent, lines_meet / np.where(bent, bend * step_s[k], 1.0), 0.0)
     torque = torque_nm[k] + before * share * step_s[k]
     inside = (share > INSIDE) & (share < 1.0 - INSIDE)
     sign = np.sign(torque_nm)
     same = (sign[k] == sign[k + 1]) & (np.sign(torque) == sign[k])
-    found = all_known & even & bent & inside & same
+    found = even[k - 1] & even[k + 1] & bent & inside & same
     return Corners(k[found], share[found], torque[found])
+
+
+def _even_steps(rate: Floats, known: Flags, stretch: Ints) -> Flags:
+    """Steps over which the torque changes as evenly as over others.
+
+    Parameters
+    ----------
+    rate : ndarray, shape (n,)
+        Rate of the torque over each step between readings [N m/s].
+    known : ndarray of bool, shape (n,)
+        Steps over which it is known.
+    stretch : ndarray of int, shape (n,)
+        Label of the stretch of each step, within which the state of the drive is known.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Steps with the rate of a neighbour, and others with the rate of any of those, up or down;
+        none in stretches that do not mostly consist of steps with the rate of a neighbour.
+    """
+    alike = np.abs(np.diff(rate)) <= EVEN * np.minimum(np.abs(rate[1:]), np.abs(rate[:-1]))
+    alike &= known[1:] & known[:-1] & (np.diff(stretch) == 0)
+    even = np.r_[alike, False] | np.r_[False, alike]
+    for label in np.unique(stretch):
+        here = (stretch == label) & known
+        size = np.sort(np.abs(rate[here & even]))
+        if len(size) < MOSTLY * np.count_nonzero(here):
+            even[here] = False
+            continue
+        own = np.abs(rate[here])
+        place = np.searchsorted(size, own)
+        below = np.abs(size[np.maximum(place - 1, 0)] - own)
+        above = np.abs(size[np.minimum(place, len(size) - 1)] - own)
+        even[here] |= np.minimum(below, above) <= EVEN * own
+    return np.asarray(even)
