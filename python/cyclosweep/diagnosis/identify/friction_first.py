@@ -75,12 +75,12 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     for term in _freer_terms(search, *STARTS[0]):
         alone = _fitted(noise, [term], baseline) if term.slips else None
         offered += [] if alone is None else [alone]
-    best = from_better_start(noise, min(offered, key=_cost), EFFECT_CHARGE)
+    best = from_better_start(noise, min(offered, key=cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
     others = [term for term in best.terms if not term.slips]
     instead = (_fitted(noise, [*drag, *others], baseline) for drag in ([], *_drags(search)))
-    if any(each is not None and _cost(each) <= _cost(best) for each in instead):
+    if any(each is not None and cost(each) <= cost(best) for each in instead):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
     # stiffening and a difference of the directions together make the curve of any dial. A few runs
@@ -261,8 +261,8 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
             for term in best.terms
         ]
         other = _fitted(noise, begun, best)
-        least = _cost(best) - charge if turned is best else _cost(turned)
-        if other is not None and _cost(other) < least:
+        least = cost(best) - charge if turned is best else cost(turned)
+        if other is not None and cost(other) < least:
             turned = other
     return turned
 
@@ -291,11 +291,20 @@ def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
         if begun.rmse_deg < HOPELESS * best.rmse_deg:
             converged = _fitted(noise, begun.terms, begun)
             fits += [] if converged is None else [converged]
-    return min(fits, key=_cost)
+    return min(fits, key=cost)
 
 
-def _cost(fitted: FittedStructure) -> float:
-    """Minus twice the log likelihood of a residual's pieces, and the charges."""
+def cost(fitted: FittedStructure) -> float:
+    """Minus twice the log likelihood of a residual's pieces, and the charges.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+
+    Returns
+    -------
+    float
+    """
     parameters = len(fitted.beta) + len(fitted.fit_parameters)
     beyond = max(fitted.rmse_deg**2 - fitted.noise.spread_deg**2, 1e-3 * fitted.noise.spread_deg**2)
     return (

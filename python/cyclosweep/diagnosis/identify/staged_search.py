@@ -35,6 +35,7 @@ from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.variants import in_better_variant
 from cyclosweep.diagnosis.identify.verdict import decide, likely, named_if_close, probabilities
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
@@ -123,7 +124,8 @@ def search_in_stages(
         return error_factor(visibility(left_by, searched.noise, flexible))
 
     def refitted(terms: tuple[Term, ...], near: FittedStructure) -> FittedStructure:
-        return fit(searched.problem, searched.noise, terms, near, rounds=CONVERGED)
+        again = fit(searched.problem, searched.noise, terms, near, rounds=CONVERGED)
+        return in_better_variant(again)
 
     rivals: list[tuple[Candidate, float]] = []
     last = first = searched

@@ -45,7 +45,8 @@ class ViscousDrag(Effect):
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Rates between the readings and from reading to reading."""
-        return [shape, {**shape, "by_reading": 1.0}]
+        between = {name: value for name, value in shape.items() if name != "by_reading"}
+        return [between, {**between, "by_reading": 1.0}]
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""

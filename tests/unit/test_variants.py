@@ -1,0 +1,55 @@
+"""Variants of an accepted effect, between which a fit with less beside it decided."""
+
+import numpy as np
+import pytest
+
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.starting_terms import starting_terms
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.variants import in_better_variant
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.model import EffectValue
+from tests.support.searches import search_of
+
+BETWEEN = {"power": 0.7, "lag_s": 1.0}
+BY_READING = {**BETWEEN, "by_reading": 1.0}
+DRAG_NM = 0.8
+
+
+def drag(shape: dict[str, float]) -> Search:
+    """Search of a recording with a drag whose lag is not much shorter than a step."""
+    history = search_of().problem.history
+    own = find("viscous_drag").consistent(history, shape, np.array([DRAG_NM]))
+    return search_of(EffectValue("viscous_drag", dict(own), (DRAG_NM,)))
+
+
+def fitted(search: Search, shape: dict[str, float]) -> FittedStructure:
+    term = Term(find("viscous_drag"), shape)
+    return fit(search.problem, search.noise, (term,), search.baseline.fit, rounds=20)
+
+
+@pytest.mark.parametrize(("made", "taken"), [(BETWEEN, BY_READING), (BY_READING, BETWEEN)])
+def test_the_variant_that_fits_takes_the_place_of_the_other(
+    made: dict[str, float], taken: dict[str, float]
+) -> None:
+    search = drag(made)
+    wrong = fitted(search, taken)
+    right = in_better_variant(wrong)
+    assert right.rmse_deg < 0.8 * wrong.rmse_deg
+    assert right.terms[0].shape.keys() == made.keys()
+    assert in_better_variant(right) is right
+
+
+def test_a_search_starts_from_both_variants_and_from_one_of_other_effects() -> None:
+    search = drag(BETWEEN)
+    begun = [dict(term.shape) for term, _, _ in starting_terms(search.baseline, "viscous_drag")]
+    assert [each.get("by_reading", 0.0) for each in begun] == [0.0, 1.0]
+
+
+def test_friction_has_no_variant_here() -> None:
+    search = drag(BETWEEN)
+    slip = Term(find("load_dependent_friction"), {"slip_deg": 0.5, "scatter": 0.4}, amplitude=0.02)
+    both = fit(search.problem, search.noise, (slip,), search.baseline.fit)
+    assert in_better_variant(both) is both
