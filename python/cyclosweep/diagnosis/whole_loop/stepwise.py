@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.identify.friction_first import FEW_RUNS
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import strength_of
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
+from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import whole_stretches
 from cyclosweep.diagnosis.whole_loop.forecast import (
     BLUR,
@@ -32,6 +33,7 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import (
     shows_torque_zero,
     usual_structure,
 )
+from cyclosweep.simulation.effects.history import Floats
 
 LEAST_GAIN = 0.15
 """Share of the error on left-out stretches that a structure must take away."""
@@ -42,6 +44,9 @@ MOST_WORSE = 1.3
 """Error on the flanks over that of the structure fitted to them, up to which a simulation fitted to
 all rows is taken instead; and error of that structure, simulated on all rows, over that of the
 simulation fitted to them, from which the latter is taken whatever it does on the flanks."""
+WORST = 0.02
+"""Share of the rows that do not count in that: a reading at which a flank is reached too late is
+off by the whole play, and a few of them outweigh all the rest."""
 
 
 def whole_loop_structure(search: Search) -> Candidate | None:
@@ -63,8 +68,8 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     """
     problem = search.problem
     base = fit_forecast(problem, starting_model(problem), (), zero=False, most=10)
-    simulated_deg = _simulation_error(search)
-    fits = [_found(search, simulated_deg)]
+    simulated = _simulated(search)
+    fits = [_found(search, simulated)]
     if problem.run_count <= FEW_RUNS:
         fits.append(usual_structure(search, base))
     offered = [
@@ -74,11 +79,11 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     ]
     offered = [_without_the_weak(search, base, *pair) for pair in offered]
     room = MOST_WORSE * search.start.fit.rmse_deg
-    clear = simulated_deg / MOST_WORSE
+    clear = 0.0 if simulated is None else _usual_error(problem, simulated) / MOST_WORSE
     offered = [
         (each, fitted)
         for each, fitted in offered
-        if fitted.rmse_deg <= room or each.error_deg < clear
+        if fitted.rmse_deg <= room or _usual_error(problem, each.angle_deg) < clear
     ]
     if not offered:
         return None
@@ -126,14 +131,14 @@ def _without_the_weak(
     return kept, whole_loop_fit(kept, base, noise_beside(kept, search.noise))
 
 
-def _found(search: Search, simulated_deg: float) -> Forecast | None:
+def _found(search: Search, simulated: Floats | None) -> Forecast | None:
     """Fit the structure that was found to all rows.
 
     Parameters
     ----------
     search : Search
-    simulated_deg : float
-        Its error on all rows before it is fitted to them, see `_simulation_error` [deg].
+    simulated : ndarray, shape (n,), or None
+        Its twist on all rows before it is fitted to them, see `_simulated` [deg].
 
     Returns
     -------
@@ -149,14 +154,14 @@ def _found(search: Search, simulated_deg: float) -> Forecast | None:
         for term, value in zip(fitted.terms, model.effects, strict=True)
     ]
     first = fit_forecast(problem, model, terms, zero=shows_torque_zero(problem), most=10)
-    if first.error_deg > simulated_deg:
+    if simulated is None or first.error_deg > problem.rms_error(simulated, problem.whole_fitted):
         # A staircase so steep that the shaft jumps has no settled path from which to fit further.
         return first
     return better(first, refit(first, most=10, blur=BLUR))
 
 
-def _simulation_error(search: Search) -> float:
-    """Root mean square error of the structure fitted to the flanks, simulated on all rows [deg].
+def _simulated(search: Search) -> Floats | None:
+    """Twist of the structure fitted to the flanks, simulated on all rows.
 
     Parameters
     ----------
@@ -164,14 +169,31 @@ def _simulation_error(search: Search) -> float:
 
     Returns
     -------
-    float
-        Zero where the structure holds terms without a name, which cannot be simulated.
+    ndarray, shape (n,), or None
+        In deg; None where the structure holds terms without a name, which cannot be simulated.
     """
     problem, fitted = search.problem, search.start.fit
     if any(term.effect is None for term in fitted.terms):
-        return 0.0
-    path = predicted_path(problem, fitted.model(""))
-    return problem.rms_error(path.angle_deg, problem.whole_fitted)
+        return None
+    return predicted_path(problem, fitted.model("")).angle_deg
+
+
+def _usual_error(problem: Problem, angle_deg: Floats) -> float:
+    """Root mean square error on all rows but the `WORST` share of them [deg].
+
+    Parameters
+    ----------
+    problem : Problem
+    angle_deg : ndarray, shape (n,)
+        Simulated twist of all rows [deg].
+
+    Returns
+    -------
+    float
+    """
+    error = np.abs(problem.angle_deg - angle_deg)
+    usual = error <= np.quantile(error[problem.whole_fitted], 1.0 - WORST)
+    return problem.rms_error(angle_deg, problem.whole_fitted & usual)
 
 
 def left_out_error(model: Forecast) -> float:
