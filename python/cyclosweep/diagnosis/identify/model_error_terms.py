@@ -1,12 +1,18 @@
 """Terms that may be model error of larger ones, and those that stand out from it."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_EFFECT,
+    LOOP,
     MOST_POSITIONS,
+    OPENING_LOOP,
     POSITION,
     POSITION_COMPLIANCE,
+    RATE_LOOP,
+    RELAXATION,
     RUN,
     TEMPERATURE,
 )
@@ -35,6 +41,9 @@ LEAST_OF_RECORDED = 0.02
 the temperature. What a law of the torque misses does not."""
 RECORDED = frozenset({RUN, POSITION, POSITION_COMPLIANCE, TEMPERATURE})
 """Classes of such effects."""
+LOOPS = frozenset({LOOP, OPENING_LOOP, RATE_LOOP})
+"""Classes of effects that tell loading from unloading; what a law misses that does not, neither
+does. The share is then the same."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
@@ -73,10 +82,11 @@ def without_model_error(
         family = max((s for s, each in others if each.family == term.family), default=0.0)
         alike = max((s for s, each in others if share_class(each, term)), default=0.0)
         if term.name in CLASSES_OF_EFFECT and _may_be_chance(fitted, k, size[k], left):
-            beside = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
-            alike = max(alike, *beside, 0.0)
+            offsets = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
+            alike = max(alike, *offsets, 0.0)
         mates = [j for j, each in enumerate(fitted.terms) if j != k and share_class(each, term)]
-        least_alone = _least_share(term) * mismatch_deg
+        beside = [other for j, other in enumerate(fitted.terms) if j != k]
+        least_alone = _least_share(term, beside) * mismatch_deg
         least = max(least_alone, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
@@ -92,23 +102,33 @@ def without_model_error(
     return tuple(kept)
 
 
-def _least_share(term: Term) -> float:
+def _least_share(term: Term, beside: Sequence[Term]) -> float:
     """Size from which a term is told from the model error of others, over the whole mismatch.
 
     Parameters
     ----------
     term : Term
+    beside : sequence of Term
+        The others.
 
     Returns
     -------
     float
     """
-    own = set() if term.effect is None else set(own_classes(term))
+    own = _classes(term)
+    if own and own <= LOOPS:
+        remembers = any(_classes(other) & (LOOPS | {RELAXATION}) for other in beside)
+        return LEAST_OF_MISMATCH if remembers else LEAST_OF_RECORDED
     if not own or not own <= RECORDED:
         return LEAST_OF_MISMATCH
     # The travel of the mesh is the twist itself, and so a function of the torque.
     of_travel = travels(term.shape) and not from_recorded_position(term.shape)
     return LEAST_OF_MISMATCH if of_travel else LEAST_OF_RECORDED
+
+
+def _classes(term: Term) -> frozenset[str]:
+    """Classes of behaviour of a term; none of one without a name."""
+    return frozenset() if term.effect is None else frozenset(own_classes(term))
 
 
 def offset_count(history: History, fitted: Flags, name: str) -> int:

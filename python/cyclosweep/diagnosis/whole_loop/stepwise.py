@@ -79,11 +79,11 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     ]
     offered = [_without_the_weak(search, base, *pair) for pair in offered]
     room = MOST_WORSE * search.start.fit.rmse_deg
-    clear = 0.0 if simulated is None else _usual_error(problem, simulated) / MOST_WORSE
+    clear = 0.0 if simulated is None else usual_error(problem, simulated) / MOST_WORSE
     offered = [
         (each, fitted)
         for each, fitted in offered
-        if fitted.rmse_deg <= room or _usual_error(problem, each.angle_deg) < clear
+        if fitted.rmse_deg <= room or usual_error(problem, each.angle_deg) < clear
     ]
     if not offered:
         return None
@@ -178,7 +178,7 @@ def _simulated(search: Search) -> Floats | None:
     return predicted_path(problem, fitted.model("")).angle_deg
 
 
-def _usual_error(problem: Problem, angle_deg: Floats) -> float:
+def usual_error(problem: Problem, angle_deg: Floats) -> float:
     """Root mean square error on all rows but the `WORST` share of them [deg].
 
     Parameters
