@@ -9,7 +9,7 @@ from tests.support.searches import search_of
 
 @pytest.mark.parametrize(("share", "counts"), [(0.5 * WORST, False), (3.0 * WORST, True)])
 def test_a_few_crossings_of_the_play_do_not_count(share: float, counts: bool) -> None:
-    # A dozen of 2,000 readings on the wrong flank made a fit that was off everywhere the better one.
+    # A dozen of 2,000 readings on the wrong flank made a fit that was off everywhere better.
     problem = search_of().problem
     rows = np.flatnonzero(problem.whole_fitted)
     simulated = problem.angle_deg + 0.1
