@@ -45,8 +45,10 @@ MOST_WORSE = 1.3
 all rows is taken instead; and error of that structure, simulated on all rows, over that of the
 simulation fitted to them, from which the latter is taken whatever it does on the flanks."""
 WORST = 0.02
-"""Share of the rows that do not count in that: a reading at which a flank is reached too late is
-off by the whole play, and a few of them outweigh all the rest."""
+"""Share of the rows without which it must not be far worse, either: a reading at which a flank is
+reached too late is off by the whole play, and a few of them outweigh all the rest."""
+FAR_WORSE = 1.5
+"""Error on the other rows over that of the structure fitted to the flanks, from which it is."""
 
 
 def whole_loop_structure(search: Search) -> Candidate | None:
@@ -79,11 +81,10 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     ]
     offered = [_without_the_weak(search, base, *pair) for pair in offered]
     room = MOST_WORSE * search.start.fit.rmse_deg
-    clear = 0.0 if simulated is None else usual_error(problem, simulated) / MOST_WORSE
     offered = [
         (each, fitted)
         for each, fitted in offered
-        if fitted.rmse_deg <= room or usual_error(problem, each.angle_deg) < clear
+        if fitted.rmse_deg <= room or _is_clearly_better(each, simulated)
     ]
     if not offered:
         return None
@@ -176,6 +177,29 @@ def _simulated(search: Search) -> Floats | None:
     if any(term.effect is None for term in fitted.terms):
         return None
     return predicted_path(problem, fitted.model("")).angle_deg
+
+
+def _is_clearly_better(model: Forecast, simulated: Floats | None) -> bool:
+    """Whether a simulation fitted to all rows is better than the structure fitted to the flanks.
+
+    Parameters
+    ----------
+    model : Forecast
+        The fitted simulation.
+    simulated : ndarray, shape (n,), or None
+        Twist of the other one, see `_simulated` [deg].
+
+    Returns
+    -------
+    bool
+    """
+    if simulated is None:
+        return False
+    problem = model.problem
+    before = problem.rms_error(simulated, problem.whole_fitted)
+    usual_before = usual_error(problem, simulated)
+    not_far_worse = usual_error(problem, model.angle_deg) <= FAR_WORSE * usual_before
+    return model.error_deg < before / MOST_WORSE and not_far_worse
 
 
 def usual_error(problem: Problem, angle_deg: Floats) -> float:

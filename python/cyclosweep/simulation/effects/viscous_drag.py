@@ -10,6 +10,9 @@ from cyclosweep.simulation.effects.history import Floats, History
 
 SHORTEST_LAG = 0.1
 """Lag below which nothing changes any more, in steps between samples."""
+COARSE = 0.005
+"""Usual step of the torque between readings, as a share of the largest torque, from which it
+makes a difference whether the rate is that between the readings or that from reading to reading."""
 
 
 class ViscousDrag(Effect):
@@ -44,9 +47,9 @@ class ViscousDrag(Effect):
         return [{"power": power, "lag_s": lag} for power in (1.0, 0.7)] if lag > 0 else []
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Rates between the readings and from reading to reading."""
+        """Rates between the readings and from reading to reading, where these are few."""
         between = {name: value for name, value in shape.items() if name != "by_reading"}
-        return [between, {**between, "by_reading": 1.0}]
+        return [between, {**between, "by_reading": 1.0}] if _is_coarse(history) else [between]
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
@@ -78,6 +81,13 @@ class ViscousDrag(Effect):
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Drag torque at a rate of 1 deg/s."""
         return (Parameter("drag_nm", "N m", "drag torque at 1 deg/s", 0.0),)
+
+
+def _is_coarse(history: History) -> bool:
+    """Whether readings are so few that the two rates may be told apart."""
+    step_nm = np.abs(np.diff(history.applied_nm))[np.diff(history.run) == 0]
+    step_nm = step_nm[step_nm > 0.0]
+    return len(step_nm) > 0 and bool(np.median(step_nm) > COARSE * history.largest_torque_nm)
 
 
 def _usual_rate(history: History) -> float:
