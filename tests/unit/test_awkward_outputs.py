@@ -164,6 +164,7 @@ def test_an_interruption_that_python_ignores_ends_the_command() -> None:
 
 
 INTERRUPTED_IMPORT = """
+from cyclosweep.errors import InputError
 from cyclosweep.cli import app, main
 
 @app.command()
@@ -171,18 +172,28 @@ def load() -> None:
     try:
         {cause}
     except BaseException as before:
-        raise ImportError("initialization failed") from before
+        raise {error}("initialization failed") from before
 
 main()
 """
 
 
 @pytest.mark.parametrize(
-    ("cause", "status"), [("raise KeyboardInterrupt", 130), ("raise RuntimeError", 1)]
+    ("cause", "error", "status"),
+    [
+        ("raise KeyboardInterrupt", "ImportError", 130),
+        ("raise KeyboardInterrupt", "InputError", 130),
+        ("raise RuntimeError", "ImportError", 1),
+    ],
 )
-def test_an_interruption_of_an_extension_module_ends_the_command(cause: str, status: int) -> None:
-    """pybind11 raises an ImportError from whatever ends the first lines of its modules."""
-    command = [sys.executable, "-c", INTERRUPTED_IMPORT.format(cause=cause), "load"]
+def test_an_interruption_of_an_extension_module_ends_the_command(
+    cause: str, error: str, status: int
+) -> None:
+    """pybind11 raises an ImportError from whatever ends the first lines of its modules.
+
+    Some commands take that for a library that is not installed.
+    """
+    command = [sys.executable, "-c", INTERRUPTED_IMPORT.format(cause=cause, error=error), "load"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == status
     assert ("Traceback" in ended.stderr) == (status == 1)

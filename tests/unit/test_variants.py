@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import cyclosweep as cs
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
@@ -11,7 +12,9 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.variants import in_better_variant
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
-from tests.support.searches import search_of
+from tests.support.arrays import present
+from tests.support.searches import search_of, search_of_recording
+from tests.validation.test_turns_between_readings import FRICTION, read_once_a_second
 
 BETWEEN = {"power": 0.7, "lag_s": 1.0}
 BY_READING = {**BETWEEN, "by_reading": 1.0}
@@ -48,8 +51,27 @@ def test_a_search_starts_from_both_variants_and_from_one_of_other_effects() -> N
     assert [each.get("by_reading", 0.0) for each in begun] == [0.0, 1.0]
 
 
-def test_friction_has_no_variant_here() -> None:
-    search = drag(BETWEEN)
-    slip = Term(find("load_dependent_friction"), {"slip_deg": 0.5, "scatter": 0.4}, amplitude=0.02)
-    both = fit(search.problem, search.noise, (slip,), search.baseline.fit)
-    assert in_better_variant(both) is both
+def test_friction_turns_where_the_recording_says() -> None:
+    # Of the same readings, one recording was solved from reading to reading.
+    load = read_once_a_second()
+    shape = dict(FRICTION.shape)
+    for made in (shape, {**shape, "by_reading": 1.0}):
+        model = cs.Model(
+            compliance_deg_per_nm=1.4,
+            free_play_deg=14.0,
+            effects=(EffectValue("friction_hysteresis", made, FRICTION.amplitudes),),
+        )
+        noise = np.random.default_rng(1).normal(0.0, 0.04, len(load))
+        search = search_of_recording(
+            load.with_angle(present(cs.simulate(model, load).angle_deg) + noise)
+        )
+        for taken in (shape, {**shape, "by_reading": 1.0}):
+            term = Term(find("friction_hysteresis"), taken, None, 1.2)
+            begun = fit(search.problem, search.noise, (term,), search.baseline.fit, rounds=20)
+            assert in_better_variant(begun).terms[0].shape.keys() == made.keys()
+
+
+def test_friction_without_corners_has_one_variant() -> None:
+    history = search_of().problem.history
+    assert len(history.corners) == 0
+    assert len(find("friction_hysteresis").variants(history, dict(FRICTION.shape))) == 1

@@ -3,7 +3,7 @@
 import numpy as np
 
 import cyclosweep as cs
-from cyclosweep.simulation.model import EffectValue, Model
+from cyclosweep.simulation.model import EffectValue
 
 PEAKS_NM = np.array([0.0, 12.6, 4.1, 13.3, -11.7, -3.2, -12.4, 0.0])
 FINE_S, PER_READING = 0.05, 20
@@ -25,7 +25,7 @@ def read_once_a_second() -> cs.Recording:
         parts.append((time + begun_s, np.interp(time, at_s, peaks), np.full(len(time), number)))
         begun_s += at_s[-1] + 60.0
     time, torque, run = map(np.concatenate, zip(*parts, strict=True))
-    model = Model(compliance_deg_per_nm=1.4, free_play_deg=14.0, effects=(FRICTION, STIFFENING))
+    model = cs.Model(compliance_deg_per_nm=1.4, free_play_deg=14.0, effects=(FRICTION, STIFFENING))
     solved = cs.simulate(model, cs.Recording.from_arrays(torque, time_s=time, run=run))
     assert solved.angle_deg is not None
     read = np.concatenate([np.flatnonzero(run == k)[::PER_READING] for k in range(1, RUNS + 1)])

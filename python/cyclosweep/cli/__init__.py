@@ -138,6 +138,8 @@ def main() -> None:
     except typer.Abort:
         fail("interrupted", 1)
     except (InputError, DesignError) as error:
+        if is_interruption(error):
+            sys.exit(INTERRUPTED)
         fail(error, 2)
     except SweepError as error:
         fail(error, 1)

@@ -329,7 +329,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
     angle = np.ascontiguousarray(programme.angle_deg, dtype=np.float64)
     sliding = [value for value in model.effects if value.effect.slips]
     held_back = _friction(sliding) if sliding else None
-    history = history_of(programme, model)
+    history = history_of(programme, model).with_state(has_corners=False)
     farthest = float(np.abs(angle - model.datum_deg).max(initial=0.0))
     law = elastic_law(
         model, farthest / model.compliance_deg_per_nm, held_by_friction=held_back is not None

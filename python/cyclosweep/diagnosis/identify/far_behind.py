@@ -34,4 +34,4 @@ def far_behind(search: Search) -> frozenset[frozenset[str]]:
         score = -float("inf") if child is None else child.score
         likeliest[parent.names] = max(likeliest.get(parent.names, score), score)
     behind = {names for names, score in likeliest.items() if score < least}
-    return search.not_extended | {names for names in behind if not names < best.names}
+    return search.not_extended | {names for names in behind if not names <= best.names}

@@ -117,7 +117,9 @@ def _least_share(term: Term, beside: Sequence[Term]) -> float:
     """
     own = _classes(term)
     if own and own <= LOOPS:
-        remembers = any(_classes(other) & (LOOPS | {RELAXATION}) for other in beside)
+        remembers = any(
+            other.effect is None or _classes(other) & (LOOPS | {RELAXATION}) for other in beside
+        )
         return LEAST_OF_MISMATCH if remembers else LEAST_OF_RECORDED
     if not own or not own <= RECORDED:
         return LEAST_OF_MISMATCH

@@ -135,7 +135,8 @@ def search_in_stages(
     if begun is not None:
         fitted = refitted(begun.terms, begun)
     elif factor > 1.0:
-        fitted = friction_first(searched, searched.noise.with_model_error(factor)) or fitted
+        first_friction = friction_first(searched, searched.noise.with_model_error(factor))
+        fitted = fitted if first_friction is None else in_better_variant(first_friction)
     accepted = fitted.terms
     restarted = shed = False
     kept_their_start = {frozenset(term.name for term in accepted)}

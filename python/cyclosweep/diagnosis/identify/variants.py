@@ -1,16 +1,19 @@
 """Variants of an accepted effect, between which a fit with less beside it decided."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, cost
+from cyclosweep.simulation.effects import Shape
+from cyclosweep.simulation.effects.slip_path import BY_READING
 
 
 def in_better_variant(fitted: FittedStructure) -> FittedStructure:
-    """Give effects other than friction the variant that fits best.
+    """Give effects the variant that fits best, and friction its turning points.
 
-    Friction has a search of its own, see `friction_first.from_better_start`.
+    How friction meets the play has a search of its own, see `friction_first.from_better_start`.
 
     Parameters
     ----------
@@ -26,11 +29,39 @@ def in_better_variant(fitted: FittedStructure) -> FittedStructure:
         if term.effect is None or term.slips:
             continue
         for shape in term.effect.variants(best.history, best.terms[k].shape):
-            own = best.terms[k]
-            if shape.keys() == own.shape.keys():
-                continue
-            terms = (*best.terms[:k], replace(own, shape=shape), *best.terms[k + 1 :])
-            other = fit(best.problem, best.noise, terms, best, rounds=CONVERGED)
-            if cost(other) < cost(best) - PARAMETER_CHARGE:
-                best = other
+            if shape.keys() != best.terms[k].shape.keys():
+                best = _better(best, {k: shape})
+    slipping = {k: term.shape for k, term in enumerate(best.terms) if term.slips}
+    if slipping and len(best.history.corners):
+        best = _better(best, {k: _otherwise_read(shape) for k, shape in slipping.items()})
     return best
+
+
+def _otherwise_read(shape: Shape) -> Shape:
+    """Shape of a friction that turns at the readings, or no longer does."""
+    between = {name: value for name, value in shape.items() if name != BY_READING}
+    return between if BY_READING in shape else {**between, BY_READING: 1.0}
+
+
+def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructure:
+    """The better one of a fit and of another with other shapes of some terms.
+
+    Parameters
+    ----------
+    best : FittedStructure
+    shapes : mapping of int to mapping
+        Shapes by the places of their terms.
+
+    Returns
+    -------
+    FittedStructure
+    """
+    terms = tuple(
+        replace(term, shape=shapes.get(k, term.shape)) for k, term in enumerate(best.terms)
+    )
+    other = fit(best.problem, best.noise, terms, best, rounds=CONVERGED)
+    ahead = cost(best) - cost(other)
+    if abs(ahead) <= PARAMETER_CHARGE:
+        # Both are within the noise, or about as far beyond it.
+        ahead = best.chi2 - other.chi2
+    return other if ahead > PARAMETER_CHARGE else best

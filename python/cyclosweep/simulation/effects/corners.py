@@ -1,10 +1,11 @@
 """Corners of a load programme between two readings, which neither of them shows.
 
 A torque that rises evenly and then falls evenly turns where the two lines meet, as a rule between
-two readings. Friction starts its new way there, and not at the last reading before.
+two readings. Friction starts its new way there, and not at the highest reading.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -20,6 +21,9 @@ EVEN = 0.02
 """Change of the rate from step to step, as a share of it, up to which a torque changes evenly."""
 BEND = 0.1
 """The same, from which there is a corner between two even stretches."""
+LONGEST = 1.5
+"""Length of the step with a corner over the longer of its neighbours up to which it is one; a
+longer one is a load that was held, or a pause."""
 MOSTLY = 0.5
 """Share of even steps from which a programme is one of even ramps, that repeat their rates."""
 INSIDE = 0.02
@@ -62,26 +66,23 @@ class Corners:
         first = values[self.before]
         return np.asarray(first + self.share * (values[self.before + 1] - first))
 
-    def beyond(self, torque_nm: Floats, values: Floats) -> Floats:
-        """Values at the corners, on the lines over the torque that lead to them.
+    def beyond(self, torque_nm: Floats, angle_deg: Floats, compliance: float) -> Floats:
+        """Angles at the corners, on elastic lines from the readings before.
 
         Parameters
         ----------
-        torque_nm : ndarray, shape (n,)
-            Applied torque at the readings [N m].
-        values : ndarray, shape (n,)
-            At the readings.
+        torque_nm, angle_deg : ndarray, shape (n,)
+            Applied torque [N m] and angle [deg] at the readings.
+        compliance : float
+            Of the drive [deg/(N m)].
 
         Returns
         -------
         ndarray, shape (m,)
+            In deg.
         """
-        last, first = values[self.before], values[self.before - 1]
-        step_nm = torque_nm[self.before] - torque_nm[self.before - 1]
         ahead_nm = self.torque_nm - torque_nm[self.before]
-        held = step_nm == 0.0
-        ahead = np.where(held, 0.0, ahead_nm / np.where(held, 1.0, step_nm))
-        return np.asarray(last + ahead * (last - first))
+        return np.asarray(angle_deg[self.before] + compliance * ahead_nm)
 
     def insert(self, values: NDArray[Kind], here: NDArray[Kind] | float) -> NDArray[Kind]:
         """Values of readings and corners, in order.
@@ -122,7 +123,11 @@ class Corners:
         return self.before + 1 + np.arange(len(self))
 
 
-def find_corners(torque_nm: Floats, time_s: Floats | None, restart: Flags) -> Corners:
+NO_CORNERS = Corners(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
+"""None between any readings."""
+
+
+def find_corners(torque_nm: Floats, time_s: Floats | None, begins: Flags) -> Corners:
     """Find where even changes of the torque meet between two readings.
 
     Parameters
@@ -131,8 +136,8 @@ def find_corners(torque_nm: Floats, time_s: Floats | None, restart: Flags) -> Co
         Applied torque [N m].
     time_s : ndarray, shape (n,), or None
         Clock [s]; without it no corner is known.
-    restart : ndarray of bool, shape (n,)
-        Readings before which nothing is known.
+    begins : ndarray of bool, shape (n,)
+        Readings with which a run begins; what led to them is not known.
 
     Returns
     -------
@@ -141,20 +146,20 @@ def find_corners(torque_nm: Floats, time_s: Floats | None, restart: Flags) -> Co
         change hangs on the play.
     """
     count = len(torque_nm)
-    none = Corners(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
     if time_s is None or count < 4:
-        return none
+        return NO_CORNERS
     step_s = np.diff(time_s)
-    known = (step_s > 0) & ~restart[1:]
+    known = (step_s > 0) & ~begins[1:]
     rate = np.where(known, np.diff(torque_nm) / np.where(known, step_s, 1.0), 0.0)
-    even = _even_steps(rate, known, np.cumsum(restart, dtype=np.int64)[1:])
+    even = _even_steps(rate, known, np.cumsum(begins, dtype=np.int64)[1:])
     # The step from reading k to reading k + 1, between the one before and the one after it.
     k = np.arange(1, count - 2)
     before, after = rate[k - 1], rate[k + 1]
-    bend = before - after
-    bent = np.abs(bend) > BEND * np.maximum(np.abs(before), np.abs(after))
+    bend, steeper = before - after, np.maximum(np.abs(before), np.abs(after))
+    # Two equal readings are a load that was held, and no corner that lies between them.
+    bent = (np.abs(bend) > BEND * steeper) & (np.abs(rate[k]) > EVEN * steeper)
     lines_meet = torque_nm[k + 1] - torque_nm[k] - after * step_s[k]
-    bent &= known[k]
+    bent &= known[k] & (step_s[k] <= LONGEST * np.maximum(step_s[k - 1], step_s[k + 1]))
     share = np.where(bent, lines_meet / np.where(bent, bend * step_s[k], 1.0), 0.0)
     torque = torque_nm[k] + before * share * step_s[k]
     inside = (share > INSIDE) & (share < 1.0 - INSIDE)
@@ -185,15 +190,16 @@ def _even_steps(rate: Floats, known: Flags, stretch: Ints) -> Flags:
     alike = np.abs(np.diff(rate)) <= EVEN * np.minimum(np.abs(rate[1:]), np.abs(rate[:-1]))
     alike &= known[1:] & known[:-1] & (np.diff(stretch) == 0)
     even = np.r_[alike, False] | np.r_[False, alike]
-    for label in np.unique(stretch):
-        here = (stretch == label) & known
-        size = np.sort(np.abs(rate[here & even]))
-        if len(size) < MOSTLY * np.count_nonzero(here):
+    ends = np.flatnonzero(np.diff(stretch)) + 1
+    for first, stop in pairwise((0, *ends.tolist(), len(rate))):
+        here = slice(first, stop)
+        size = np.sort(np.abs(rate[here][known[here] & even[here]]))
+        if len(size) < max(MOSTLY * np.count_nonzero(known[here]), 1):
             even[here] = False
             continue
         own = np.abs(rate[here])
         place = np.searchsorted(size, own)
         below = np.abs(size[np.maximum(place - 1, 0)] - own)
         above = np.abs(size[np.minimum(place, len(size) - 1)] - own)
-        even[here] |= np.minimum(below, above) <= EVEN * own
+        even[here] |= known[here] & (np.minimum(below, above) <= EVEN * own)
     return np.asarray(even)

@@ -11,7 +11,7 @@ from cyclosweep.simulation.effects.corners import Corners, Flags, Floats, Ints, 
 
 __all__ = ["Flags", "Floats", "History", "Ints"]
 
-_OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s"))
+_OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s", "has_corners"))
 """What the values that are computed once for a load history follow from."""
 _BY_THE_LOAD = frozenset(
     ("largest_torque_nm", "run_starts", "run_count", "sense", "usual_step_s", "lapse_s", "corners")
@@ -41,8 +41,11 @@ class History:
     restart : ndarray of bool, shape (n,)
         True where play, slip and creep start afresh.
     corner_deg, corner_nm : ndarray, shape (m,), or None
-        Angle of the part that friction holds [deg], and elastic torque [N m], at the corners of the
-        load between the samples; None where friction has not been solved.
+        Angle by which friction slides [deg], and elastic torque [N m], at the corners of the load
+        between the samples; None where friction has not been solved.
+    has_corners : bool
+        Whether the applied torque is known so well that its corners can be found; False while it is
+        being predicted.
     compliance_deg_per_nm, free_play_deg : float
         Of the baseline as calibrated so far [deg/(N m)], [deg].
     datum_deg : float
@@ -80,6 +83,7 @@ class History:
     resets_datum: bool = False
     corner_deg: Floats | None = None
     corner_nm: Floats | None = None
+    has_corners: bool = True
 
     def __len__(self) -> int:
         return len(self.applied_nm)
@@ -118,7 +122,9 @@ class History:
     @cached_property
     def corners(self) -> Corners:
         """Corners of the applied torque between the samples."""
-        return find_corners(self.applied_nm, self.time_s, self.restart)
+        time_s = self.time_s if self.has_corners else None
+        begins = self.restart | np.r_[True, np.diff(self.run) != 0][: len(self)]
+        return find_corners(self.applied_nm, time_s, begins)
 
     @property
     def held_deg(self) -> Floats:

@@ -22,7 +22,8 @@ class LoadDependentFriction(FrictionEffect):
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Presliding distances that do not depend on the load, and ones that grow with it."""
         middle = 0.5 * history.largest_torque_nm
-        return [shape, {**shape, "growth": 1.0, "reference_nm": middle}]
+        grown = {**shape, "growth": 1.0, "reference_nm": middle}
+        return [*super().variants(history, shape), *super().variants(history, grown)]
 
     def friction_limits(self, shape: Shape) -> tuple[float, float]:
         """The amplitude is a share of the transmitted torque."""

@@ -15,7 +15,7 @@ from cyclosweep.simulation.effects.slip_elements import (
     elements_of,
     spread_elements,
 )
-from cyclosweep.simulation.effects.slip_path import SlipPath, slip_state, solve_slip
+from cyclosweep.simulation.effects.slip_path import BY_READING, SlipPath, slip_state, solve_slip
 from cyclosweep.simulation.effects.slip_start import (
     STATES,
     crossed_play,
@@ -48,7 +48,7 @@ SLIP_PARAMETERS = (
     Parameter("forgetting", "", "0: turning points are remembered, 1: Dahl's law", 0.0, 1.0),
     Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
 )
-OPTIONAL = ("skew", "slack", "forgetting", "behind_play")
+OPTIONAL = ("skew", "slack", "forgetting", "behind_play", BY_READING)
 BEHIND_PLAY_PENALTY = 1.0
 """Log prior odds against friction behind the play [nat]."""
 LEAST_UNLOADED = 0.02
@@ -133,6 +133,13 @@ class FrictionEffect(Effect):
         """Presliding distances and scatters; see `slip_shapes`."""
         return slip_shapes(history)
 
+    def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Friction that turns between readings, and at them, where the load has corners."""
+        between = {name: value for name, value in shape.items() if name != BY_READING}
+        if not len(history.corners) or self.shape_parameters != SLIP_PARAMETERS:
+            return [shape]
+        return [between, {**between, BY_READING: 1.0}]
+
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep presliding distances to what a recording of this twist can show."""
         if parameter.name != "slip_deg":
@@ -168,6 +175,8 @@ class FrictionEffect(Effect):
         behind = shape.get("behind_play", 0.0)
         if behind not in (0.0, 1.0):
             raise InputError(f"behind_play: found {behind:g}, expected 0 or 1")
+        if shape.get(BY_READING, 0.0) not in (0.0, 1.0):
+            raise InputError(f"{BY_READING}: found {shape[BY_READING]:g}, expected 0 or 1")
         if behind and "slack" in shape:
             raise InputError("slack: found beside behind_play, expected one of the two")
         return super().known_shape(shape)

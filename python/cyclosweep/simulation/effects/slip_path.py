@@ -5,10 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 import cyclosweep._core as _core
+from cyclosweep.simulation.effects.corners import NO_CORNERS, Corners
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.parameters import Shape
 from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
 from cyclosweep.simulation.effects.slip_start import crossed_play, start_of
+
+BY_READING = "by_reading"
+"""Name in the shape of a friction or a drag: 1 where the torque turns at the readings, as in
+simulations that go straight from one to the next, and not at corners between them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +33,11 @@ class SlipPath:
     friction_nm: Floats
     corner_deg: Floats | None = None
     corner_nm: Floats | None = None
+
+
+def _corners(history: History, shape: Shape) -> Corners:
+    """Corners at which friction of a shape turns."""
+    return NO_CORNERS if shape.get(BY_READING, 0.0) else history.corners
 
 
 def slip_state(
@@ -55,14 +65,14 @@ def slip_state(
         Friction over its limit, between -1 and 1.
     """
     elements = elements_of(shape) if elements is None else elements
-    corners = history.corners
+    corners = _corners(history, shape)
     angle = history.held_deg - crossed_play(history, shape)
     restart, start = history.restart, start_of(history, shape)
     stretch = np.ones(len(history)) if stretch is None else stretch
     if len(corners):
         at_corner = history.corner_deg
-        if at_corner is None:
-            at_corner = corners.beyond(history.applied_nm, angle)
+        if at_corner is None or len(at_corner) != len(corners):
+            at_corner = corners.beyond(history.applied_nm, angle, history.compliance_deg_per_nm)
         angle = corners.insert(angle, at_corner)
         restart, start = corners.insert(restart, False), corners.insert(start, 0.0)
         stretch = corners.insert(stretch, corners.between(stretch))
@@ -111,7 +121,7 @@ def solve_slip(
     SlipPath
     """
     elements = elements_of(shape) if elements is None else elements
-    corners = history.corners
+    corners = _corners(history, shape)
     torque, restart, start = history.applied_nm, history.restart, start_of(history, shape)
     if len(corners):
         torque = corners.insert(torque, corners.torque_nm)

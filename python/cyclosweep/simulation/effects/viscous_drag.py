@@ -5,11 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 
 import cyclosweep._core as _core
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.slip_path import BY_READING
 
 SHORTEST_LAG = 0.1
 """Lag below which nothing changes any more, in steps between samples."""
+LEAST_RATE = 1e-12
+"""Rate that stands for none [deg/s]."""
 COARSE = 0.005
 """Usual step of the torque between readings, as a share of the largest torque, from which it
 makes a difference whether the rate is that between the readings or that from reading to reading."""
@@ -39,7 +43,7 @@ class ViscousDrag(Effect):
     family = "hysteresis"
     needs = ("time_s",)
     shape_parameters = (Parameter("power", "", "power of the rate", 0.5, 1.0),)
-    forms = (ShapeForm(("power", "lag_s"), ("by_reading",)),)
+    forms = (ShapeForm(("power", "lag_s"), (BY_READING,)),)
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Newtonian and thinning drag, too small yet to lag."""
@@ -48,8 +52,8 @@ class ViscousDrag(Effect):
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Rates between the readings and from reading to reading, where these are few."""
-        between = {name: value for name, value in shape.items() if name != "by_reading"}
-        return [between, {**between, "by_reading": 1.0}] if _is_coarse(history) else [between]
+        between = {name: value for name, value in shape.items() if name != BY_READING}
+        return [between, {**between, BY_READING: 1.0}] if _is_coarse(history) else [between]
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
@@ -62,7 +66,7 @@ class ViscousDrag(Effect):
         lag, power = float(shape["lag_s"]), float(shape["power"])
         compliance, usual = history.compliance_deg_per_nm, _usual_rate(history)
         torque, rate_nm = history.elastic_nm, usual / compliance
-        by_sample = bool(shape.get("by_reading", 0.0))
+        by_sample = bool(shape.get(BY_READING, 0.0))
         through, lapse, restart = torque, history.lapse_s, history.restart
         corners = history.corners
         if len(corners) and not by_sample:
@@ -78,6 +82,30 @@ class ViscousDrag(Effect):
         resisted = (torque - carried) / (lag * rate_nm)
         return np.asarray(-compliance * usual**power * resisted)[:, None]
 
+    def known_shape(self, shape: Shape) -> Shape:
+        """Refuse a lag that is none, and a variant that is neither; see `Effect`.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape parameters by name, in any order.
+
+        Returns
+        -------
+        mapping
+
+        Raises
+        ------
+        InputError
+            A shape parameter is unknown, missing, or out of range.
+        """
+        known = super().known_shape(shape)
+        if not known["lag_s"] > 0.0:
+            raise InputError(f"lag_s: found {known['lag_s']:g}, expected more than 0")
+        if known.get(BY_READING, 0.0) not in (0.0, 1.0):
+            raise InputError(f"{BY_READING}: found {known[BY_READING]:g}, expected 0 or 1")
+        return known
+
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Drag torque at a rate of 1 deg/s."""
         return (Parameter("drag_nm", "N m", "drag torque at 1 deg/s", 0.0),)
@@ -92,5 +120,7 @@ def _is_coarse(history: History) -> bool:
 
 def _usual_rate(history: History) -> float:
     """Root mean square rate of the elastic twist [deg/s]."""
+    if history.usual_step_s <= 0.0:
+        return LEAST_RATE
     rate = history.compliance_deg_per_nm * np.diff(history.applied_nm) / history.usual_step_s
-    return max(float(np.sqrt(np.mean(rate**2))), 1e-12)
+    return max(float(np.sqrt(np.mean(rate**2))), LEAST_RATE)

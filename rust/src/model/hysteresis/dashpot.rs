@@ -1,6 +1,6 @@
 //! Drag: what a dashpot in parallel lets through of a torque.
 
-use crate::model::hysteresis::checks::{HistoryError, same_length};
+use crate::model::hysteresis::checks::{HistoryError, not_negative, numbers, same_length};
 
 /// Share of a step after which the first stage of the integration stands, `1 - sqrt(1/2)`.
 const STAGE: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -17,7 +17,7 @@ const LEAST_NEAR: f64 = 0.05;
 /// their number at most,
 const MOST_ITERATIONS: usize = 60;
 
-/// and a step in shares of the way after which the next one is below the precision of numbers.
+/// and a step, in shares of the power of the way, after which the next one is about its square.
 const CLOSE: f64 = 1e-5;
 
 /// Resistance to motion that grows with a power of the rate.
@@ -83,7 +83,7 @@ impl Dashpot {
         }
         // In y = |w|^power the balance is convex and rises: once above, Newton's steps descend.
         let highest = size / factor;
-        let mut y = near.clamp(LEAST_NEAR * highest, highest);
+        let mut y = near.max(LEAST_NEAR * highest).min(highest);
         for _ in 0..MOST_ITERATIONS {
             let way = y.powf(inverse);
             let step = (way + factor * y - size) / (inverse * way / y + factor);
@@ -104,7 +104,8 @@ impl Dashpot {
 /// `lapse[i]` is the time that led to sample `i`; `restart[i]` marks a sample reached from rest.
 ///
 /// # Errors
-/// [`HistoryError`] when columns differ in length.
+/// [`HistoryError`] when columns differ in length, the signal holds what is not a number, or the lag
+/// is negative.
 pub fn dragged(
     input: &[f64],
     lapse: &[f64],
@@ -113,6 +114,8 @@ pub fn dragged(
     out: &mut [f64],
 ) -> Result<(), HistoryError> {
     same_length(input.len(), &[lapse.len(), restart.len(), out.len()])?;
+    numbers("signal", input)?;
+    not_negative("lag", &[dashpot.lag])?;
     let (mut state, mut before, mut near) = (0.0, 0.0, 0.0);
     for i in 0..input.len() {
         if i == 0 || restart[i] {
