@@ -116,8 +116,9 @@ def simulate(
     programme : Recording
         Load history; for ``predict="torque"`` with an angle.
     predict : {"angle", "torque"}
-        Column to predict, in deg or N m. Where even ramps of the torque turn between two readings, a
-        twist turns there, too; a torque turns at the readings, and is then no exact inverse.
+        Column to predict, in deg or N m. Where even ramps of the torque turn between two
+        readings, a twist turns there, too; a torque turns at the readings, and is then no exact
+        inverse.
 
     Returns
     -------
