@@ -7,7 +7,7 @@ from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, cost
 from cyclosweep.simulation.effects import Shape
-from cyclosweep.simulation.effects.slip_path import BY_READING
+from cyclosweep.simulation.effects.slip_path import BY_READING, between_and_by_reading
 
 
 def in_better_variant(fitted: FittedStructure) -> FittedStructure:
@@ -39,8 +39,8 @@ def in_better_variant(fitted: FittedStructure) -> FittedStructure:
 
 def _otherwise_read(shape: Shape) -> Shape:
     """Shape of a friction that turns at the readings, or no longer does."""
-    between = {name: value for name, value in shape.items() if name != BY_READING}
-    return between if BY_READING in shape else {**between, BY_READING: 1.0}
+    between, by_reading = between_and_by_reading(shape)
+    return between if BY_READING in shape else by_reading
 
 
 def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructure:

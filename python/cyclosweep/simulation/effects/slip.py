@@ -15,7 +15,14 @@ from cyclosweep.simulation.effects.slip_elements import (
     elements_of,
     spread_elements,
 )
-from cyclosweep.simulation.effects.slip_path import BY_READING, SlipPath, slip_state, solve_slip
+from cyclosweep.simulation.effects.slip_path import (
+    BY_READING,
+    SlipPath,
+    between_and_by_reading,
+    check_flag,
+    slip_state,
+    solve_slip,
+)
 from cyclosweep.simulation.effects.slip_start import (
     STATES,
     crossed_play,
@@ -135,10 +142,9 @@ class FrictionEffect(Effect):
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Friction that turns between readings, and at them, where the load has corners."""
-        between = {name: value for name, value in shape.items() if name != BY_READING}
         if not len(history.corners) or self.shape_parameters != SLIP_PARAMETERS:
             return [shape]
-        return [between, {**between, BY_READING: 1.0}]
+        return between_and_by_reading(shape)
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep presliding distances to what a recording of this twist can show."""
@@ -172,11 +178,8 @@ class FrictionEffect(Effect):
         InputError
             A shape parameter is unknown or missing, or these two contradict each other.
         """
-        behind = shape.get("behind_play", 0.0)
-        if behind not in (0.0, 1.0):
-            raise InputError(f"behind_play: found {behind:g}, expected 0 or 1")
-        if shape.get(BY_READING, 0.0) not in (0.0, 1.0):
-            raise InputError(f"{BY_READING}: found {shape[BY_READING]:g}, expected 0 or 1")
+        behind = check_flag(shape, "behind_play")
+        check_flag(shape, BY_READING)
         if behind and "slack" in shape:
             raise InputError("slack: found beside behind_play, expected one of the two")
         return super().known_shape(shape)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import cyclosweep._core as _core
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.corners import NO_CORNERS, Corners
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.parameters import Shape
@@ -14,6 +15,37 @@ from cyclosweep.simulation.effects.slip_start import crossed_play, start_of
 BY_READING = "by_reading"
 """Name in the shape of a friction or a drag: 1 where the torque turns at the readings, as in
 simulations that go straight from one to the next, and not at corners between them."""
+
+
+def between_and_by_reading(shape: Shape) -> tuple[Shape, Shape]:
+    """Shape that turns between the readings, and the same that turns at them."""
+    between = {name: value for name, value in shape.items() if name != BY_READING}
+    return between, {**between, BY_READING: 1.0}
+
+
+def check_flag(shape: Shape, name: str) -> bool:
+    """Value of a flag of a shape; refuse one that is neither 0 nor 1.
+
+    Parameters
+    ----------
+    shape : mapping
+        Shape parameters by name.
+    name : str
+        Of the flag; a shape without it has it at 0.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InputError
+        The flag is neither 0 nor 1.
+    """
+    value = shape.get(name, 0.0)
+    if value not in (0.0, 1.0):
+        raise InputError(f"{name}: found {value:g}, expected 0 or 1")
+    return bool(value)
 
 
 @dataclass(frozen=True, eq=False)

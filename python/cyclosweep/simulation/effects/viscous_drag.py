@@ -8,7 +8,7 @@ import cyclosweep._core as _core
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip_path import BY_READING
+from cyclosweep.simulation.effects.slip_path import BY_READING, between_and_by_reading, check_flag
 
 SHORTEST_LAG = 0.1
 """Lag below which nothing changes any more, in steps between samples."""
@@ -52,8 +52,8 @@ class ViscousDrag(Effect):
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Rates between the readings and from reading to reading, where these are few."""
-        between = {name: value for name, value in shape.items() if name != BY_READING}
-        return [between, {**between, BY_READING: 1.0}] if _is_coarse(history) else [between]
+        both = between_and_by_reading(shape)
+        return both if _is_coarse(history) else both[:1]
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
@@ -102,8 +102,7 @@ class ViscousDrag(Effect):
         known = super().known_shape(shape)
         if not known["lag_s"] > 0.0:
             raise InputError(f"lag_s: found {known['lag_s']:g}, expected more than 0")
-        if known.get(BY_READING, 0.0) not in (0.0, 1.0):
-            raise InputError(f"{BY_READING}: found {known[BY_READING]:g}, expected 0 or 1")
+        check_flag(known, BY_READING)
         return known
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
