@@ -269,6 +269,7 @@ def dragged(
     power: float = 1.0,
     reference_rate: float = 1.0,
     by_sample: bool = False,
+    thinning_rate: float | None = None,
 ) -> _Reals: ...
 def remembered_datum(push: _Reals, memory: float) -> _Reals: ...
 def write_parquet(

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from tests.support.arrays import Floats, Mask
 
@@ -150,17 +151,31 @@ def dragged(
     lag: float,
     power: float = 1.0,
     reference_rate: float = 1.0,
+    thinning_rate: float | None = None,
 ) -> list[float]:
     """Solution of ``u = x + drag(dx/dt)`` by an integrator that controls its error."""
     drag = lag * reference_rate
+
+    def rate_of(resisted: float) -> float:
+        if thinning_rate is None:
+            return float(reference_rate * (resisted / drag) ** (1.0 / power))
+
+        def law(rate: float) -> float:
+            return float(rate * (1.0 + (rate / thinning_rate) ** 2) ** (0.5 * (power - 1.0)))
+
+        wanted = resisted / drag * law(reference_rate)
+        highest = 1.0
+        while law(highest) < wanted:
+            highest *= 2.0
+        return float(brentq(lambda rate: law(rate) - wanted, 0.0, highest, xtol=1e-14))
+
     out, state, before = [], 0.0, 0.0
     for u, h, fresh in zip(load, lapse, restart, strict=True):
         state, before = (0.0, 0.0) if fresh else (state, before)
 
         def rate(t: float, x: Floats, u: float = u, h: float = h, start: float = before) -> Floats:
             gap = start + (u - start) * t / h - x
-            size = reference_rate * (np.abs(gap) / drag) ** (1.0 / power)
-            return np.asarray(np.sign(gap) * size)
+            return np.asarray(np.sign(gap) * rate_of(float(np.abs(gap)[0])))
 
         solved = solve_ivp(rate, (0.0, h), [state], "Radau", rtol=1e-8, atol=1e-10)
         state, before = float(solved.y[0, -1]), u

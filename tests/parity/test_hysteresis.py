@@ -165,6 +165,19 @@ def test_drag(power: float, rate: float, within: float) -> None:
     np.testing.assert_allclose(fast, expected, rtol=0.0, atol=within)
 
 
+# With the power of the rate alone it misses 0.11 to 0.34, by sample 0.23 to 0.38.
+@pytest.mark.parametrize(("power", "thinning"), [(0.3, 0.5), (0.2, 0.1), (0.6, 2.0)])
+def test_drag_that_thins_above_a_rate(power: float, thinning: float) -> None:
+    rng = np.random.default_rng(7)
+    lapse = rng.uniform(0.2, 3.0, 40)
+    load = np.cumsum(rng.normal(size=40))
+    restart = np.zeros(40, dtype=bool)
+    restart[20] = True
+    fast = core.dragged(load, lapse, restart, 0.7, power, 0.8, thinning_rate=thinning)
+    expected = slow.dragged(load, lapse, restart, 0.7, power, 0.8, thinning)
+    np.testing.assert_allclose(fast, expected, rtol=0.0, atol=0.05)
+
+
 def test_lengths_must_agree() -> None:
     one, two = np.zeros(1), np.zeros(2)
     with pytest.raises(ValueError, match="length"):

@@ -9,6 +9,7 @@ import numpy as np
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
+from cyclosweep.simulation.effect_value import drag_torque, twist_by_drag
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
@@ -228,6 +229,7 @@ def settle(
     if sliding:
         law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     others = [v for v in model.effects if not sliding or not v.elastic]
+    in_law = [v for v in model.effects if v.elastic] if sliding else []
     moving = travelling(others)
     history = history.with_state(measured_deg=None)
     if moving:
@@ -235,7 +237,8 @@ def settle(
         history = on_the_mesh(moving, history, history.angle_deg)
     beyond = [value for value in others if value not in moving]
     for _ in range(rounds):
-        added = linear_twist(others, history)
+        history = history.with_state(drag_nm=drag_torque(others, history))
+        added = linear_twist(others, history) + twist_by_drag(in_law, history)
         before = history.angle_deg
         if sliding:
             history = history.with_state(beyond_deg=linear_twist(beyond, history))
@@ -336,11 +339,12 @@ def _torque(model: Model, programme: Recording) -> Floats:
     law = elastic_law(
         model, farthest / model.compliance_deg_per_nm, held_by_friction=held_back is not None
     )
-    others = [
+    in_law = [
         value
         for value in model.effects
-        if not (value.effect.elastic if held_back is None else value.elastic)
+        if (value.effect.elastic if held_back is None else value.elastic)
     ]
+    others = [value for value in model.effects if value not in in_law]
     behind = held_back is not None and lies_behind_play(held_back.shape)
     moving = travelling(others)
     beyond = [value for value in others if value not in moving]
@@ -352,7 +356,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
-        added = linear_twist(others, history)
+        history = history.with_state(drag_nm=drag_torque(others, history))
+        added = linear_twist(others, history) + twist_by_drag(in_law, history)
         twist = angle - model.datum_deg - added
         held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = held / model.compliance_deg_per_nm

@@ -138,7 +138,7 @@ fn play<'py>(
 /// Input that a dashpot in parallel lets through.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
-#[pyo3(signature = (signal, lapse, restart, lag, power=1.0, reference_rate=1.0, by_sample=false))]
+#[pyo3(signature = (signal, lapse, restart, lag, power=1.0, reference_rate=1.0, by_sample=false, thinning_rate=None))]
 fn dragged<'py>(
     py: Python<'py>,
     signal: Column<'py>,
@@ -148,6 +148,7 @@ fn dragged<'py>(
     power: f64,
     reference_rate: f64,
     by_sample: bool,
+    thinning_rate: Option<f64>,
 ) -> PyResult<Reals<'py>> {
     let n = signal.len()?;
     let mut out = vec![0.0; n];
@@ -158,6 +159,7 @@ fn dragged<'py>(
         Dashpot {
             lag,
             power,
+            thinning_rate,
             reference_rate,
             by_sample,
         },

@@ -79,8 +79,8 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
     others = [term for term in best.terms if not term.slips]
-    instead = (_fitted(noise, [*drag, *others], baseline) for drag in ([], *_drags(search)))
-    if any(each is not None and cost(each) <= cost(best) for each in instead):
+    instead = ([*drag, *others] for drag in ([], *_drags(search)))
+    if any(_does_as_well(noise, terms, baseline, best) for terms in instead):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
     # stiffening and a difference of the directions together make the curve of any dial. A few runs
@@ -93,6 +93,32 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
             return found
         # Where friction was taken for slow noise, a fit against that noise forgets the loop.
     return None
+
+
+def _does_as_well(
+    noise: Noise, terms: Sequence[Term], before: FittedStructure, best: FittedStructure
+) -> bool:
+    """Whether other terms explain a recording as well as the best fit does.
+
+    Parameters
+    ----------
+    noise : Noise
+        Noise and model error together.
+    terms : sequence of Term
+    before : FittedStructure
+        The fit from which theirs goes on.
+    best : FittedStructure
+        The best fit so far.
+
+    Returns
+    -------
+    bool
+    """
+    begun = fit(best.problem, noise, tuple(terms), before, rounds=FIRST_LOOK)
+    if begun.rmse_deg > HOPELESS * best.rmse_deg:
+        return False
+    converged = _fitted(noise, begun.terms, begun)
+    return converged is not None and cost(converged) <= cost(best)
 
 
 def _drags(search: Search) -> list[list[Term]]:

@@ -8,7 +8,12 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter, usual_change
 from cyclosweep.diagnosis.identify.fit_state import Expansion, Linearisation
 from cyclosweep.diagnosis.identify.friction_path import friction_path
-from cyclosweep.diagnosis.identify.path_law import beyond_friction, elastic_parts, path_law
+from cyclosweep.diagnosis.identify.path_law import (
+    beyond_friction,
+    drag_beside,
+    elastic_parts,
+    path_law,
+)
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
@@ -55,7 +60,8 @@ class JointFit:
         self.slides = any(term.slips for term in terms)
         self.use = problem.fitted
         self.angle = problem.angle_deg[self.use]
-        self.history = history
+        self.drags = any(term.effect is not None and term.effect.is_drag for term in terms)
+        self.history = history if self.drags else history.with_state(drag_nm=0.0)
         self.mean, self.law = mean_deg, law
         self._work_at(self.mean)
 
@@ -214,6 +220,9 @@ class JointFit:
             history, design, _, beta = self._solve_at(terms, history, mean, law)
             mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
+            if self.drags:
+                drag = drag_beside(terms, design, beta, history)
+                history = history.with_state(drag_nm=drag)
             if self.slides:
                 beyond = beyond_friction(terms, design, beta)
                 history = history.with_state(angle_deg=history.held_deg + beyond, beyond_deg=beyond)

@@ -94,6 +94,34 @@ def elastic_parts(
     return [(term, own) for term, _, own in parts if term.elastic]
 
 
+def drag_beside(
+    terms: Sequence[Term], design: Sequence[Floats], beta: Floats, history: History
+) -> Floats:
+    """Drag torque of a structure, which its elastic laws do not carry.
+
+    Parameters
+    ----------
+    terms : sequence of Term
+        All terms of a structure.
+    design : sequence of ndarray, shape (n, m)
+        Columns of the line, then of each term that does not slip.
+    beta : ndarray
+        Linear parameters.
+    history : History
+        With the compliance of the line.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In N m.
+    """
+    drag = np.zeros(len(history))
+    for term, columns, own in linear_parts(terms, design, beta):
+        if term.effect is not None and term.effect.is_drag:
+            drag -= columns @ np.maximum(own, 0.0)
+    return drag / history.compliance_deg_per_nm
+
+
 def linear_parts(
     terms: Sequence[Term], design: Sequence[Floats], beta: Floats
 ) -> list[tuple[Term, Floats, Floats]]:

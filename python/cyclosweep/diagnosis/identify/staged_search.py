@@ -35,7 +35,7 @@ from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
-from cyclosweep.diagnosis.identify.variants import in_better_variant
+from cyclosweep.diagnosis.identify.variants import in_better_variant, with_refined_drag
 from cyclosweep.diagnosis.identify.verdict import decide, likely, named_if_close, probabilities
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
@@ -160,9 +160,11 @@ def search_in_stages(
             break
         if accepted and not restarted and best.names not in kept_their_start:
             turned = from_better_start(searched.noise, best.fit, PARAMETER_CHARGE)
+            turned = with_refined_drag(turned, {term.name for term in accepted})
             kept_their_start.add(best.names)
             if turned is not best.fit:
-                # What was found beside friction in the wrong state may be the error of that state.
+                # What was found beside friction in the wrong state, or drag of another shape, may
+                # be the error of that.
                 restarted = True
                 before = {term.name for term in accepted}
                 kept = tuple(term for term in turned.terms if term.name in before)

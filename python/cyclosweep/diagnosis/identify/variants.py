@@ -1,12 +1,13 @@
 """Variants of an accepted effect, between which a fit with less beside it decided."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, cost
 from cyclosweep.simulation.effects import Shape
+from cyclosweep.simulation.effects.base import Effect
 from cyclosweep.simulation.effects.slip_path import BY_READING, between_and_by_reading
 
 
@@ -28,13 +29,61 @@ def in_better_variant(fitted: FittedStructure) -> FittedStructure:
     for k, term in enumerate(fitted.terms):
         if term.effect is None or term.slips:
             continue
-        for shape in term.effect.variants(best.history, best.terms[k].shape):
-            if shape.keys() != best.terms[k].shape.keys():
-                best = _better(best, {k: shape})
+        best = _refined(best, k, term.effect)
     slipping = {k: term.shape for k, term in enumerate(best.terms) if term.slips}
     if slipping and len(best.history.corners):
         best = _better(best, {k: _otherwise_read(shape) for k, shape in slipping.items()})
     return best
+
+
+def with_refined_drag(fitted: FittedStructure, accepted: Collection[str]) -> FittedStructure:
+    """Refine the shape of a drag that was accepted before, beside what was found since.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+    accepted : collection of str
+        Names of the terms accepted before.
+
+    Returns
+    -------
+    FittedStructure
+        The same where nothing is better.
+    """
+    best = fitted
+    for k, term in enumerate(fitted.terms):
+        if term.name in accepted and term.effect is not None and term.effect.is_drag:
+            best = _refined(best, k, term.effect)
+    return best
+
+
+def _refined(best: FittedStructure, place: int, effect: Effect) -> FittedStructure:
+    """Refine the shape of an effect, in one respect after the other, while that fits better.
+
+    Parameters
+    ----------
+    best : FittedStructure
+    place : int
+        Of its term.
+    effect : Effect
+
+    Returns
+    -------
+    FittedStructure
+    """
+    tried = {frozenset(best.terms[place].shape)}
+    while True:
+        shape = best.terms[place].shape
+        others = effect.refinements(best.history, shape)
+        other = next((each for each in others if frozenset(each) not in tried), None)
+        if other is None:
+            return best
+        tried.add(frozenset(other))
+        better = _better(best, {place: other})
+        if better is not best:
+            # What is tried next is to gain by itself, not by what is left of this fit.
+            better = fit(better.problem, better.noise, better.terms, better, rounds=CONVERGED)
+        best = better
 
 
 def _otherwise_read(shape: Shape) -> Shape:

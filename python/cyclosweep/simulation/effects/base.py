@@ -49,6 +49,9 @@ class Effect(FormerNames):
         derives from `cyclosweep.simulation.effects.slip.FrictionEffect`.
     elastic : bool
         The twist is a function of the elastic torque alone: part of the drive's elastic law.
+    is_drag : bool
+        The twist is what a drag torque takes from the straight line; the elastic laws carry less by
+        that torque. Its columns are minus the drag times the compliance.
     dense : bool
         The grid of shapes stands for what is believed of them beforehand: they weigh the same, and
         the evidence is averaged over them.
@@ -67,6 +70,7 @@ class Effect(FormerNames):
     forms: ClassVar[tuple[ShapeForm, ...]] = ()
     slips: ClassVar[bool] = False
     elastic: ClassVar[bool] = False
+    is_drag: ClassVar[bool] = False
     dense: ClassVar[bool] = False
     vector: ClassVar[bool] = False
 
@@ -249,6 +253,23 @@ class Effect(FormerNames):
             Shapes to start from.
         """
         return [shape]
+
+    def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Shapes that differ in one respect from that of an accepted effect, to be tried instead.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Its shape.
+
+        Returns
+        -------
+        sequence of mapping
+            Shapes to start from; those of the same names are not tried.
+        """
+        return self.variants(history, shape)
 
     def penalty(self, shape: Shape) -> float:
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""

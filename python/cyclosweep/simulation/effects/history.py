@@ -34,6 +34,8 @@ class History:
     beyond_deg : ndarray, shape (n,), or float
         Part of it that lies beyond the friction: it turns the shaft where it is measured, but not
         the part that friction holds [deg].
+    drag_nm : ndarray, shape (n,), or float
+        Drag of the lubricant, by which the elastic parts carry less than `elastic_nm` [N m].
     side : ndarray, shape (n,)
         Flank in contact: +1 or -1.
     run : ndarray of int, shape (n,)
@@ -84,6 +86,7 @@ class History:
     corner_deg: Floats | None = None
     corner_nm: Floats | None = None
     has_corners: bool = True
+    drag_nm: Floats | float = 0.0
 
     def __len__(self) -> int:
         return len(self.applied_nm)
@@ -118,6 +121,13 @@ class History:
         """The same for a part in series with friction, which carries the whole applied torque."""
         side = np.where(self.applied_nm == 0.0, self.side, np.sign(self.applied_nm))
         return self.with_state(elastic_nm=self.applied_nm, side=side)
+
+    @cached_property
+    def under_drag(self) -> "History":
+        """The same for elastic parts, which carry what drag leaves of the torque."""
+        if not np.any(self.drag_nm):
+            return self
+        return self.with_state(elastic_nm=self.elastic_nm - self.drag_nm)
 
     @cached_property
     def corners(self) -> Corners:

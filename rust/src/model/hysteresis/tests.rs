@@ -63,6 +63,7 @@ fn drag_delays_a_ramp_by_its_lag() {
     let newtonian = |lag| Dashpot {
         lag,
         power: 1.0,
+        thinning_rate: None,
         reference_rate: 4.0,
         by_sample: false,
     };
@@ -72,6 +73,7 @@ fn drag_delays_a_ramp_by_its_lag() {
     let thinning = Dashpot {
         lag: 0.5,
         power: 0.5,
+        thinning_rate: None,
         reference_rate: 4.0,
         by_sample: false,
     };
@@ -86,6 +88,7 @@ fn a_dashpot_by_sample_holds_the_balance_of_torques() {
         let dashpot = Dashpot {
             lag,
             power,
+            thinning_rate: None,
             reference_rate: rate,
             by_sample: true,
         };
@@ -98,6 +101,42 @@ fn a_dashpot_by_sample_holds_the_balance_of_torques() {
             assert!((input[i] - out[i] - drag).abs() < 1e-8, "row {i}");
         }
     }
+}
+
+#[test]
+fn drag_that_thins_above_a_rate_holds_the_balance_of_torques() {
+    let input: Vec<f64> = (0..300).map(|k| (f64::from(k) * 0.1).sin() * 7.0).collect();
+    let (lag, rate, lapse, power) = (0.8, 2.5, 0.2, 0.3);
+    for thinning in [0.05_f64, 1.0, 40.0] {
+        let dashpot = Dashpot {
+            lag,
+            power,
+            thinning_rate: Some(thinning),
+            reference_rate: rate,
+            by_sample: true,
+        };
+        let law = |speed: f64| speed * (1.0 + (speed / thinning).powi(2)).powf(0.5 * (power - 1.0));
+        let mut out = vec![0.0; 300];
+        let flags = vec![false; 300];
+        dragged(&input, &vec![lapse; 300], &flags, dashpot, &mut out).expect("lengths");
+        for i in 1..input.len() {
+            let speed = (out[i] - out[i - 1]) / lapse;
+            let drag = lag * rate * law(speed) / law(rate);
+            assert!((input[i] - out[i] - drag).abs() < 1e-7, "row {i}");
+        }
+    }
+}
+
+#[test]
+fn a_rate_of_thinning_has_to_be_positive() {
+    let dashpot = Dashpot {
+        lag: 1.0,
+        power: 0.5,
+        thinning_rate: Some(0.0),
+        reference_rate: 1.0,
+        by_sample: false,
+    };
+    assert!(dragged(&[1.0], &[1.0], &[true], dashpot, &mut [0.0]).is_err());
 }
 
 /// Largest difference of a dashpot from itself on a grid forty times as fine.
@@ -127,6 +166,7 @@ fn drag_does_not_depend_on_how_often_it_is_sampled() {
         let newtonian = Dashpot {
             lag,
             power: 1.0,
+            thinning_rate: None,
             reference_rate: 4.0,
             by_sample: false,
         };
