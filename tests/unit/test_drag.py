@@ -21,6 +21,9 @@ STIFFENING = EffectValue("contact_stiffening", {"cubic_nm": 6.0}, (0.4,))
 FRICTION = EffectValue("friction_hysteresis", {"slip_deg": 0.5, "scatter": 0.4}, (0.8,))
 
 
+SOFTENING = EffectValue("overload_softening", {"onset_nm": 2.0, "power": 1.5}, (10.0,))
+
+
 def programme(runs: int = 3) -> cs.Recording:
     """Ramps at several rates, each run begun at 1 N m."""
     parts = []
@@ -41,23 +44,40 @@ def twist(*effects: EffectValue) -> Floats:
     return present(cs.simulate(model(*effects), programme()).angle_deg)
 
 
-def test_elastic_effects_carry_what_drag_leaves() -> None:
-    load = programme()
-    carried = (twist(DRAG) - np.sign(load.torque_nm) * PLAY_DEG) / COMPLIANCE
-    under = replace(load, torque_nm=carried)
-    expected = present(cs.simulate(model(STIFFENING), under).angle_deg)
-    found = twist(DRAG, STIFFENING)
-    np.testing.assert_allclose(found, expected, atol=1e-6)
-    # Drag beside a stiffening of the whole torque.
-    apart = twist(DRAG) + twist(STIFFENING) - twist()
+def through_zero() -> cs.Recording:
+    """Ramps to either side, so that drag presses the flank that the torque has left."""
+    time = np.arange(0.0, 80.0, 0.25)
+    torque = np.interp(
+        time, [0.0, 10.0, 30.0, 50.0, 70.0, 80.0], [0.0, 10.0, -10.0, 10.0, -10.0, 0]
+    )
+    return cs.Recording.from_arrays(torque, time_s=time)
+
+
+@pytest.mark.parametrize("law", [STIFFENING, SOFTENING], ids=["stiffening", "softening"])
+@pytest.mark.parametrize("load", [programme(), through_zero()], ids=["ramps", "through zero"])
+def test_elastic_effects_carry_what_drag_leaves(law: EffectValue, load: cs.Recording) -> None:
+    def twist_of(load: cs.Recording, *effects: EffectValue) -> Floats:
+        whole = replace(model(*effects), free_play_deg=0.0)
+        return present(cs.simulate(whole, load).angle_deg)
+
+    carried = twist_of(load, DRAG) / COMPLIANCE
+    expected = twist_of(replace(load, torque_nm=carried), law)
+    found = twist_of(load, DRAG, law)
+    np.testing.assert_allclose(found, expected, atol=2e-4)
+    # Drag beside a law of the whole torque.
+    apart = twist_of(load, DRAG) + twist_of(load, law) - twist_of(load)
     assert np.max(np.abs(found - apart)) > 0.1
 
 
-def test_elastic_effects_carry_what_drag_and_friction_leave() -> None:
-    # Friction whose limit is next to nothing leaves the path as it is without friction.
-    next_to_none = replace(FRICTION, amplitudes=(1e-9,))
-    found = twist(DRAG, STIFFENING, next_to_none)
-    np.testing.assert_allclose(found, twist(DRAG, STIFFENING), atol=0.02)
+def test_a_line_and_an_elastic_effect_are_one_spring_under_drag_and_friction() -> None:
+    # Half of the compliance as an effect: a softening from zero on is a line.
+    half = EffectValue("overload_softening", {"onset_nm": 0.0, "power": 1.0}, (7.0,))
+    drag = replace(DRAG, amplitudes=(2.0 * DRAG_NM,))
+    friction = replace(FRICTION, amplitudes=(2.0,))
+    cut = replace(model(drag, half, friction), compliance_deg_per_nm=0.5 * COMPLIANCE)
+    whole = replace(model(DRAG, friction))
+    found, expected = (present(cs.simulate(m, programme()).angle_deg) for m in (cut, whole))
+    np.testing.assert_allclose(found, expected, atol=1e-3)
 
 
 def test_an_effect_in_series_carries_the_whole_torque() -> None:
@@ -156,6 +176,6 @@ def test_a_fit_without_drag_forgets_that_of_the_fit_before() -> None:
         Term(find("contact_stiffening"), {"cubic_nm": 6.0}),
     )
     both = fit(search.problem, search.noise, terms, search.baseline.fit)
-    assert np.any(both.history.drag_nm)
+    assert both.history.drag_compliance is not None
     alone = fit(search.problem, search.noise, terms[1:], both)
-    assert not np.any(alone.history.drag_nm)
+    assert alone.history.drag_compliance is None

@@ -11,7 +11,7 @@ from cyclosweep.simulation.effects import Effect, find
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.json_fields import flag_of, number_of, object_of, text_of
 
-__all__ = ["EffectValue", "drag_torque", "linear_twist", "twist_by_drag"]
+__all__ = ["EffectValue", "linear_twist"]
 
 
 @dataclass(frozen=True)
@@ -190,52 +190,8 @@ def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
     total = np.zeros(len(history))
     for value in effects:
         if not value.effect.slips:
-            seen = history
-            if value.effect.elastic:
-                seen = history.under_drag if value.elastic else history.under_applied_torque
+            seen = history.under_applied_torque if value.in_series else history
             columns = value.effect.columns(seen, value.shape)
             width = min(columns.shape[1], len(value.amplitudes))
             total += columns[:, :width] @ np.array(value.amplitudes[:width])
     return total
-
-
-def drag_torque(effects: Sequence[EffectValue], history: History) -> Floats | float:
-    """Torque by which drag keeps the elastic parts from carrying the whole torque.
-
-    Parameters
-    ----------
-    effects : sequence of EffectValue
-        Effects with their amplitudes.
-    history : History
-        Load history of n samples with the state of the model along it.
-
-    Returns
-    -------
-    ndarray, shape (n,), or float
-        In N m; zero without drag.
-    """
-    drags = [value for value in effects if value.effect.is_drag]
-    if not drags:
-        return 0.0
-    return -linear_twist(drags, history) / history.compliance_deg_per_nm
-
-
-def twist_by_drag(effects: Sequence[EffectValue], history: History) -> Floats | float:
-    """Twist that elastic effects lack because drag takes a part of the torque, beside the line.
-
-    Parameters
-    ----------
-    effects : sequence of EffectValue
-        Effects of an elastic law.
-    history : History
-        Load history of n samples, with the drag.
-
-    Returns
-    -------
-    ndarray, shape (n,), or float
-        In deg; zero without drag.
-    """
-    if not effects or not np.any(history.drag_nm):
-        return 0.0
-    without = history.with_state(drag_nm=0.0)
-    return linear_twist(effects, history) - linear_twist(effects, without)

@@ -9,7 +9,7 @@ import numpy as np
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
-from cyclosweep.simulation.effect_value import drag_torque, twist_by_drag
+from cyclosweep.simulation.drag_compliance import with_drag_compliance
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
@@ -229,7 +229,6 @@ def settle(
     if sliding:
         law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     others = [v for v in model.effects if not sliding or not v.elastic]
-    in_law = [v for v in model.effects if v.elastic] if sliding else []
     moving = travelling(others)
     history = history.with_state(measured_deg=None)
     if moving:
@@ -237,8 +236,8 @@ def settle(
         history = on_the_mesh(moving, history, history.angle_deg)
     beyond = [value for value in others if value not in moving]
     for _ in range(rounds):
-        history = history.with_state(drag_nm=drag_torque(others, history))
-        added = linear_twist(others, history) + twist_by_drag(in_law, history)
+        history = _under_drag(model, history)
+        added = linear_twist(others, history)
         before = history.angle_deg
         if sliding:
             history = history.with_state(beyond_deg=linear_twist(beyond, history))
@@ -255,6 +254,31 @@ def settle(
         if float(np.max(np.abs(history.angle_deg - before))) < 1e-6:
             break
     return history
+
+
+def _under_drag(model: Model, history: History) -> History:
+    """The same with the compliance at which the drag of a model takes its twist.
+
+    Parameters
+    ----------
+    model : Model
+        Line and effects.
+    history : History
+        Load history with the elastic torque.
+
+    Returns
+    -------
+    History
+    """
+    drags = [value for value in model.effects if value.effect.is_drag]
+    if not drags:
+        return history
+    elastic = [value for value in model.effects if value.elastic]
+
+    def twist(under: History) -> Floats:
+        return model.elastic_twist(under.elastic_nm) + linear_twist(elastic, under)
+
+    return with_drag_compliance(history, twist, linear_twist(drags, history))
 
 
 def _slide(
@@ -339,12 +363,11 @@ def _torque(model: Model, programme: Recording) -> Floats:
     law = elastic_law(
         model, farthest / model.compliance_deg_per_nm, held_by_friction=held_back is not None
     )
-    in_law = [
+    others = [
         value
         for value in model.effects
-        if (value.effect.elastic if held_back is None else value.elastic)
+        if not (value.effect.elastic if held_back is None else value.elastic)
     ]
-    others = [value for value in model.effects if value not in in_law]
     behind = held_back is not None and lies_behind_play(held_back.shape)
     moving = travelling(others)
     beyond = [value for value in others if value not in moving]
@@ -356,8 +379,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
-        history = history.with_state(drag_nm=drag_torque(others, history))
-        added = linear_twist(others, history) + twist_by_drag(in_law, history)
+        history = _under_drag(model, history)
+        added = linear_twist(others, history)
         twist = angle - model.datum_deg - added
         held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = held / model.compliance_deg_per_nm

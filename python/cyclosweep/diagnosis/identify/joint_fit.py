@@ -10,9 +10,9 @@ from cyclosweep.diagnosis.identify.fit_state import Expansion, Linearisation
 from cyclosweep.diagnosis.identify.friction_path import friction_path
 from cyclosweep.diagnosis.identify.path_law import (
     beyond_friction,
-    drag_beside,
     elastic_parts,
     path_law,
+    under_drag,
 )
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
@@ -61,7 +61,7 @@ class JointFit:
         self.use = problem.fitted
         self.angle = problem.angle_deg[self.use]
         self.drags = any(term.effect is not None and term.effect.is_drag for term in terms)
-        self.history = history if self.drags else history.with_state(drag_nm=0.0)
+        self.history = history if self.drags else history.with_state(drag_compliance=None)
         self.mean, self.law = mean_deg, law
         self._work_at(self.mean)
 
@@ -221,8 +221,7 @@ class JointFit:
             mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
             if self.drags:
-                drag = drag_beside(terms, design, beta, history)
-                history = history.with_state(drag_nm=drag)
+                history = under_drag(terms, design, beta, history)
             if self.slides:
                 beyond = beyond_friction(terms, design, beta)
                 history = history.with_state(angle_deg=history.held_deg + beyond, beyond_deg=beyond)

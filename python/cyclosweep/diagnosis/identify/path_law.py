@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.simulation.drag_compliance import with_drag_compliance
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.elastic_law import ElasticLaw, history_through, law_of_twist
 
@@ -94,10 +95,10 @@ def elastic_parts(
     return [(term, own) for term, _, own in parts if term.elastic]
 
 
-def drag_beside(
+def under_drag(
     terms: Sequence[Term], design: Sequence[Floats], beta: Floats, history: History
-) -> Floats:
-    """Drag torque of a structure, which its elastic laws do not carry.
+) -> History:
+    """Path of the shaft with the compliance at which drag takes its twist.
 
     Parameters
     ----------
@@ -108,18 +109,21 @@ def drag_beside(
     beta : ndarray
         Linear parameters.
     history : History
-        With the compliance of the line.
+        All rows, with the calibrated line.
 
     Returns
     -------
-    ndarray, shape (n,)
-        In N m.
+    History
     """
-    drag = np.zeros(len(history))
-    for term, columns, own in linear_parts(terms, design, beta):
-        if term.effect is not None and term.effect.is_drag:
-            drag -= columns @ np.maximum(own, 0.0)
-    return drag / history.compliance_deg_per_nm
+    parts = linear_parts(terms, design, beta)
+    elastic = [(term, own) for term, _, own in parts if term.elastic]
+    drags = [c @ own for term, c, own in parts if term.effect is not None and term.effect.is_drag]
+
+    def twist(under: History) -> Floats:
+        line = history.compliance_deg_per_nm * under.elastic_nm
+        return np.asarray(line + sum(term.columns(under) @ own for term, own in elastic))
+
+    return with_drag_compliance(history, twist, np.asarray(sum(drags)))
 
 
 def linear_parts(

@@ -89,8 +89,6 @@ class Term:
         """Columns for unit amplitudes [deg]."""
         if self.in_series:
             history = history.under_applied_torque
-        elif self.elastic:
-            history = history.under_drag
         if self.effect is not None:
             return self.effect.columns(history, self.shape)
         assert self.unnamed is not None

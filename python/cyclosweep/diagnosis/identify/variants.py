@@ -10,6 +10,9 @@ from cyclosweep.simulation.effects import Shape
 from cyclosweep.simulation.effects.base import Effect
 from cyclosweep.simulation.effects.slip_path import BY_READING, between_and_by_reading
 
+REFINEMENT_CHARGE = 8.0
+"""What each parameter that a shape has more must gain within the noise, as chi-squared."""
+
 
 def in_better_variant(fitted: FittedStructure) -> FittedStructure:
     """Give effects the variant that fits best, and friction its turning points.
@@ -112,5 +115,6 @@ def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructu
     ahead = cost(best) - cost(other)
     if abs(ahead) <= PARAMETER_CHARGE:
         # Both are within the noise, or about as far beyond it.
-        ahead = best.chi2 - other.chi2
+        more = len(other.fit_parameters) - len(best.fit_parameters)
+        ahead = best.chi2 - other.chi2 - REFINEMENT_CHARGE * more
     return other if ahead > PARAMETER_CHARGE else best

@@ -50,8 +50,8 @@ class Effect(FormerNames):
     elastic : bool
         The twist is a function of the elastic torque alone: part of the drive's elastic law.
     is_drag : bool
-        The twist is what a drag torque takes from the straight line; the elastic laws carry less by
-        that torque. Its columns are minus the drag times the compliance.
+        The twist is what a drag torque takes from the elastic parts: its columns are minus the drag
+        times `History.drag_compliance`.
     dense : bool
         The grid of shapes stands for what is believed of them beforehand: they weigh the same, and
         the evidence is averaged over them.

@@ -34,8 +34,9 @@ class History:
     beyond_deg : ndarray, shape (n,), or float
         Part of it that lies beyond the friction: it turns the shaft where it is measured, but not
         the part that friction holds [deg].
-    drag_nm : ndarray, shape (n,), or float
-        Drag of the lubricant, by which the elastic parts carry less than `elastic_nm` [N m].
+    drag_compliance : ndarray, shape (n,), or None
+        Twist that the elastic parts lose for each unit of drag, by which they carry less than
+        `elastic_nm` [deg/(N m)]; None for the compliance of the line.
     side : ndarray, shape (n,)
         Flank in contact: +1 or -1.
     run : ndarray of int, shape (n,)
@@ -86,7 +87,7 @@ class History:
     corner_deg: Floats | None = None
     corner_nm: Floats | None = None
     has_corners: bool = True
-    drag_nm: Floats | float = 0.0
+    drag_compliance: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.applied_nm)
@@ -121,13 +122,6 @@ class History:
         """The same for a part in series with friction, which carries the whole applied torque."""
         side = np.where(self.applied_nm == 0.0, self.side, np.sign(self.applied_nm))
         return self.with_state(elastic_nm=self.applied_nm, side=side)
-
-    @cached_property
-    def under_drag(self) -> "History":
-        """The same for elastic parts, which carry what drag leaves of the torque."""
-        if not np.any(self.drag_nm):
-            return self
-        return self.with_state(elastic_nm=self.elastic_nm - self.drag_nm)
 
     @cached_property
     def corners(self) -> Corners:

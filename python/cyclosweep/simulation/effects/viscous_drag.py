@@ -38,7 +38,7 @@ class ViscousDrag(Effect):
     two decades of rates, up to 20 k.
 
     The elastic effects carry less by this torque: where they make the drive softer, drag makes the
-    loop wider. The rate itself is taken by the compliance of the straight line.
+    loop wider (`History.drag_compliance`). The rate itself is that of the straight line.
 
     The rate is that of the twist itself, which lags behind the torque:
     ``T = theta/C + D (dtheta/dt)^n``, which shows at reversals. `lag_s` is the time constant, the
@@ -48,6 +48,10 @@ class ViscousDrag(Effect):
     `by_reading` 1 the rate is instead that from one reading to the next, as in simulations that
     take one implicit step a reading. The two differ where the lag is not much shorter than the time
     between readings.
+
+    A run is reached from zero torque at the rate of its first readings, or in the time
+    `approach_s`; where that is long, its first reading does not lag. It belongs to the recorded
+    programme: leave it out for another one.
     """
 
     name = "viscous_drag"
@@ -137,10 +141,11 @@ class ViscousDrag(Effect):
             carried = np.delete(carried, corners.places)
         # What is not carried is drag: lag times the usual rate where the twist moves at that rate.
         resisted = (torque - carried) / (lag * rate_nm)
-        return np.asarray(-compliance * _resistance(shape, usual) * resisted)[:, None]
+        lost = compliance if history.drag_compliance is None else history.drag_compliance
+        return np.asarray(-lost * _resistance(shape, usual) * resisted)[:, None]
 
     def known_shape(self, shape: Shape) -> Shape:
-        """Refuse a lag that is none, and a variant that is neither; see `Effect`.
+        """Refuse what no drag has, and a flag that is neither 0 nor 1; see `Effect`.
 
         Parameters
         ----------
@@ -159,6 +164,13 @@ class ViscousDrag(Effect):
         known = super().known_shape(shape)
         if not known["lag_s"] > 0.0:
             raise InputError(f"lag_s: found {known['lag_s']:g}, expected more than 0")
+        if not known.get(THINNING, LEAST_RATE) >= LEAST_RATE:
+            raise InputError(
+                f"{THINNING}: found {known[THINNING]:g}, expected {LEAST_RATE:g} or more"
+            )
+        power = known.get(THINNED, known.get("power", 1.0))
+        if not 0.0 < power <= 1.0:
+            raise InputError(f"power of the rate: found {power:g}, expected above 0 and up to 1")
         check_flag(known, BY_READING)
         return known
 

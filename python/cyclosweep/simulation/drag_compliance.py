@@ -1,0 +1,54 @@
+"""Twist that the elastic parts of a drive lose for each unit of drag.
+
+Drag takes a part of the torque, and the elastic parts are twisted by what it leaves: where the
+drive is softer, the same drag takes away more twist.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cyclosweep.simulation.effects.history import Floats, History
+
+LEAST_DRAG = 1e-3
+"""Drag for which the compliance is taken at the least, as a share of the largest torque."""
+LEAST_COMPLIANCE = 1e-3
+"""Compliance at the least, as a share of that of the line."""
+
+
+def with_drag_compliance(
+    history: History, elastic_twist: Callable[[History], Floats], by_drag_deg: Floats
+) -> History:
+    """History with the compliance at which drag takes its twist.
+
+    It is the secant of the elastic law from the torque that drag leaves to the torque before it,
+    so that the twist is exact once drag and law have settled.
+
+    Parameters
+    ----------
+    history : History
+        Load history of n samples with the elastic torque, and the drag compliance of the round
+        before.
+    elastic_twist : callable
+        From a history to the twist beyond the free play at its elastic torque, shape (n,) [deg].
+    by_drag_deg : ndarray, shape (n,)
+        Twist by drag in the round before, negative where drag takes from a positive torque [deg].
+
+    Returns
+    -------
+    History
+    """
+    line = history.compliance_deg_per_nm
+    before = line if history.drag_compliance is None else history.drag_compliance
+    drag = -by_drag_deg / before
+    least = LEAST_DRAG * history.largest_torque_nm
+    drag = np.where(np.abs(drag) < least, np.where(drag < 0.0, -least, least), drag)
+    lost = elastic_twist(_under(history, 0.0)) - elastic_twist(_under(history, drag))
+    return history.with_state(drag_compliance=np.maximum(lost / drag, LEAST_COMPLIANCE * line))
+
+
+def _under(history: History, drag_nm: Floats | float) -> History:
+    """The same under what a drag leaves of the elastic torque, on the flank that it presses."""
+    torque = history.elastic_nm - drag_nm
+    side = np.where(torque == 0.0, history.side, np.sign(torque))
+    return history.with_state(elastic_nm=torque, side=side)
