@@ -8,12 +8,40 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cyclosweep.simulation.effect_value import linear_twist
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.elastic_law import CalibratedLine
 
 LEAST_DRAG = 1e-3
 """Drag for which the compliance is taken at the least, as a share of the largest torque."""
 LEAST_COMPLIANCE = 1e-3
 """Compliance at the least, as a share of that of the line."""
+
+
+def under_drag_of(model: CalibratedLine, history: History) -> History:
+    """History with the compliance at which the drag of a model takes its twist.
+
+    Parameters
+    ----------
+    model : CalibratedLine
+        Line and effects, such as a Model.
+    history : History
+        Load history with the elastic torque.
+
+    Returns
+    -------
+    History
+        The same without drag.
+    """
+    drags = [value for value in model.effects if value.effect.is_drag]
+    if not drags:
+        return history
+    elastic = [value for value in model.effects if value.elastic]
+
+    def twist(under: History) -> Floats:
+        return model.elastic_twist(under.elastic_nm) + linear_twist(elastic, under)
+
+    return with_drag_compliance(history, twist, linear_twist(drags, history))
 
 
 def with_drag_compliance(

@@ -9,7 +9,7 @@ import numpy as np
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
-from cyclosweep.simulation.drag_compliance import with_drag_compliance
+from cyclosweep.simulation.drag_compliance import under_drag_of
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
@@ -236,7 +236,7 @@ def settle(
         history = on_the_mesh(moving, history, history.angle_deg)
     beyond = [value for value in others if value not in moving]
     for _ in range(rounds):
-        history = _under_drag(model, history)
+        history = under_drag_of(model, history)
         added = linear_twist(others, history)
         before = history.angle_deg
         if sliding:
@@ -254,31 +254,6 @@ def settle(
         if float(np.max(np.abs(history.angle_deg - before))) < 1e-6:
             break
     return history
-
-
-def _under_drag(model: Model, history: History) -> History:
-    """The same with the compliance at which the drag of a model takes its twist.
-
-    Parameters
-    ----------
-    model : Model
-        Line and effects.
-    history : History
-        Load history with the elastic torque.
-
-    Returns
-    -------
-    History
-    """
-    drags = [value for value in model.effects if value.effect.is_drag]
-    if not drags:
-        return history
-    elastic = [value for value in model.effects if value.elastic]
-
-    def twist(under: History) -> Floats:
-        return model.elastic_twist(under.elastic_nm) + linear_twist(elastic, under)
-
-    return with_drag_compliance(history, twist, linear_twist(drags, history))
 
 
 def _slide(
@@ -379,7 +354,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
-        history = _under_drag(model, history)
+        history = under_drag_of(model, history)
         added = linear_twist(others, history)
         twist = angle - model.datum_deg - added
         held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)

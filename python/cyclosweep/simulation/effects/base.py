@@ -238,37 +238,11 @@ class Effect(FormerNames):
         return False
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes alike at first sight, between which only a joint fit decides.
-
-        Parameters
-        ----------
-        history : History
-            Load history of the recording.
-        shape : mapping
-            Shape of the grid that fits best.
-
-        Returns
-        -------
-        sequence of mapping
-            Shapes to start from.
-        """
+        """Shapes alike the best one of the grid, between which only a joint fit decides."""
         return [shape]
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes that differ in one respect from that of an accepted effect, to be tried instead.
-
-        Parameters
-        ----------
-        history : History
-            Load history of the recording.
-        shape : mapping
-            Its shape.
-
-        Returns
-        -------
-        sequence of mapping
-            Shapes to start from; those of the same names are not tried.
-        """
+        """Shapes unlike that of an accepted effect in one respect, to be tried in its place."""
         return self.variants(history, shape)
 
     def penalty(self, shape: Shape) -> float:
