@@ -114,11 +114,33 @@ def _does_as_well(
     -------
     bool
     """
+    other = _fitted_unless_hopeless(noise, terms, before, best)
+    return other is not None and cost(other) <= cost(best)
+
+
+def _fitted_unless_hopeless(
+    noise: Noise, terms: Sequence[Term], before: FittedStructure, best: FittedStructure
+) -> FittedStructure | None:
+    """Fit terms jointly as `_fitted` does; None where a first look leaves far more than the best.
+
+    Parameters
+    ----------
+    noise : Noise
+        Noise and model error together.
+    terms : sequence of Term
+    before : FittedStructure
+        The fit from which it goes on.
+    best : FittedStructure
+        The best fit so far.
+
+    Returns
+    -------
+    FittedStructure or None
+    """
     begun = fit(best.problem, noise, tuple(terms), before, rounds=FIRST_LOOK)
-    if begun.rmse_deg > HOPELESS * best.rmse_deg:
-        return False
-    converged = _fitted(noise, begun.terms, begun)
-    return converged is not None and cost(converged) <= cost(best)
+    if begun.rmse_deg >= HOPELESS * best.rmse_deg:
+        return None
+    return _fitted(noise, begun.terms, begun)
 
 
 def _drags(search: Search) -> list[list[Term]]:
@@ -312,11 +334,9 @@ def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
         return best
     fits = [best]
     for left_out in slipping:
-        rest = tuple(term for term in best.terms if term is not left_out)
-        begun = fit(best.problem, noise, rest, best, rounds=FIRST_LOOK)
-        if begun.rmse_deg < HOPELESS * best.rmse_deg:
-            converged = _fitted(noise, begun.terms, begun)
-            fits += [] if converged is None else [converged]
+        rest = [term for term in best.terms if term is not left_out]
+        without = _fitted_unless_hopeless(noise, rest, best, best)
+        fits += [] if without is None else [without]
     return min(fits, key=cost)
 
 

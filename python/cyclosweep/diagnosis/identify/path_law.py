@@ -115,9 +115,12 @@ def under_drag(
     -------
     History
     """
-    parts = linear_parts(terms, design, beta)
-    elastic = [(term, own) for term, _, own in parts if term.elastic]
-    drags = [c @ own for term, c, own in parts if term.effect is not None and term.effect.is_drag]
+    elastic = elastic_parts(terms, design, beta)
+    drags = [
+        columns @ own
+        for term, columns, own in linear_parts(terms, design, beta)
+        if term.effect is not None and term.effect.is_drag
+    ]
 
     def twist(under: History) -> Floats:
         line = history.compliance_deg_per_nm * under.elastic_nm

@@ -8,7 +8,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, cost
 from cyclosweep.simulation.effects import Shape
 from cyclosweep.simulation.effects.base import Effect
-from cyclosweep.simulation.effects.slip_path import BY_READING, between_and_by_reading
+from cyclosweep.simulation.effects.slip_path import otherwise_read
 
 REFINEMENT_CHARGE = 8.0
 """What each parameter that a shape has more must gain within the noise, as chi-squared."""
@@ -35,7 +35,7 @@ def in_better_variant(fitted: FittedStructure) -> FittedStructure:
         best = _refined(best, k, term.effect)
     slipping = {k: term.shape for k, term in enumerate(best.terms) if term.slips}
     if slipping and len(best.history.corners):
-        best = _better(best, {k: _otherwise_read(shape) for k, shape in slipping.items()})
+        best = _better(best, {k: otherwise_read(shape) for k, shape in slipping.items()})
     return best
 
 
@@ -87,12 +87,6 @@ def _refined(best: FittedStructure, place: int, effect: Effect) -> FittedStructu
             # What is tried next is to gain by itself, not by what is left of this fit.
             better = fit(better.problem, better.noise, better.terms, better, rounds=CONVERGED)
         best = better
-
-
-def _otherwise_read(shape: Shape) -> Shape:
-    """Shape of a friction that turns at the readings, or no longer does."""
-    between, by_reading = between_and_by_reading(shape)
-    return between if BY_READING in shape else by_reading
 
 
 def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructure:

@@ -238,7 +238,7 @@ class Effect(FormerNames):
         return False
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes alike the best one of the grid, between which only a joint fit decides."""
+        """Shapes alike at first sight, between which only a joint fit decides."""
         return [shape]
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:

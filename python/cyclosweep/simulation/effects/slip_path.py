@@ -23,6 +23,12 @@ def between_and_by_reading(shape: Shape) -> tuple[Shape, Shape]:
     return between, {**between, BY_READING: 1.0}
 
 
+def otherwise_read(shape: Shape) -> Shape:
+    """Shape that turns at the readings, or no longer does."""
+    between, by_reading = between_and_by_reading(shape)
+    return between if BY_READING in shape else by_reading
+
+
 def check_flag(shape: Shape, name: str) -> bool:
     """Value of a flag of a shape; refuse one that is neither 0 nor 1.
 

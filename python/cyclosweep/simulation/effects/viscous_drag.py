@@ -9,7 +9,12 @@ import cyclosweep._core as _core
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.slip_path import BY_READING, between_and_by_reading, check_flag
+from cyclosweep.simulation.effects.slip_path import (
+    BY_READING,
+    between_and_by_reading,
+    check_flag,
+    otherwise_read,
+)
 
 SHORTEST_LAG = 0.1
 """Lag below which nothing changes any more, in steps between samples."""
@@ -102,8 +107,7 @@ class ViscousDrag(Effect):
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
         """The other rates, another approach to the runs, and drag that thins above some rate."""
-        between, by_reading = between_and_by_reading(shape)
-        found = [between if BY_READING in shape else by_reading] if _is_coarse(history) else []
+        found = [otherwise_read(shape)] if _is_coarse(history) else []
         if APPROACH in shape:
             found.append({k: v for k, v in shape.items() if k != APPROACH})
         else:
