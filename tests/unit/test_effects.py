@@ -158,14 +158,14 @@ PARAMETERS = {
     "load_dependent_friction": {"slip_deg", "scatter", "skew"},
     "contact_stiffening": {"turn_nm", "power", "squeeze_nm", "cubic_nm"},
     "clearance_takeup": {"first_nm", "range_nm", "middle_nm", "spread"},
-    "overload_softening": {"onset_nm", "power"},
+    "overload_softening": {"onset_nm", "power", "spread"},
     "datum_drift": {"memory"},
-    "creep": {"time_constant_s"},
+    "creep": {"time_constant_s", "power"},
     "phase_dependent_compliance": {"travel_order_1"},
     "transmission_error": {"travel_order_1"},
     "thermal_drift": {"delay_s"},
     "viscous_drag": {"power"},
-    "load_asymmetry": {"power", "limit_nm"},
+    "load_asymmetry": {"power", "limit_nm", "edge_nm"},
     "dial_eccentricity": set(),
 }
 """What the fit refines of each effect, of the shapes on the grid."""

@@ -219,6 +219,17 @@ def test_offsets_at_positions_that_never_return_may_be_either() -> None:
     assert names(found) == []
 
 
+def test_a_transmission_error_that_fits_any_offsets_is_not_named() -> None:
+    """Three orders have as many amplitudes as seven runs have offsets: it was named for certain."""
+    crank = np.array([154.0, 122.0, 267.0, 104.0, 293.0, 164.0, 135.0])
+    turn = np.radians(crank)
+    offsets = 0.9 * np.cos(turn) - 0.6 * np.sin(2.0 * turn) + 0.3 * np.cos(3.0 * turn)
+    found = diagnose(recorded(offsets, loops(np.full(7, 20.0), crank_deg=crank), 0, 0.02))
+    assert found.verdict == "UNKNOWN_PHYSICS"
+    assert not found.effects
+    assert "offset that goes with the position" in found.statement
+
+
 def diagnose_without(recording: cs.Recording, effect: str) -> cs.Diagnosis:
     """Verdict of a library that lacks an effect."""
     return cs.diagnose(recording, cs.Drive.reference_87(), full=False, without=(effect,))

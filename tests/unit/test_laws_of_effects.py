@@ -9,6 +9,7 @@ from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.effects.base import Shape
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import long_recording
 from tests.support.searches import search_of
 from tests.unit.test_effects import history
 
@@ -157,7 +158,7 @@ def test_creep_is_no_slower_than_a_few_runs() -> None:
     h = history()
     assert h.time_s is not None
     longest = max(np.ptp(h.time_s[h.run == run]) for run in np.unique(h.run))
-    (parameter,) = BY_NAME["creep"].shape_parameters
+    parameter, _ = BY_NAME["creep"].shape_parameters
     assert BY_NAME["creep"].shape_bounds(parameter, h).upper <= 3.0 * longest + 1e-9
 
 
@@ -178,6 +179,78 @@ def test_a_tilted_dial_errs_twice_a_turn() -> None:
     assert dial.is_recognised(recorded, both, np.array([1.0, 1.0, 0.5, 0.0]))
 
 
+def test_joints_part_about_the_mean_of_their_onsets() -> None:
+    load = np.array([1e-6, 5.0, 60.0])
+    found = slope("overload_softening", {"onset_nm": 5.0, "spread": 0.2}, load)
+    np.testing.assert_allclose(10.0 * found, [0.0, 0.5, 1.0], atol=7e-3)
+
+
+def test_joints_that_part_one_after_another_soften(programme: tuple[Floats, Floats]) -> None:
+    """A power of the overload missed a twentieth of such a curve, and nothing was named."""
+    torque, run = programme
+    over = (np.abs(torque) - 14.0) / 1.5
+    found = made(np.sign(torque) * 0.7 * np.logaddexp(0.0, over), torque, run)
+    assert [effect["name"] for effect in found.effects] == ["overload_softening"]
+
+
+@pytest.mark.parametrize("law", ["edge", "bedding"])
+def test_one_flank_that_bears_otherwise_is_an_asymmetry(
+    programme: tuple[Floats, Floats], law: str
+) -> None:
+    """The first was unknown before, the second a stiffening and a side load, one half each."""
+    torque, run = programme
+    load = np.maximum(-torque, 0.0)
+    curve = 0.2 * np.maximum(load - 9.0, 0.0) if law == "edge" else -2.0 * (load / TOP) ** 0.6
+    found = made(curve, torque, run)
+    assert [effect["name"] for effect in found.effects] == ["load_asymmetry"]
+    assert found.verdict == "IDENTIFIED"
+
+
+@pytest.mark.parametrize("kinds", [("clearance", "compliance"), ("datum", "compliance")])
+def test_what_is_warm_may_change_together(kinds: tuple[str, str]) -> None:
+    thermal = BY_NAME["thermal_drift"]
+    one, other = ({kind: 1.0} for kind in kinds)
+    assert thermal.combined(one, other) == dict.fromkeys(kinds, 1.0)
+    late = {**other, "delay_s": 100.0}
+    assert thermal.combined(one, late) == {**dict.fromkeys(kinds, 1.0), "delay_s": 100.0}
+    assert thermal.combined(late, late) is None
+    sizes = {"datum": 0.05, "clearance": 0.1, "compliance": 0.01}
+    shape = dict.fromkeys(kinds, 1.0)
+    value = EffectValue("thermal_drift", shape, tuple(sizes[kind] for kind in kinds))
+    found = cs.diagnose(long_recording(3_000, (value,)), cs.Drive.reference_87(), full=False)
+    assert [effect["name"] for effect in found.effects] == ["thermal_drift"]
+    assert found.verdict == "IDENTIFIED"
+
+
+def test_creep_may_grow_with_a_power_of_the_load() -> None:
+    h = history()
+    creep = BY_NAME["creep"]
+    plain, even = {"time_constant_s": 30.0}, {"power": 1.0, "time_constant_s": 30.0}
+    np.testing.assert_allclose(creep.columns(h, even), creep.columns(h, plain))
+    assert h.time_s is not None
+    held = np.full(400, 5.0)
+    row = np.arange(400)
+    known = {"applied_nm": held, "elastic_nm": held, "angle_deg": held, "side": np.ones(400)}
+    rest = {"run": 0 * row, "restart": row == 0, "time_s": np.linspace(0.0, 3e3, 400)}
+    one = history(**known, **rest, crank_deg=None, temperature_c=None)
+    ends = [creep.columns(one, {"power": p, "time_constant_s": 30.0})[-1, 0] for p in (1.0, 3.0)]
+    np.testing.assert_allclose(ends, [5.0, 5.0 * 0.25], rtol=1e-6)
+    spectrum = creep.combined({"power": 2.0, "tau_1_s": 9.0}, {"time_constant_s": 50.0})
+    assert spectrum == {"power": 2.0, "tau_1_s": 9.0, "tau_2_s": 50.0}
+    assert creep.known_shape(spectrum) == spectrum
+    assert creep.reduced(spectrum, np.array([True, False])) == {"power": 2.0, "tau_1_s": 50.0}
+
+
+def test_creep_of_a_power_of_the_load_is_creep() -> None:
+    """It was a friction that grows with the load, and a softening, before."""
+    shape = {"power": 2.6, "time_constant_s": 12.0}
+    value = EffectValue("creep", shape, (0.05,))
+    found = cs.diagnose(long_recording(3_000, (value,)), cs.Drive.reference_87(), full=False)
+    (effect,) = found.effects
+    assert (found.verdict, effect["name"]) == ("IDENTIFIED", "creep")
+    assert effect["parameters"]["power"]["estimate"] == pytest.approx(2.6, rel=0.03)
+
+
 def test_a_side_load_is_no_tilted_dial(programme: tuple[Floats, Floats]) -> None:
     torque, run = programme
     found = made(2.0 * (np.abs(torque) / TOP) ** 2, torque, run)
@@ -186,7 +259,8 @@ def test_a_side_load_is_no_tilted_dial(programme: tuple[Floats, Floats]) -> None
 
 @pytest.mark.parametrize("exponent", [5.0, 8.0])
 def test_softening_by_ramberg_and_osgood_is_within_the_library(exponent: float) -> None:
-    (power,) = (each for each in find("overload_softening").shape_parameters if not each.unit)
+    parameters = {each.name: each for each in find("overload_softening").shape_parameters}
+    power = parameters["power"]
     assert power.lower <= exponent <= power.upper
     shape = {"onset_nm": 0.0, "power": exponent}
     search = search_of(EffectValue("overload_softening", shape, (2.0 / 3.1**exponent,)))

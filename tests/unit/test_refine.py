@@ -77,3 +77,10 @@ def test_a_search_fits_no_structure_twice_from_the_same_parent(
     monkeypatch.setattr(Search, "extend", counted)
     search.run()
     assert len(asked) == len(set(asked)) > 3
+
+
+@pytest.mark.parametrize(("rival", "asked"), [(3e4, 4), (0.9e4, 2)])
+def test_refinement_is_given_up_where_it_stays_far_above_a_rival(rival: float, asked: int) -> None:
+    work = Wandering([9e4, 5e4, 4e4, 4e4])
+    refine(cast(JointFit, work), np.zeros(1), BOUNDS, 6, rival)
+    assert len(work.seen) == asked

@@ -212,7 +212,9 @@ def _classes(answer: Answer) -> str:
         if others:
             text += f" (listed effects of this class: {listed(others)})"
         words.append(text)
-    said = "" if answer.verdict == "INSUFFICIENT_DATA" else "; no law of the vocabulary fits it"
+    said = (
+        "" if answer.verdict == "INSUFFICIENT_DATA" else "; no law of the vocabulary stands for it"
+    )
     return f" Its class of behaviour is clear: {' and '.join(words)}{said}."
 
 

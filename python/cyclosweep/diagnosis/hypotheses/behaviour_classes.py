@@ -11,7 +11,7 @@ import numpy as np
 
 import cyclosweep._core as _core
 from cyclosweep.diagnosis.hypotheses.shape_columns import hats, lapse, positions, rates
-from cyclosweep.simulation.effects.base import FEWEST_STEPS
+from cyclosweep.simulation.effects.bounds import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Floats, History
 
 ODD_CURVE = "odd curve of the torque"

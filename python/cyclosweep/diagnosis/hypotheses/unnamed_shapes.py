@@ -25,7 +25,7 @@ from cyclosweep.diagnosis.hypotheses.shape_columns import (
     softer_after,
     wider_after,
 )
-from cyclosweep.simulation.effects.base import FEWEST_STEPS
+from cyclosweep.simulation.effects.bounds import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 

@@ -22,6 +22,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.candidate import FURTHER
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvidence
+from cyclosweep.diagnosis.identify.dial_check import without_other_dials
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
     BOTH_CURVES,
@@ -35,7 +36,10 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     own_classes,
 )
 from cyclosweep.diagnosis.identify.loop_check import is_without_loop
-from cyclosweep.diagnosis.identify.run_offsets_check import without_leftovers
+from cyclosweep.diagnosis.identify.run_offsets_check import (
+    without_any_offsets,
+    without_leftovers,
+)
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.noise import orthonormal
@@ -135,7 +139,8 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
         for indices, own in groups
     ]
     checks = [check for group in found for check in group]
-    return without_leftovers(fitted, classes, checks)
+    judged = without_any_offsets(fitted, without_leftovers(fitted, classes, checks))
+    return without_other_dials(fitted, judged)
 
 
 def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:

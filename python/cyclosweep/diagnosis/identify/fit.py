@@ -2,18 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
-from cyclosweep.diagnosis.identify.fitted_structure import (
-    FittedStructure,
-    LeftOutPrediction,
-    Prediction,
-    TorqueZero,
-)
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.joint_fit import JointFit
 from cyclosweep.diagnosis.identify.path_law import path_law
+from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction, Prediction, TorqueZero
 from cyclosweep.diagnosis.identify.refine import refine
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.terms import Term
@@ -40,6 +37,14 @@ class ContactFit(FittedStructure):
     def baseline_prediction(self, baseline: FittedStructure) -> Prediction:
         """Twist of all rows by the calibrated published model on the recorded flank."""
         return baseline.prediction
+
+    @cached_property
+    def loss(self) -> float:
+        """Twice the log likelihood that the fit lacks to a perfect one."""
+        if not self.noise.forgets_far_off:
+            return self.chi2
+        use = self.problem.fitted
+        return self.noise.misfit(self.problem.angle_deg[use], self.mean_deg[use])
 
     @property
     def independent_share(self) -> float:
@@ -194,6 +199,7 @@ def fit(
     start: FittedStructure | None = None,
     *,
     rounds: int = 6,
+    rival: FittedStructure | None = None,
 ) -> ContactFit:
     """Fit baseline and terms jointly by maximum likelihood.
 
@@ -209,6 +215,8 @@ def fit(
         A fit of a similar structure, whose path the iteration starts from.
     rounds : int
         Most iterations of the refinement.
+    rival : FittedStructure, optional
+        A fit that this one is to come near, else it is given up early, see `refine.HOPELESS`.
 
     Returns
     -------
@@ -231,7 +239,8 @@ def fit(
         lower = np.where(np.isneginf(lower), -1e6, lower)
         width = np.minimum(upper - lower, 1e6)
         values = np.clip(values, lower + 1e-6 * width, upper - 1e-6 * width)
-        values = refine(work, values, (lower, upper), rounds)
+        near = np.inf if rival is None else work.misfit_of(rival.mean_deg)
+        values = refine(work, values, (lower, upper), rounds, near)
     else:
         work.expand_at(values)
     found = work.linearise(values)

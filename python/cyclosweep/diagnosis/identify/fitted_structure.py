@@ -15,6 +15,7 @@ from typing import Self
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction, Prediction, TorqueZero
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
@@ -25,83 +26,6 @@ from cyclosweep.simulation.simulate import Model
 
 LEAST_OF_SLOPE = 0.1
 """Least compliance of the line over that of the flanks, with which it is still the drive's."""
-
-
-@dataclass(frozen=True, eq=False)
-class Prediction:
-    """Twist that a structure predicts, and how far it is from the recording.
-
-    Attributes
-    ----------
-    angle_deg : ndarray, shape (n,)
-        Twist of all rows [deg].
-    error_deg : float
-        Root mean square of the difference on the fitted rows [deg].
-    """
-
-    angle_deg: Floats
-    error_deg: float
-
-
-@dataclass(frozen=True, eq=False)
-class LeftOutPrediction:
-    """Twist of rows that were not fitted, by the baseline and by a structure.
-
-    Attributes
-    ----------
-    label : str
-        What was left out.
-    rows : ndarray of bool, shape (n,)
-        The rows that were left out.
-    kept_runs : bool
-        Whether they are runs kept for this purpose, rather than left out in turn.
-    baseline_deg, structure_deg : ndarray, shape (n,)
-        Predicted twist of all rows [deg].
-    log_likelihood_ratio : float
-        Log likelihood of the rows under the structure over that under a baseline fitted to them;
-        NaN where the residual is error of the model and has no likelihood.
-    known_flank : KnownFlankPrediction or None
-        The same with the flank in contact read off the recording; None where it is so anyway.
-    """
-
-    label: str
-    rows: Flags
-    kept_runs: bool
-    baseline_deg: Floats
-    structure_deg: Floats
-    log_likelihood_ratio: float
-    known_flank: "KnownFlankPrediction | None" = None
-
-
-@dataclass(frozen=True, eq=False)
-class KnownFlankPrediction:
-    """Twist by baseline and structure where the flank in contact is read off the recording.
-
-    Attributes
-    ----------
-    rows : ndarray of bool, shape (n,)
-        Rows in contact that were left out.
-    baseline_deg, structure_deg : ndarray, shape (n,)
-        Predicted twist of all rows [deg].
-    """
-
-    rows: Flags
-    baseline_deg: Floats
-    structure_deg: Floats
-
-
-@dataclass(frozen=True, slots=True)
-class TorqueZero:
-    """Torque that the sensor reads without load.
-
-    Attributes
-    ----------
-    value_nm, std_error_nm : float
-        Estimate and its standard error [N m].
-    """
-
-    value_nm: float
-    std_error_nm: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +70,14 @@ class FittedStructure(ABC):
     tangent: Floats
     sensitivity: Floats
     fit_parameters: tuple[FitParameter, ...]
+
+    @property
+    def loss(self) -> float:
+        """Twice the log likelihood that the fit lacks to a perfect one.
+
+        Chi-squared is no such measure under heavy tails: there it forgets what is far off.
+        """
+        return self.chi2
 
     @property
     def names(self) -> tuple[str, ...]:

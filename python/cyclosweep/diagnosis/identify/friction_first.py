@@ -37,10 +37,8 @@ SAME_OPTIMUM = 0.01
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
-FIRST_LOOK = 6
-"""Iterations after which a fit that still leaves"""
-HOPELESS = 3.0
-"""times the error of another one is given up."""
+HOPELESS = 2.0
+"""Error of a fit over that of the best one from which it is no rival, whatever it is charged."""
 
 
 def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
@@ -73,7 +71,7 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
         return None
     offered = [_prune(noise, best)]
     for term in _freer_terms(search, *STARTS[0]):
-        alone = _fitted(noise, [term], baseline) if term.slips else None
+        alone = _fitted(noise, [term], baseline, best) if term.slips else None
         offered += [] if alone is None else [alone]
     best = from_better_start(noise, min(offered, key=cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
@@ -114,33 +112,8 @@ def _does_as_well(
     -------
     bool
     """
-    other = _fitted_unless_hopeless(noise, terms, before, best)
+    other = _fitted(noise, terms, before, best)
     return other is not None and cost(other) <= cost(best)
-
-
-def _fitted_unless_hopeless(
-    noise: Noise, terms: Sequence[Term], before: FittedStructure, best: FittedStructure
-) -> FittedStructure | None:
-    """Fit terms jointly as `_fitted` does; None where a first look leaves far more than the best.
-
-    Parameters
-    ----------
-    noise : Noise
-        Noise and model error together.
-    terms : sequence of Term
-    before : FittedStructure
-        The fit from which it goes on.
-    best : FittedStructure
-        The best fit so far.
-
-    Returns
-    -------
-    FittedStructure or None
-    """
-    begun = fit(best.problem, noise, tuple(terms), before, rounds=FIRST_LOOK)
-    if begun.rmse_deg >= HOPELESS * best.rmse_deg:
-        return None
-    return _fitted(noise, begun.terms, begun)
 
 
 def _drags(search: Search) -> list[list[Term]]:
@@ -255,8 +228,13 @@ def usual_effects(
     return terms
 
 
-def _fitted(noise: Noise, terms: Sequence[Term], before: FittedStructure) -> FittedStructure | None:
-    """Fit terms jointly, less those whose amplitude has the wrong sign; None where none is left.
+def _fitted(
+    noise: Noise,
+    terms: Sequence[Term],
+    before: FittedStructure,
+    rival: FittedStructure | None = None,
+) -> FittedStructure | None:
+    """Fit terms jointly, less those whose amplitude has the wrong sign.
 
     Parameters
     ----------
@@ -265,14 +243,19 @@ def _fitted(noise: Noise, terms: Sequence[Term], before: FittedStructure) -> Fit
     terms : sequence of Term
     before : FittedStructure
         The fit from which it goes on.
+    rival : FittedStructure, optional
+        The best fit so far.
 
     Returns
     -------
     FittedStructure or None
+        None where no term is left, or far more than by the rival.
     """
     if not terms:
         return None
-    found = fit(before.problem, noise, tuple(terms), before, rounds=CONVERGED)
+    found = fit(before.problem, noise, tuple(terms), before, rounds=CONVERGED, rival=rival)
+    if rival is not None and found.rmse_deg > HOPELESS * rival.rmse_deg:
+        return None
     return with_right_signs(found, whole_effects=True)
 
 
@@ -308,7 +291,7 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
             replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
             for term in best.terms
         ]
-        other = _fitted(noise, begun, best)
+        other = _fitted(noise, begun, best, best)
         least = cost(best) - charge if turned is best else cost(turned)
         if other is not None and cost(other) < least:
             turned = other
@@ -335,7 +318,7 @@ def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
     fits = [best]
     for left_out in slipping:
         rest = [term for term in best.terms if term is not left_out]
-        without = _fitted_unless_hopeless(noise, rest, best, best)
+        without = _fitted(noise, rest, best, best)
         fits += [] if without is None else [without]
     return min(fits, key=cost)
 

@@ -288,8 +288,12 @@ class JointFit:
                 if settled:
                     break
         chi2 = float(self.target @ self.target)
-        misfit = self.noise.misfit(self.angle, self.mean[self.use])
+        misfit = self.misfit_of(self.mean)
         return Expansion(chi2, misfit, values, self.history, self.mean, self.law, self.terms)
+
+    def misfit_of(self, mean: Floats) -> float:
+        """Twice the log likelihood that a modelled twist [deg] lacks to a perfect fit."""
+        return self.noise.misfit(self.angle, mean[self.use])
 
     def return_to(self, before: Expansion) -> None:
         """Move the point back to one about which the likelihood was expanded before."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
+from cyclosweep.diagnosis.hypotheses.library import Signature
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
@@ -61,11 +62,11 @@ def with_better_laws(search: Search) -> FittedStructure:
         if _is_dial(term):
             tried += list(_pairs(search, tried))
             tried += [] if own is None else [_in_whole_class(search, own)]
-        if own is not None and own.fit.chi2 < fitted.chi2 - 2.0 * CLEARLY:
+        if own is not None and own.fit.loss < fitted.loss - 2.0 * CLEARLY:
             # Beside everything else the accepted law has been given more freedom.
             fitted = own.fit
         best = max(tried, key=lambda child: child.score, default=None)
-        if best is None or not best.all_recognised or best.fit.chi2 >= fitted.chi2:
+        if best is None or not best.all_recognised or best.fit.loss >= fitted.loss:
             continue
         if any(makes_others_grow(best.fit, k, fitted) for k in range(len(best.fit.terms))):
             continue
@@ -138,15 +139,21 @@ def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:
     ------
     Candidate
     """
-    even = [each for each in tried if own_classes(each.fit.terms[-1]) == (EVEN_CURVE,)]
-    best = max(even, key=lambda each: each.score, default=None)
-    if best is None:
-        return
-    odd = [each.fit.terms[-1] for each in tried if own_classes(each.fit.terms[-1]) == (ODD_CURVE,)]
-    for term in odd:
-        pair = _extended(search, best, term.name)
-        if pair is not None:
-            yield pair
+    names = {each.fit.terms[-1].name for each in tried}
+    even = [name for name in names if _is_even(search.library.effects[name])]
+    for odd in tried:
+        if own_classes(odd.fit.terms[-1]) != (ODD_CURVE,):
+            continue
+        for name in even:
+            pair = _extended(search, odd, name)
+            if pair is not None:
+                yield pair
+
+
+def _is_even(signature: Signature) -> bool:
+    """Whether an effect is an even curve of the torque, but for forms of one flank alone."""
+    assert signature.effect is not None
+    return own_classes(Term(signature.effect, signature.shape)) == (EVEN_CURVE,)
 
 
 def left_beyond_noise(fitted: FittedStructure) -> float:

@@ -102,6 +102,6 @@ def best_placed(fitted: FittedStructure) -> FittedStructure:
         moved[index] = replace(term, in_series=not term.in_series)
         other = with_right_signs(fit(fitted.problem, fitted.noise, moved, fitted))
         charge = IN_SERIES_PENALTY if moved[index].in_series else -IN_SERIES_PENALTY
-        if other is not None and other.chi2 + 2.0 * charge < fitted.chi2:
+        if other is not None and other.loss + 2.0 * charge < fitted.loss:
             fitted = other
     return fitted

@@ -21,11 +21,19 @@ MOST_RISES = 2
 """Expansions that may each leave more than the one before, until a refinement is given up."""
 FAR_ABOVE = 2.0
 """The same at once, where an expansion leaves so many times what the best one did."""
+HOPELESS = 5.0
+"""Misfit over that of a rival, above which a refinement is given up after its first iterations."""
 SETTLED = 1e-2
 """Largest move of a parameter, in usual changes, that is the end of a refinement."""
 
 
-def refine(work: JointFit, start: Floats, bounds: tuple[Floats, Floats], rounds: int) -> Floats:
+def refine(
+    work: JointFit,
+    start: Floats,
+    bounds: tuple[Floats, Floats],
+    rounds: int,
+    rival: float = np.inf,
+) -> Floats:
     """Move the nonlinear parameters of a fit by least squares until they settle.
 
     Path and elastic law may drive each other ever further, as where two terms make up for each
@@ -41,6 +49,8 @@ def refine(work: JointFit, start: Floats, bounds: tuple[Floats, Floats], rounds:
         Lower and upper bounds.
     rounds : int
         Most iterations of a refinement.
+    rival : float
+        Misfit of another fit, which this one is to come near; see `HOPELESS`.
 
     Returns
     -------
@@ -62,6 +72,8 @@ def refine(work: JointFit, start: Floats, bounds: tuple[Floats, Floats], rounds:
         best = min(best, here, key=lambda each: each.misfit)
         rises += here.misfit - before.misfit > _least_change(here.misfit)
         if rises >= MOST_RISES or here.misfit > FAR_ABOVE * best.misfit:
+            break
+        if best.misfit > HOPELESS * rival:
             break
         gained_little = abs(before.chi2 - here.chi2) < _least_change(here.chi2)
         if moved < SETTLED or (count and gained_little):

@@ -9,10 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION, RUN
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawBeside, LawCheck, own_classes
+from cyclosweep.diagnosis.identify.law_in_class import (
+    LawBeside,
+    LawCheck,
+    amplitude_count,
+    own_classes,
+)
+from cyclosweep.simulation.effects.orders import travels
 
 
 def without_leftovers(
@@ -55,6 +61,39 @@ def without_leftovers(
         # The others took part of it away; it is judged again without them.
         found[largest] = replace(found[largest], holds=True)
     return tuple(found[check.name] for check in checks)
+
+
+def without_any_offsets(
+    fitted: FittedStructure, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw a law of the position with as many amplitudes as there are offsets of runs.
+
+    It fits whatever offsets, and so says nothing of where they come from.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    offsets = fitted.history.run_count - 1
+    saturated = {
+        term.name
+        for k, term in enumerate(fitted.terms)
+        if term.effect is not None
+        and own_classes(term) == (POSITION,)
+        and not travels(term.shape)
+        and amplitude_count(fitted, k) >= offsets
+    }
+    return tuple(
+        replace(check, behaviour=RUN, holds=False) if check.name in saturated else check
+        for check in checks
+    )
 
 
 def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole: str) -> bool:

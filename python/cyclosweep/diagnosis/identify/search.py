@@ -206,11 +206,11 @@ class Search:
         best: Candidate | None = None
         for term, rank, penalty in starting_terms(parent, hypothesis):
             terms = (*parent.fit.terms, term)
-            fitted = fit(self.problem, self.noise, terms, parent.fit)
+            fitted = fit(self.problem, self.noise, terms, parent.fit, rival=parent.fit)
             joint: FittedStructure | None = with_right_signs(fitted)
             if joint is not None and term.slips:
                 joint = best_placed(joint)
-            if joint is None or joint.chi2 > parent.fit.chi2:
+            if joint is None or joint.loss > parent.fit.loss:
                 # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue
             gain = self.gain(parent.fit, joint)
@@ -266,12 +266,12 @@ class Search:
 
     def _room(self, candidate: Candidate) -> float:
         """Evidence that a sufficient structure may leave in its residual."""
-        explained = max(self.baseline.fit.chi2 - candidate.fit.chi2, 0.0)
+        explained = max(self.baseline.fit.loss - candidate.fit.loss, 0.0)
         return max(self.threshold, min(0.5 * SHAPE_ERROR**2 * explained, MOST_SHAPE_ERROR))
 
     def _excess(self, fitted: FittedStructure) -> float:
         """Chi-squared of a residual beyond what noise explains."""
-        return max(fitted.chi2 - self.noise.freedom, 0.0)
+        return max(fitted.loss - fitted.noise.loss_of_row * self.noise.freedom, 0.0)
 
     def gain(self, before: FittedStructure, after: FittedStructure) -> float:
         """Twice the log-likelihood gained from one fit to the next.
@@ -285,7 +285,7 @@ class Search:
         -------
         float
         """
-        drop = before.chi2 - after.chi2
+        drop = before.loss - after.loss
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
     def _enriched(self, candidate: Candidate) -> Candidate | None:

@@ -212,10 +212,12 @@ def search_in_stages(
     if len(last.start.fit.terms) < len(accepted):
         last = _stage(searched, flexible, fitted)
     last.rivals_of_start = rivals
-    return _with_settled_laws(searched, flexible, last)
+    return _with_settled_laws(searched, flexible, last, say)
 
 
-def _with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Search:
+def _with_settled_laws(
+    searched: Search, flexible: Floats, last: Search, say: Callable[[str], None]
+) -> Search:
     """Settle the laws of what the stages accepted, once all of it is known.
 
     Parameters
@@ -226,6 +228,8 @@ def _with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Sear
         Columns of a flexible model, see `visibility`.
     last : Search
         The search of the last stage.
+    say : callable
+        Called with a few words before each long step.
 
     Returns
     -------
@@ -240,6 +244,9 @@ def _with_settled_laws(searched: Search, flexible: Floats, last: Search) -> Sear
         freer = with_freer_laws(last, last.start).fit
         if freer is not last.start.fit:
             last = _stage(searched, flexible, freer)
+            if not last.suffices(last.start):
+                # What a freer law leaves may be another thing than what the law left.
+                last.run(say)
     last.rivals_of_start = [each for each in rivals if each[0].names != last.start.names]
     return last
 

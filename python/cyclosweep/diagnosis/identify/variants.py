@@ -110,5 +110,5 @@ def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructu
     if abs(ahead) <= PARAMETER_CHARGE:
         # Both are within the noise, or about as far beyond it.
         more = len(other.fit_parameters) - len(best.fit_parameters)
-        ahead = best.chi2 - other.chi2 - REFINEMENT_CHARGE * more
+        ahead = best.loss - other.loss - REFINEMENT_CHARGE * more
     return other if ahead > PARAMETER_CHARGE else best

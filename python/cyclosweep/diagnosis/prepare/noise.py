@@ -6,15 +6,16 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import cholesky_banded
 from scipy.linalg.lapack import dtbtrs
-from scipy.special import ndtr
+from scipy.special import digamma, ndtr
 
 from cyclosweep.simulation.effects.history import Floats
 
 INDEPENDENT_PIECES = 40.0
 """Rough number of independent pieces of a residual that is error of the model."""
-FAR_OFF = 2.0
-"""Median of a residual over the noise from which a fit is far off, and not a few rows outliers. The
-score of heavy tails, which forgets rows that are far off, would then find the worst fit best."""
+FAR_OFF = 1.5
+"""Loss of a fit over that of the noise alone from which the fit is far off, and not a few rows
+outliers. The score of heavy tails, which forgets rows that are far off, would then find the worst
+fit best."""
 COARSE_STEP = 3.5
 """Resolution steps above this many standard deviations need the interval likelihood."""
 
@@ -163,10 +164,16 @@ class Noise:
         if np.isfinite(self.tail):
             slope, square = self.score_moments
             root = np.sqrt(square)
-            far = len(white) > 0 and float(np.median(np.abs(white))) > FAR_OFF
-            shape = student_deviance if far else student_score
-            return shape(white, self.tail)[0] / root, even * (slope / root)
+            found = student_deviance(white, self.tail)[0]
+            if float(found @ found) <= FAR_OFF * self.loss_of_row * len(white):
+                found = student_score(white, self.tail)[0]
+            return found / root, even * (slope / root)
         return white, even
+
+    @property
+    def forgets_far_off(self) -> bool:
+        """Whether rows that are far off count for less in `residual` than they are unlikely."""
+        return self.step_deg == 0.0 and bool(np.isfinite(self.tail))
 
     def misfit(self, angle: Floats, mean: Floats) -> float:
         """Twice the log likelihood that a mean lacks to a perfect one.
@@ -188,6 +195,14 @@ class Noise:
         if np.isfinite(self.tail):
             white = student_deviance(white, self.tail)[0]
         return float(white @ white)
+
+    @cached_property
+    def loss_of_row(self) -> float:
+        """Mean of a row's part of `misfit` where the noise is all there is."""
+        if not self.forgets_far_off:
+            return 1.0
+        half = 0.5 * self.tail
+        return float((self.tail + 1.0) * (digamma(half + 0.5) - digamma(half)))
 
     def design(self, columns: Floats, weight: Floats) -> Floats:
         """Whitened columns in the unit of the residual.

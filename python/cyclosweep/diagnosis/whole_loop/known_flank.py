@@ -11,8 +11,8 @@ from functools import cached_property
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
-from cyclosweep.diagnosis.identify.fitted_structure import (
-    FittedStructure,
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.prediction import (
     KnownFlankPrediction,
     LeftOutPrediction,
     Prediction,

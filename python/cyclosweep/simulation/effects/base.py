@@ -1,25 +1,25 @@
 """What every effect is: physics in words, its parameters, and its response to a load history."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import ClassVar
 
-import numpy as np
-
-from cyclosweep.errors import InputError
+from cyclosweep.simulation.effects.bounds import within_load, within_recording
 from cyclosweep.simulation.effects.former_names import FormerNames
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.effects.parameters import Parameter, Shape, ShapeForm, listed, spread
+from cyclosweep.simulation.effects.parameters import (
+    Parameter,
+    Shape,
+    ShapeForm,
+    in_form,
+    listed,
+    spread,
+)
 from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
 
 __all__ = ["Effect", "Parameter", "Shape", "ShapeForm", "listed", "spread"]
 
 COLUMNS = {"time_s": "a clock", "crank_deg": "the mesh position", "temperature_c": "a temperature"}
 """What an effect may need of a recording, in words."""
-FEWEST_STEPS = 3.0
-"""Steps between samples below which a delay cannot be told from drag."""
-MOST_FRICTION = 0.95
-"""Largest share of the transmitted torque that friction may take."""
 
 
 class Effect(FormerNames):
@@ -101,9 +101,6 @@ class Effect(FormerNames):
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Shape parameter with bounds as narrow as the recording allows.
 
-        Loads lie between a thousandth and three times the largest one; times are at least a few
-        steps between samples.
-
         Parameters
         ----------
         parameter : Parameter
@@ -116,18 +113,10 @@ class Effect(FormerNames):
         Parameter
             The same with other bounds.
         """
-        lower, upper = parameter.lower, parameter.upper
-        if parameter.unit == "N m":
-            top = history.largest_torque_nm
-            lower, upper = max(lower, 1e-3 * top), min(upper, 3.0 * top)
-        elif parameter.unit == "s":
-            lower = max(lower, FEWEST_STEPS * history.usual_step_s)
-        return replace(parameter, lower=lower, upper=upper) if lower < upper else parameter
+        return within_recording(parameter, history)
 
     def amplitude_bounds(self, history: History, shape: Shape) -> tuple[Parameter, ...]:
         """Amplitudes with bounds as narrow as the recording allows.
-
-        Friction takes no more than the largest torque, and less than what is transmitted.
 
         Parameters
         ----------
@@ -143,12 +132,7 @@ class Effect(FormerNames):
         amplitudes = self.amplitudes(shape)
         if not self.slips:
             return amplitudes
-        plain, loaded = self.friction_limits(shape)
-        most = min(
-            history.largest_torque_nm / plain if plain > 0 else np.inf,
-            MOST_FRICTION / loaded if loaded > 0 else np.inf,
-        )
-        return tuple(replace(each, upper=min(each.upper, most)) for each in amplitudes)
+        return within_load(amplitudes, self.friction_limits(shape), history)
 
     def friction_limits(self, shape: Shape) -> tuple[float, float]:
         """Limit of a friction of unit amplitude, for effects that slip.
@@ -225,24 +209,43 @@ class Effect(FormerNames):
         """
         own = tuple(parameter.name for parameter in self.shape_parameters)
         others = tuple(name for name in shape if name not in own)
-        known = self.forms or (ShapeForm(own, others),)
-        for form in known:
-            names = form.ordered(shape)
-            if names is not None:
-                return {name: shape[name] for name in names}
-        expected = ", or ".join(map(str, known))
-        raise InputError(f"shape: found {' '.join(shape) or 'nothing'}, expected {expected}")
+        return in_form(shape, self.forms or (ShapeForm(own, others),))
 
     def fewer_amplitudes(self, shape: Shape) -> bool:
         """Whether a model may hold only the first of the amplitudes that the shape names."""
         return False
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes alike at first sight, between which only a joint fit decides."""
+        """Shapes alike at first sight, between which only a joint fit decides.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+
+        Returns
+        -------
+        sequence of mapping
+            The shape itself is one of them.
+        """
         return [shape]
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes unlike that of an accepted effect in one respect, to be tried in its place."""
+        """Shapes unlike that of an accepted effect in one respect, to be tried in its place.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Fitted shape.
+
+        Returns
+        -------
+        sequence of mapping
+        """
         return self.variants(history, shape)
 
     def penalty(self, shape: Shape) -> float:

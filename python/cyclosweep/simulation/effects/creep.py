@@ -6,25 +6,23 @@ from dataclasses import replace
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.simulation.effects.base import (
-    FEWEST_STEPS,
-    Effect,
-    Parameter,
-    Shape,
-    ShapeForm,
-    listed,
-    spread,
-)
+from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed, spread
+from cyclosweep.simulation.effects.bounds import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 LONGEST = 3.0
 """Longest time constant over the longest run."""
+STEEP = 2.5
+"""Power of the load of creep that grows with it, on the grid of shapes."""
+REFERENCE_NM = 10.0
+"""Load at which a delayed compliance holds that changes with the load [N m]."""
 
 
 class Creep(Effect):
     """Kelvin-Voigt elements in series: their twist follows the torque with time constants.
 
-    One element with a free time constant, or a spectrum of fixed ones, as real materials show.
+    One element with a free time constant, or a spectrum of fixed ones, as real materials show. With
+    `power` the delayed twist grows with that power of the load, as by Findley's law.
     """
 
     name = "creep"
@@ -39,8 +37,12 @@ class Creep(Effect):
     needs = ("time_s",)
     shape_parameters = (
         Parameter("time_constant_s", "s", "time constant of the delayed twist", 1e-6, 1e9, True),
+        Parameter("power", "", "power of the load with which the delayed twist grows", 0.3, 4.0),
     )
-    forms = (ShapeForm(("time_constant_s",)), ShapeForm(numbered="tau_{}_s"))
+    forms = (
+        ShapeForm(("time_constant_s",), ("power",)),
+        ShapeForm(optional=("power",), numbered="tau_{}_s"),
+    )
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Time constants from a few samples to the length of the longest run."""
@@ -48,9 +50,9 @@ class Creep(Effect):
         shortest = min(max(FEWEST_STEPS * history.usual_step_s, longest / 2000.0), longest / 4.0)
         if not longest > 0:
             return []
-        single: list[Shape] = [
-            {"time_constant_s": float(t)} for t in np.geomspace(shortest, longest, 8)
-        ]
+        taus = np.geomspace(shortest, longest, 8)
+        single: list[Shape] = [{"time_constant_s": float(tau)} for tau in taus]
+        single += [{"power": STEEP, "time_constant_s": float(tau)} for tau in taus[1::2]]
         series = np.geomspace(shortest, longest, 6)
         spectra = (series[1:4:2], series[1:5], series[2:6])
         return single + [
@@ -66,20 +68,31 @@ class Creep(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Delayed twist for a delayed compliance of 1 deg/(N m) [deg]."""
         assert history.time_s is not None
+        load = history.elastic_nm
+        if "power" in shape:
+            share = np.abs(load) / REFERENCE_NM
+            load = REFERENCE_NM * np.sign(load) * share ** shape["power"]
         return np.column_stack(
             [
-                _core.creep_state(history.elastic_nm, history.time_s, history.restart, float(tau))
-                for tau in shape.values()
+                _core.creep_state(load, history.time_s, history.restart, tau)
+                for tau in _time_constants(shape)
             ]
         )
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Time constants of both."""
-        return listed("tau_{}_s", [*shape.values(), *found.values()], most=5)
+        taus = listed("tau_{}_s", [*_time_constants(shape), *_time_constants(found)], most=5)
+        return None if taus is None else {**_by_power(shape), **taus}
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Time constants of positive weight."""
-        return listed("tau_{}_s", [v for v, w in zip(shape.values(), wrong, strict=True) if not w])
+        right = [tau for tau, off in zip(_time_constants(shape), wrong, strict=True) if not off]
+        taus = listed("tau_{}_s", right)
+        return None if taus is None else {**_by_power(shape), **taus}
+
+    def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Twist that grows with a power of the load; see `Effect.refinements`."""
+        return [] if "power" in shape else [{"power": 1.2, **shape}]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Delayed compliance, one a time constant."""
@@ -89,8 +102,18 @@ class Creep(Effect):
             )
         return tuple(
             Parameter(f"delayed_compliance_{k}", "deg/(N m)", f"compliance after {tau:.3g} s", 0.0)
-            for k, tau in enumerate(shape.values(), 1)
+            for k, tau in enumerate(_time_constants(shape), 1)
         )
+
+
+def _time_constants(shape: Shape) -> list[float]:
+    """Time constants of a shape [s]."""
+    return [float(value) for name, value in shape.items() if name != "power"]
+
+
+def _by_power(shape: Shape) -> dict[str, float]:
+    """Power of the load of a shape, where it has one."""
+    return {"power": shape["power"]} if "power" in shape else {}
 
 
 def _longest_run_s(history: History) -> float:

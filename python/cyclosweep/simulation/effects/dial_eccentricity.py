@@ -17,6 +17,9 @@ TWO_ORDERS = 6.0
 """Log prior odds against an error twice a turn beside that once a turn [nat]."""
 LEAST_PART = 0.03
 """Even over odd part, or odd over even, from which an error is neither."""
+MOST_STEEP = 0.25
+"""Slope of the error in the angle from which it is no dial's: its centre would be off by a quarter
+of its radius."""
 
 
 class DialEccentricity(Effect):
@@ -69,9 +72,12 @@ class DialEccentricity(Effect):
         return TWO_ORDERS if "order_2" in shape else 0.0
 
     def is_recognised(self, history: History, shape: Shape, amplitudes: Floats) -> bool:
-        """Whether an error of two orders is neither an even nor an odd curve of the torque."""
+        """Whether an error of two orders is no larger than a dial's, and neither even nor odd."""
         if "order_2" not in shape:
             return True
+        sizes = np.hypot(amplitudes[::2], amplitudes[1::2])
+        if float(np.radians(sizes) @ (1.0, 2.0)) > MOST_STEEP:
+            return False
         error = self.columns(history, shape) @ amplitudes
         even, odd = _even_and_odd(error, history.load_nm, history.side)
         return min(even, odd) >= LEAST_PART * max(even, odd)

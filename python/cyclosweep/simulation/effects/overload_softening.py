@@ -8,9 +8,16 @@ import numpy as np
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
+SPREAD = (0.03, 0.3)
+"""Logistic scale of the loads at which joints part, over their mean load."""
+
 
 class OverloadSoftening(Effect):
-    """Extra twist ``a (|T| - T0)^p`` above a load `onset_nm`."""
+    """Extra twist ``a (|T| - T0)^p`` above a load `onset_nm`.
+
+    Joints that part one after another about the load ``T0`` give, with ``w`` the `spread` times
+    ``T0``, ``a w (log(1 + exp((|T| - T0)/w)) - log(1 + exp(-T0/w)))``.
+    """
 
     name = "overload_softening"
     physics = (
@@ -26,16 +33,22 @@ class OverloadSoftening(Effect):
     shape_parameters = (
         Parameter("onset_nm", "N m", "load above which the compliance grows", 0.0, 1e6),
         Parameter("power", "", "power of the extra twist", 1.0, 10.0),
+        Parameter("spread", "", "logistic scale of the onsets over their mean", *SPREAD, True),
     )
-    forms = (ShapeForm(("onset_nm", "power")),)
+    forms = (ShapeForm(("onset_nm", "power")), ShapeForm(("onset_nm", "spread")))
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Onsets up to four fifths of the largest load, kinked to cubic."""
+        """Onsets up to four fifths of the largest load, kinked to cubic, or scattered."""
         top = history.largest_torque_nm
-        return [
+        sharp: list[Shape] = [
             {"onset_nm": share * top, "power": power}
             for share in (0.15, 0.3, 0.45, 0.55, 0.65, 0.8)
             for power in (1.0, 1.5, 2.0, 3.0)
+        ]
+        return sharp + [
+            {"onset_nm": share * top, "spread": spread}
+            for share in (0.45, 0.65, 0.8)
+            for spread in (0.06, 0.15)
         ]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
@@ -46,6 +59,11 @@ class OverloadSoftening(Effect):
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Extra twist, one at an overload of 10 N m [deg]."""
+        if "spread" in shape:
+            onset, width = shape["onset_nm"], max(shape["spread"] * shape["onset_nm"], 1e-9)
+            parted = np.logaddexp(0.0, (history.load_nm - onset) / width)
+            before = np.logaddexp(0.0, -1.0 / shape["spread"])
+            return np.asarray(history.side * (width / 10.0) * (parted - before))[:, None]
         over = np.maximum(history.load_nm - shape["onset_nm"], 0.0)
         return (history.side * (over / 10.0) ** shape["power"])[:, None]
 

@@ -1,10 +1,11 @@
 """Parameters of an effect, and what a shape may consist of."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.history import Floats
 
 Shape = Mapping[str, float]
@@ -64,6 +65,33 @@ class ShapeForm:
         if self.numbered:
             parts.append(f"{self.numbered.format(1)} ...")
         return " ".join(parts)
+
+
+def in_form(shape: Shape, forms: Sequence[ShapeForm]) -> Shape:
+    """Return a shape with its parameters in the order of the form that it has.
+
+    Parameters
+    ----------
+    shape : mapping
+        Shape parameters by name, in any order.
+    forms : sequence of ShapeForm
+        What a shape may consist of.
+
+    Returns
+    -------
+    mapping
+
+    Raises
+    ------
+    InputError
+        A shape parameter is unknown or missing.
+    """
+    for form in forms:
+        names = form.ordered(shape)
+        if names is not None:
+            return {name: shape[name] for name in names}
+    expected = ", or ".join(map(str, forms))
+    raise InputError(f"shape: found {' '.join(shape) or 'nothing'}, expected {expected}")
 
 
 def listed(name: str, values: Iterable[float], most: int = 4) -> Shape | None:

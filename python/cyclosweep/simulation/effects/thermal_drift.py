@@ -48,7 +48,10 @@ class ThermalDrift(Effect):
         return reason
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Datum, clearance, compliance, or the first two, at once or with a delay."""
+        """Datum, clearance, compliance, or the first two, at once or with a delay.
+
+        Others move together where a search finds so, see `combined`.
+        """
         kinds: list[Shape] = [*({kind: 1.0} for kind in KINDS), {"datum": 1.0, "clearance": 1.0}]
         if history.time_s is None or not spread(history.time_s) > 0:
             return kinds
@@ -62,6 +65,12 @@ class ThermalDrift(Effect):
         if history.time_s is None or not step > 0:
             return bounds
         return replace(bounds, upper=max(0.1 * spread(history.time_s), 4.0 * step))
+
+    def combined(self, shape: Shape, found: Shape) -> Shape | None:
+        """All that moves, with one delay."""
+        kinds = {kind: 1.0 for kind in KINDS if kind in shape or kind in found}
+        both = {**kinds, **{k: v for k, v in {**found, **shape}.items() if k == "delay_s"}}
+        return None if set(both) == set(shape) else both
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist for 1 deg/K, and for 1 deg/(N m K) of compliance [deg]."""

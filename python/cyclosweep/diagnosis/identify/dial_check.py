@@ -1,0 +1,53 @@
+"""Eccentric dials whose error has one of its two parts only, or is larger than any dial's."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES, LawCheck, own_classes
+from cyclosweep.simulation.effects.dial_eccentricity import MOST_STEEP
+
+LEAST_PART = 0.03
+"""Cosine over sine of an error once a turn, or sine over cosine, below which it is an odd curve or
+an even one: of dials of any direction one in twenty-five has so little of one of them."""
+ERRORS = 2.0
+"""Standard errors within which a part has to be so small, or so large."""
+
+
+def without_other_dials(
+    fitted: FittedStructure, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw dials whose error is an even curve or an odd one, or steeper than any dial's.
+
+    Such a curve is a side load's or a contact's. What is left open counts for the dial.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    withdrawn = set[str]()
+    for k, term in enumerate(fitted.terms):
+        if term.effect is None or term.slips or not term.effect.vector:
+            continue
+        places = fitted.amplitude_places(k)
+        if len(places) != 2 or not set(own_classes(term)) >= BOTH_CURVES:
+            continue
+        smaller, larger = sorted(places, key=lambda place: abs(float(fitted.beta[place])))
+        most = abs(float(fitted.beta[smaller])) + ERRORS * float(errors[smaller])
+        size = float(np.hypot(*fitted.beta[places]))
+        steepest = float(np.radians(size - ERRORS * float(errors[larger])))
+        if most < LEAST_PART * size or steepest > MOST_STEEP:
+            withdrawn.add(term.name)
+    return tuple(
+        replace(check, holds=False) if check.name in withdrawn else check for check in checks
+    )

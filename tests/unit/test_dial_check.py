@@ -1,0 +1,38 @@
+"""An error once a turn is a dial's where it has both parts and a dial's size."""
+
+import numpy as np
+import pytest
+
+from cyclosweep.diagnosis.identify.class_check import check_laws
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.model import EffectValue
+from tests.support.searches import search_of
+
+ONCE = {"order": 1.0}
+LOPSIDED = np.array([1.0, 1.0, 0.5, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("cos_deg", "sin_deg", "is_dial"),
+    [(1.5, 1.0, True), (6.0, 0.6, True), (6.0, 0.0, False), (0.0, 6.0, False), (9, 13, False)],
+    ids=["oblique", "nearly even", "even", "odd", "off by more than a quarter of its radius"],
+)
+def test_a_dial_errs_by_a_curve_neither_even_nor_odd_and_of_its_size(
+    cos_deg: float, sin_deg: float, *, is_dial: bool
+) -> None:
+    """A side load or a contact whose own law was not in the library was called a dial."""
+    search = search_of(EffectValue("dial_eccentricity", ONCE, (cos_deg, sin_deg)))
+    term = Term(find("dial_eccentricity"), ONCE)
+    (check,) = check_laws(fit(search.problem, search.noise, (term,), search.baseline.fit))
+    assert check.holds == is_dial
+
+
+def test_two_errors_far_larger_than_a_dials_are_none() -> None:
+    """They made up for each other, and a simulation with them was off by thirty degrees."""
+    history = search_of().problem.history
+    shape = {"order": 1.0, "order_2": 2.0}
+    recognised = find("dial_eccentricity").is_recognised
+    assert recognised(history, shape, 1.0 * LOPSIDED)
+    assert not recognised(history, shape, 8.0 * LOPSIDED)
