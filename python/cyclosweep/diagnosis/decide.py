@@ -12,7 +12,6 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, testability
 from cyclosweep.diagnosis.identify.verdict import (
     MOSTLY,
-    SURE,
     Decision,
     decide,
     decide_in_stages,
@@ -130,8 +129,6 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     freer = with_freer_laws(search, accepted) if staged is None else accepted
     decision, accepted = _with_structure(decision, accepted, freer), freer
     naming = names_that_hold(search, accepted, decision.best or accepted)
-    if naming.withdrawn and accepted.fit.independent_share == 1.0:
-        decision, accepted, naming = _likeliest_that_holds(search, decision, accepted, naming)
     if staged is not None and naming.withdrawn and _is_enough(search, naming.part):
         # What was withdrawn explains nothing that the others do not explain.
         decision = _with_structure(decision, accepted, naming.part)
@@ -165,46 +162,6 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         excluded=frozenset(below - possible),
         explained=explained,
     )
-
-
-def _likeliest_that_holds(
-    search: Search, decision: Decision, accepted: Candidate, naming: Naming
-) -> tuple[Decision, Candidate, Naming]:
-    """Take another likely explanation, whose laws all stand for their classes, for one of others.
-
-    Parameters
-    ----------
-    search : Search
-        Search of the recording.
-    decision : Decision
-        The verdict by the evidence of whole structures.
-    accepted : Candidate
-        The effects of the best structure.
-    naming : Naming
-        Which of them may be named: not all.
-
-    Returns
-    -------
-    decision, accepted, naming
-        The same where there is no such explanation.
-    """
-    if decision.verdict not in ("IDENTIFIED", "AMBIGUOUS"):
-        return decision, accepted, naming
-    for candidate, _ in decision.explanations:
-        if candidate is decision.best or not candidate.all_recognised:
-            continue
-        other = search.refit(candidate.fit.terms, candidate.fit)
-        if not search.suffices(other):
-            continue
-        found = names_that_hold(search, other, other)
-        if not found.withdrawn:
-            kept = [(each, p) for each, p in decision.explanations if each is not decision.best]
-            total = sum(p for _, p in kept)
-            listed = [(other if each is candidate else each, p / total) for each, p in kept]
-            sure = dict(listed)[other] >= SURE
-            verdict: Verdict = "IDENTIFIED" if sure else "AMBIGUOUS"
-            return Decision(verdict, other, listed, False), other, found
-    return decision, accepted, naming
 
 
 def _is_enough(search: Search, part: Candidate) -> bool:

@@ -217,7 +217,7 @@ class Search:
             added = added_evidence(gain, joint, parent.scan, rank, penalty)
             prior = parent.prior - (FURTHER if parent.fit.terms else 0.0)
             prior -= prior_penalty(term.name, term.effect, term.shape)
-            if best is None or parent.gain + added > best.gain:
+            if best is None or parent.gain + added + prior > best.score:
                 best = self.judged(joint, parent.gain + added, prior)
         for _ in range(MOST_ENRICHED):
             richer = None if best is None else self._enriched(best)

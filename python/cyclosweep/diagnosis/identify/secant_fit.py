@@ -58,7 +58,7 @@ def minimise(
         Slopes there, by usual changes.
     """
     values, left = start, residual(start)
-    fresh, given = slopes is None, slopes is not None
+    fresh = slopes is None
     if slopes is None:
         slopes = _measured(residual, values, left, bounds, scale)
     damping, measurable = FIRST_DAMPING, True
@@ -72,7 +72,7 @@ def minimise(
             there = residual(moved)
             slopes = slopes + np.outer(there - left - change, step) / float(step @ step)
             gain = float(left @ left) - float(there @ there)
-        elif fresh or not measurable or given:
+        elif fresh or not measurable:
             break
         if gain > 0.0:
             values, left, fresh = moved, there, False

@@ -12,8 +12,6 @@ from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 LONGEST = 3.0
 """Longest time constant over the longest run."""
-STEEP = 2.5
-"""Power of the load of creep that grows with it, on the grid of shapes."""
 REFERENCE_NM = 10.0
 """Load at which a delayed compliance holds that changes with the load [N m]."""
 
@@ -50,9 +48,9 @@ class Creep(Effect):
         shortest = min(max(FEWEST_STEPS * history.usual_step_s, longest / 2000.0), longest / 4.0)
         if not longest > 0:
             return []
-        taus = np.geomspace(shortest, longest, 8)
-        single: list[Shape] = [{"time_constant_s": float(tau)} for tau in taus]
-        single += [{"power": STEEP, "time_constant_s": float(tau)} for tau in taus[1::2]]
+        single: list[Shape] = [
+            {"time_constant_s": float(t)} for t in np.geomspace(shortest, longest, 8)
+        ]
         series = np.geomspace(shortest, longest, 6)
         spectra = (series[1:4:2], series[1:5], series[2:6])
         return single + [

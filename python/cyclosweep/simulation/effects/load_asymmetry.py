@@ -12,8 +12,9 @@ STOPS = (0.06, 0.5)
 """Least and largest load of a stop over the largest load."""
 EDGES = (0.1, 0.9)
 """Least and largest load, over the largest one, at which one flank comes to bear otherwise."""
-ONE_FLANK = 2.0
-"""Log prior odds against a curve of one flank alone, which is half an odd curve [nat]."""
+ONE_FLANK = 6.0
+"""Log prior odds against a curve of one flank alone, which is half an odd curve [nat]: as much as a
+further law is charged."""
 LEAST_OTHER = 0.1
 """Load of the less loaded direction over that of the other, from which the two can be compared:
 below it, an even curve and an odd one differ on a tenth of the range."""

@@ -8,7 +8,7 @@ import numpy as np
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
 
-SPREAD = (0.03, 0.3)
+SPREAD, USUAL_SPREAD = (0.03, 0.3), 0.1
 """Logistic scale of the loads at which joints part, over their mean load."""
 
 
@@ -38,18 +38,18 @@ class OverloadSoftening(Effect):
     forms = (ShapeForm(("onset_nm", "power")), ShapeForm(("onset_nm", "spread")))
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Onsets up to four fifths of the largest load, kinked to cubic, or scattered."""
+        """Onsets up to four fifths of the largest load, kinked to cubic."""
         top = history.largest_torque_nm
-        sharp: list[Shape] = [
+        return [
             {"onset_nm": share * top, "power": power}
             for share in (0.15, 0.3, 0.45, 0.55, 0.65, 0.8)
             for power in (1.0, 1.5, 2.0, 3.0)
         ]
-        return sharp + [
-            {"onset_nm": share * top, "spread": spread}
-            for share in (0.45, 0.65, 0.8)
-            for spread in (0.06, 0.15)
-        ]
+
+    def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Onsets scattered about a mean, or the other law; see `Effect.refinements`."""
+        law = {"power": 1.2} if "spread" in shape else {"spread": USUAL_SPREAD}
+        return [{"onset_nm": shape["onset_nm"], **law}]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep the onset below the largest load."""
