@@ -139,7 +139,7 @@ def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:
     ------
     Candidate
     """
-    names = {each.fit.terms[-1].name for each in tried}
+    names = dict.fromkeys(each.fit.terms[-1].name for each in tried)
     even = [name for name in names if _is_even(search.library.effects[name])]
     for odd in tried:
         if own_classes(odd.fit.terms[-1]) != (ODD_CURVE,):

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION, RUN
+from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
@@ -18,6 +19,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     amplitude_count,
     own_classes,
 )
+from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.effects.orders import travels
 
 
@@ -66,7 +68,7 @@ def without_leftovers(
 def without_any_offsets(
     fitted: FittedStructure, checks: Sequence[LawCheck]
 ) -> tuple[LawCheck, ...]:
-    """Withdraw a law of the position with as many amplitudes as there are offsets of runs.
+    """Withdraw a law of the position with as many amplitudes as fitted runs have offsets.
 
     It fits whatever offsets, and so says nothing of where they come from.
 
@@ -81,7 +83,11 @@ def without_any_offsets(
     -------
     tuple of LawCheck
     """
-    offsets = fitted.history.run_count - 1
+    history, use = fitted.history, fitted.problem.fitted
+    state: list[Floats] = [history.run[use].astype(np.float64)]
+    if history.crank_deg is not None:
+        state.append(positions(history.crank_deg[use]))
+    offsets = len(np.unique(np.column_stack(state), axis=0)) - 1
     saturated = {
         term.name
         for k, term in enumerate(fitted.terms)
