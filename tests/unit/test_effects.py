@@ -165,7 +165,7 @@ PARAMETERS = {
     "transmission_error": {"travel_order_1"},
     "thermal_drift": {"delay_s"},
     "viscous_drag": {"power"},
-    "load_asymmetry": {"power", "limit_nm", "edge_nm"},
+    "load_asymmetry": {"power", "limit_nm"},
     "dial_eccentricity": set(),
 }
 """What the fit refines of each effect, of the shapes on the grid."""

@@ -193,19 +193,6 @@ def test_joints_that_part_one_after_another_soften(programme: tuple[Floats, Floa
     assert [effect["name"] for effect in found.effects] == ["overload_softening"]
 
 
-@pytest.mark.parametrize("law", ["edge", "bedding"])
-def test_one_flank_that_bears_otherwise_is_an_asymmetry(
-    programme: tuple[Floats, Floats], law: str
-) -> None:
-    """The first was unknown before, the second a stiffening and a side load, one half each."""
-    torque, run = programme
-    load = np.maximum(-torque, 0.0)
-    curve = 0.2 * np.maximum(load - 9.0, 0.0) if law == "edge" else -2.0 * (load / TOP) ** 0.6
-    found = made(curve, torque, run)
-    assert [effect["name"] for effect in found.effects] == ["load_asymmetry"]
-    assert found.verdict == "IDENTIFIED"
-
-
 @pytest.mark.parametrize("kinds", [("clearance", "compliance"), ("datum", "compliance")])
 def test_what_is_warm_may_change_together(kinds: tuple[str, str]) -> None:
     thermal = BY_NAME["thermal_drift"]

@@ -81,8 +81,6 @@ def own_classes(term: Term) -> tuple[str, ...]:
         None for an effect of a family that is no class.
     """
     assert term.effect is not None
-    if "flank" in term.shape:
-        return tuple(sorted(BOTH_CURVES))
     if not term.slips:
         return CLASSES_OF_EFFECT.get(term.name) or CLASSES_OF_FAMILY.get(term.family, ())
     plain, loaded = term.effect.friction_limits(term.shape)

@@ -12,10 +12,9 @@ from cyclosweep.simulation.effects.history import Floats
 
 INDEPENDENT_PIECES = 40.0
 """Rough number of independent pieces of a residual that is error of the model."""
-FAR_OFF = 1.5
-"""Loss of a fit over that of the noise alone from which the fit is far off, and not a few rows
-outliers. The score of heavy tails, which forgets rows that are far off, would then find the worst
-fit best."""
+FAR_OFF = 2.0
+"""Median of a residual over the noise from which a fit is far off, and not a few rows outliers. The
+score of heavy tails, which forgets rows that are far off, would then find the worst fit best."""
 COARSE_STEP = 3.5
 """Resolution steps above this many standard deviations need the interval likelihood."""
 
@@ -164,10 +163,9 @@ class Noise:
         if np.isfinite(self.tail):
             slope, square = self.score_moments
             root = np.sqrt(square)
-            found = student_deviance(white, self.tail)[0]
-            if float(found @ found) <= FAR_OFF * self.loss_of_row * len(white):
-                found = student_score(white, self.tail)[0]
-            return found / root, even * (slope / root)
+            far = len(white) > 0 and float(np.median(np.abs(white))) > FAR_OFF
+            shape = student_deviance if far else student_score
+            return shape(white, self.tail)[0] / root, even * (slope / root)
         return white, even
 
     @property

@@ -10,11 +10,6 @@ from cyclosweep.simulation.effects.history import Floats, History
 
 STOPS = (0.06, 0.5)
 """Least and largest load of a stop over the largest load."""
-EDGES = (0.1, 0.9)
-"""Least and largest load, over the largest one, at which one flank comes to bear otherwise."""
-ONE_FLANK = 6.0
-"""Log prior odds against a curve of one flank alone, which is half an odd curve [nat]: as much as a
-further law is charged."""
 LEAST_OTHER = 0.1
 """Load of the less loaded direction over that of the other, from which the two can be compared:
 below it, an even curve and an odd one differ on a tenth of the range."""
@@ -24,16 +19,13 @@ class LoadAsymmetry(Effect):
     """Twist even in torque: one direction is softer than the other.
 
     It is ``a |T|^p``, or with `limit_nm` ``a tanh(|T|/T0)`` where what yields comes to a stop, or
-    with two `orders` ``a |T| + b T^2``, the beginning of any even curve. Where one flank alone
-    bears otherwise, on the side of `flank`, it is there ``a |T|^p``, or ``a (|T| - T0)`` above the
-    load ``T0`` of `edge_nm`, and nothing on the other.
+    with two `orders` ``a |T| + b T^2``, the beginning of any even curve.
     """
 
     name = "load_asymmetry"
     physics = (
         "A side load (a hanging weight, a misaligned coupling) adds to the tooth forces in one "
-        "direction and takes from them in the other. One direction is softer, or one flank bears "
-        "on an edge."
+        "direction and takes from them in the other. One direction is softer."
     )
     source = "Kumar et al. 2016 (side load of the hanging weight)"
     tell_tale = "even in torque: differs between directions"
@@ -44,14 +36,8 @@ class LoadAsymmetry(Effect):
     shape_parameters = (
         Parameter("power", "", "power of the load", 0.4, 3.0),
         Parameter("limit_nm", "N m", "load at which what yields comes to a stop", 1e-6, 1e6, True),
-        Parameter("edge_nm", "N m", "load above which one flank bears otherwise", 0.0, 1e6),
     )
-    forms = (
-        ShapeForm(("power",), ("flank",)),
-        ShapeForm(("limit_nm",)),
-        ShapeForm(("orders",)),
-        ShapeForm(("edge_nm", "flank")),
-    )
+    forms = (ShapeForm(("power",)), ShapeForm(("limit_nm",)), ShapeForm(("orders",)))
 
     def untestable(self, history: History) -> str | None:
         """Need loads in both directions."""
@@ -65,30 +51,13 @@ class LoadAsymmetry(Effect):
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """From a square root to a square of the load, four loads of a stop, and one flank alone."""
+        """From a square root to a square of the load, and four loads of a stop."""
         powers: list[Shape] = [{"power": float(power)} for power in np.linspace(0.6, 2.0, 8)]
         stops = history.largest_torque_nm * np.geomspace(*STOPS, 4)
-        one_flank: list[Shape] = [
-            {name: value, "flank": flank}
-            for flank in (1.0, -1.0)
-            for name, value in (
-                ("power", 0.6),
-                ("power", 2.0),
-                *(("edge_nm", share * history.largest_torque_nm) for share in (0.25, 0.45, 0.7)),
-            )
-        ]
-        stopped = ({"limit_nm": float(stop)} for stop in stops)
-        return [*powers, *stopped, {"orders": 2.0}, *one_flank]
-
-    def penalty(self, shape: Shape) -> float:
-        """A curve of one flank holds half of an odd curve; see `Effect.penalty`."""
-        return ONE_FLANK if "flank" in shape else 0.0
+        return [*powers, *({"limit_nm": float(stop)} for stop in stops), {"orders": 2.0}]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Keep a stop and an edge below the largest load."""
-        if parameter.name == "edge_nm":
-            least, most = (share * history.largest_torque_nm for share in EDGES)
-            return replace(parameter, lower=least, upper=most)
+        """Keep a stop below the largest load."""
         if parameter.name != "limit_nm":
             return super().shape_bounds(parameter, history)
         least, most = (share * history.largest_torque_nm for share in STOPS)
@@ -102,17 +71,12 @@ class LoadAsymmetry(Effect):
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Even twist, one at a load of 10 N m [deg]; with a stop, one far beyond it."""
-        load = history.load_nm
-        if "flank" in shape:
-            load = np.where(history.side == shape["flank"], load, 0.0)
-        if "edge_nm" in shape:
-            return (np.maximum(load - shape["edge_nm"], 0.0) / 10.0)[:, None]
-        if "limit_nm" in shape:
-            return np.tanh(load / shape["limit_nm"])[:, None]
-        load = load / 10.0
         if "orders" in shape:
+            load = history.load_nm / 10.0
             return np.column_stack([load, load**2])
-        return (load ** shape["power"])[:, None]
+        if "limit_nm" in shape:
+            return np.tanh(history.load_nm / shape["limit_nm"])[:, None]
+        return ((history.load_nm / 10.0) ** shape["power"])[:, None]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Even twist at 10 N m, in two parts where it has two orders, or at the stop."""
@@ -124,6 +88,4 @@ class LoadAsymmetry(Effect):
             )
         if "limit_nm" in shape:
             return (Parameter("even_twist_deg", "deg", "difference of the directions, half"),)
-        if "flank" in shape:
-            return (Parameter("twist_deg", "deg", "extra twist of one flank at 10 N m"),)
         return (Parameter("even_twist_deg", "deg", "difference of the directions at 10 N m, half"),)
