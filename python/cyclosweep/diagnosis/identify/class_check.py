@@ -40,6 +40,7 @@ from cyclosweep.diagnosis.identify.run_offsets_check import (
     without_any_offsets,
     without_leftovers,
 )
+from cyclosweep.diagnosis.identify.starting_terms import TIED_DIGITS
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.noise import orthonormal
@@ -166,7 +167,8 @@ def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:
             for name in classes.columns
             if name not in taken
         }
-        best = max(every, key=lambda name: every[name].evidence, default=None)
+        # Runs that are each at a place of their own are the same as their places.
+        best = max(every, key=lambda name: round(every[name].evidence, TIED_DIGITS), default=None)
         if best is None or every[best].evidence < CLEAR:
             break
         found.append(ShownClass(best, every[best].evidence, float(np.sqrt(every[best].explained))))
