@@ -1,12 +1,16 @@
 """Eccentric dials whose error has one of its two parts only, or is larger than any dial's."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES, LawCheck, own_classes
+from cyclosweep.diagnosis.identify.law_in_class import (
+    BOTH_CURVES,
+    LawCheck,
+    own_classes,
+    withdrawn_where,
+)
 from cyclosweep.simulation.effects.dial_eccentricity import MOST_STEEP
 
 LEAST_PART = 0.03
@@ -48,6 +52,4 @@ def without_other_dials(
         steepest = float(np.radians(size - ERRORS * float(errors[larger])))
         if most < LEAST_PART * size or steepest > MOST_STEEP:
             withdrawn.add(term.name)
-    return tuple(
-        replace(check, holds=False) if check.name in withdrawn else check for check in checks
-    )
+    return withdrawn_where(withdrawn.__contains__, checks)

@@ -1,7 +1,7 @@
 """A law beside its class of behaviour: its own classes, its evidence, and how it stands."""
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,6 +66,25 @@ class LawCheck:
     missed_share: float
     deficit: float
     holds: bool
+
+
+def withdrawn_where(
+    withdraw: Callable[[str], bool], checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw the laws of some names; those withdrawn before are not asked about.
+
+    Parameters
+    ----------
+    withdraw : callable
+        Whether the law of a name is to be withdrawn.
+    checks : sequence of LawCheck
+        Of the laws of a structure.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    return tuple(replace(c, holds=c.holds and not withdraw(c.name)) for c in checks)
 
 
 def own_classes(term: Term) -> tuple[str, ...]:

@@ -27,6 +27,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     own_classes,
     share_class,
 )
+from cyclosweep.diagnosis.identify.run_offsets_check import count_states
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -155,7 +156,7 @@ def offset_count(history: History, fitted: Flags, name: str) -> int:
     place = positions(history.crank_deg[fitted])
     if len(np.unique(place)) > MOST_POSITIONS:
         return history.run_count
-    return len(np.unique(np.column_stack([history.run[fitted], place]), axis=0))
+    return count_states(history, fitted)
 
 
 def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:

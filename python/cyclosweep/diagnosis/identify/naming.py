@@ -1,6 +1,6 @@
 """Which effects of an accepted structure may be named, and what is left beside these."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.identify.class_check import (
     shown_classes,
 )
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
 from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
@@ -95,7 +95,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             larger = without_small_laws(part.fit, checks)
             checks = without_laws_of_one_class(part.fit, larger)
             checks = _without_lesser_laws(part.fit, checks, best.fit)
-            checks = _withdrawn_where(is_needless, checks)
+            checks = withdrawn_where(is_needless, checks)
             judged = checks == larger
         gone = [check for check in checks if not check.holds]
         names = {check.name for check in checks if check.holds}
@@ -106,25 +106,6 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
         if judged:
             held = (check for check in checks if check.holds)
             return Naming(part, (*held, *withdrawn), shown_classes(part.fit))
-
-
-def _withdrawn_where(
-    withdraw: Callable[[str], bool], checks: Sequence[LawCheck]
-) -> tuple[LawCheck, ...]:
-    """Withdraw the laws of some names; those withdrawn before are not asked about.
-
-    Parameters
-    ----------
-    withdraw : callable
-        Whether the law of a name is to be withdrawn.
-    checks : sequence of LawCheck
-        Of the laws of a structure.
-
-    Returns
-    -------
-    tuple of LawCheck
-    """
-    return tuple(replace(c, holds=c.holds and not withdraw(c.name)) for c in checks)
 
 
 def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tuple[LawCheck, ...]:
@@ -182,7 +163,7 @@ def _without_lesser_laws(
         law -= line @ (line.T @ law)
         return float(law @ law) < unnamed
 
-    return _withdrawn_where(explains_less, checks)
+    return withdrawn_where(explains_less, checks)
 
 
 def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:

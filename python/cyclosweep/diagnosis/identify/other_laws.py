@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
-from cyclosweep.diagnosis.hypotheses.library import Signature
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
@@ -139,8 +138,8 @@ def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:
     ------
     Candidate
     """
-    names = dict.fromkeys(each.fit.terms[-1].name for each in tried)
-    even = [name for name in names if _is_even(search.library.effects[name])]
+    last = [each.fit.terms[-1] for each in tried]
+    even = [term.name for term in last if own_classes(term) == (EVEN_CURVE,)]
     for odd in tried:
         if own_classes(odd.fit.terms[-1]) != (ODD_CURVE,):
             continue
@@ -148,12 +147,6 @@ def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:
             pair = _extended(search, odd, name)
             if pair is not None:
                 yield pair
-
-
-def _is_even(signature: Signature) -> bool:
-    """Whether an effect is an even curve of the torque, but for forms of one flank alone."""
-    assert signature.effect is not None
-    return own_classes(Term(signature.effect, signature.shape)) == (EVEN_CURVE,)
 
 
 def left_beyond_noise(fitted: FittedStructure) -> float:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION, RUN
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION
 from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -18,8 +18,9 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     LawCheck,
     amplitude_count,
     own_classes,
+    withdrawn_where,
 )
-from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.effects.history import Flags, History
 from cyclosweep.simulation.effects.orders import travels
 
 
@@ -83,11 +84,7 @@ def without_any_offsets(
     -------
     tuple of LawCheck
     """
-    history, use = fitted.history, fitted.problem.fitted
-    state: list[Floats] = [history.run[use].astype(np.float64)]
-    if history.crank_deg is not None:
-        state.append(positions(history.crank_deg[use]))
-    offsets = len(np.unique(np.column_stack(state), axis=0)) - 1
+    offsets = count_states(fitted.history, fitted.problem.fitted) - 1
     saturated = {
         term.name
         for k, term in enumerate(fitted.terms)
@@ -96,10 +93,27 @@ def without_any_offsets(
         and not travels(term.shape)
         and amplitude_count(fitted, k) >= offsets
     }
-    return tuple(
-        replace(check, behaviour=RUN, holds=False) if check.name in saturated else check
-        for check in checks
-    )
+    return withdrawn_where(saturated.__contains__, checks)
+
+
+def count_states(history: History, fitted: Flags) -> int:
+    """Count the runs of a recording, each at every position at which it was read.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+
+    Returns
+    -------
+    int
+    """
+    if history.crank_deg is None:
+        return len(np.unique(history.run[fitted]))
+    states = np.column_stack([history.run[fitted], positions(history.crank_deg[fitted])])
+    return len(np.unique(states, axis=0))
 
 
 def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole: str) -> bool:

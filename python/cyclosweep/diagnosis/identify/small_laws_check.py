@@ -8,7 +8,6 @@ recording in which the twist is one curve of the torque.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     LawCheck,
     own_classes,
     share_class,
+    withdrawn_where,
 )
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Floats
@@ -68,9 +68,7 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
         )
 
     errors = errors_of_larger(fitted)
-    return tuple(
-        replace(c, holds=False) if c.name in errors or is_small(c.name) else c for c in checks
-    )
+    return withdrawn_where(lambda name: name in errors or is_small(name), checks)
 
 
 def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, listed
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.scattered import acting_beyond
 
 LATEST_FIRST = 0.45
 """Load of the first engagement at most, as a share of the largest load."""
@@ -93,11 +94,8 @@ class ClearanceTakeup(Effect):
         """Twist lost for a unit drop of compliance [deg]."""
         load, side = history.load_nm, history.side
         if "middle_nm" in shape:
-            middle = shape["middle_nm"]
-            width = max(shape["spread"] * middle, 1e-9)
-            closed = np.logaddexp(0.0, (load - middle) / width)
-            before = np.logaddexp(0.0, -1.0 / shape["spread"])
-            return np.asarray(-side * width * (closed - before))[:, None]
+            closed = acting_beyond(load, shape["middle_nm"], shape["spread"])
+            return np.asarray(-side * closed)[:, None]
         if "first_nm" not in shape:
             return np.column_stack(
                 [-side * np.maximum(load - kink, 0.0) for kink in shape.values()]

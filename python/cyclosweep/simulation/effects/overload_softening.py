@@ -7,6 +7,7 @@ import numpy as np
 
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.scattered import acting_beyond
 
 SPREAD, USUAL_SPREAD = (0.03, 0.3), 0.1
 """Logistic scale of the loads at which joints part, over their mean load."""
@@ -60,10 +61,8 @@ class OverloadSoftening(Effect):
     def columns(self, history: History, shape: Shape) -> Floats:
         """Extra twist, one at an overload of 10 N m [deg]."""
         if "spread" in shape:
-            onset, width = shape["onset_nm"], max(shape["spread"] * shape["onset_nm"], 1e-9)
-            parted = np.logaddexp(0.0, (history.load_nm - onset) / width)
-            before = np.logaddexp(0.0, -1.0 / shape["spread"])
-            return np.asarray(history.side * (width / 10.0) * (parted - before))[:, None]
+            parted = acting_beyond(history.load_nm, shape["onset_nm"], shape["spread"])
+            return np.asarray(history.side * parted / 10.0)[:, None]
         over = np.maximum(history.load_nm - shape["onset_nm"], 0.0)
         return (history.side * (over / 10.0) ** shape["power"])[:, None]
 
