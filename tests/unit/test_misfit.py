@@ -37,3 +37,18 @@ def test_misfit_grows_with_the_distance_where_the_sum_of_squares_forgets_it(nois
     assert heavy.misfit(far, mean) > heavy.misfit(near, mean)
     rounded = replace(noise, step_deg=10.0 * noise.sigma_deg)
     assert rounded.misfit(far, mean) < noise.misfit(far, mean)
+
+
+def test_rows_that_are_far_off_are_forgotten_only_where_they_are_few(noise: Noise) -> None:
+    heavy = replace(noise, tail=3.0)
+    rows = np.arange(len(noise.gap))
+    left = {
+        every: np.where(rows % every == 0, 30.0 * noise.sigma_deg, 0.1 * noise.sigma_deg)
+        for every in (20, 7)
+    }
+    mean = np.zeros(len(rows))
+    largest = {
+        every: float(np.abs(heavy.residual(each, mean)[0]).max()) for every, each in left.items()
+    }
+    assert largest[20] < 1.0
+    assert largest[7] > 3.0

@@ -12,9 +12,10 @@ from cyclosweep.simulation.effects.history import Floats
 
 INDEPENDENT_PIECES = 40.0
 """Rough number of independent pieces of a residual that is error of the model."""
-FAR_OFF = 2.0
-"""Median of a residual over the noise from which a fit is far off, and not a few rows outliers. The
-score of heavy tails, which forgets rows that are far off, would then find the worst fit best."""
+FAR_OFF, FAR_ROWS = 3.0, 0.1
+"""Residual over the noise, and share of the rows beyond it, from which a fit is far off, and not a
+few rows outliers: under heavy tails, one row in seventy. The score of heavy tails, which forgets
+rows that are far off, would then find the worst fit best."""
 COARSE_STEP = 3.5
 """Resolution steps above this many standard deviations need the interval likelihood."""
 
@@ -163,7 +164,7 @@ class Noise:
         if np.isfinite(self.tail):
             slope, square = self.score_moments
             root = np.sqrt(square)
-            far = len(white) > 0 and float(np.median(np.abs(white))) > FAR_OFF
+            far = float(np.mean(np.abs(white) > FAR_OFF)) > FAR_ROWS if len(white) else False
             shape = student_deviance if far else student_score
             return shape(white, self.tail)[0] / root, even * (slope / root)
         return white, even
