@@ -143,7 +143,7 @@ def _answer(
         notes=(
             *repaired.model.notes,
             *recording.notes,
-            *unbroken_runs(recording),
+            *(() if concluded.search.problem.one_history else unbroken_runs(recording)),
             *(fault.reason for fault in recording.faults),
         ),
         unknown=remainder(concluded, verified, regions),

@@ -10,10 +10,12 @@ from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.compose import compose
 from cyclosweep.diagnosis.decide import conclude
 from cyclosweep.diagnosis.hypotheses.library import build_library
+from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_of
 from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.model_error_table import with_error_table
+from cyclosweep.diagnosis.one_history import explains_more, may_be_one_history, remembered
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.prepare.single_outliers import without_single_outliers
@@ -113,11 +115,19 @@ def _run_stages(
     line, pins = drive.nominal_line(recording.side), int(drive.output_pin_count)
     mesh_ratio = float(drive.ratio) if recording.side == "output" else 1.0
     recording = without_single_outliers(recording, line)
-    problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio)
-    check_prepared(problem, drive)
-    library = build_library(problem.history, problem.fitted, effects)
-    calibrated = calibrate(problem, library, seed)
-    searched = identify(calibrated, say)
+
+    def calibrated(*, one_history: bool) -> Search:
+        problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio, one_history=one_history)
+        check_prepared(problem, drive)
+        library = build_library(problem.history, problem.fitted, effects)
+        return calibrate(problem, library, seed)
+
+    searched = identify(calibrated(one_history=False), say)
+    if may_be_one_history(recording) and remembered(searched):
+        joined = calibrated(one_history=True)
+        if explains_more(searched, joined):
+            say("starting over with runs that go on from each other")
+            searched = identify(joined, say)
     say("bounding what was not found")
     concluded = conclude(searched, drive, tolerance_deg)
     regions = locate(concluded)

@@ -17,6 +17,12 @@ UNBROKEN = (
     'history = "continuous" into the recording\'s TOML file.'
 )
 
+ONE_HISTORY = (
+    "Runs are taken to go on from each other, because friction or creep that does so explains "
+    'clearly more. If that is right, write history = "continuous" into the recording\'s TOML file; '
+    "if the rig was reset between them, reset_between_runs = true."
+)
+
 
 def unbroken_runs(recording: Recording) -> tuple[str, ...]:
     """Ask whether runs are one load history.

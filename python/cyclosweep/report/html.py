@@ -7,6 +7,7 @@ from pathlib import Path
 
 from cyclosweep.atomic import write_text
 from cyclosweep.page import bullets, definitions, document, paragraph, section, table_html
+from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.report import sentences, tables
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
@@ -194,7 +195,8 @@ def _recording(data: ReportData) -> str:
         ("noise", "not estimated" if noise.sigma_deg is None
          else f"{number(noise.sigma_deg)} deg, lag-one autocorrelation "
               f"{number(noise.autocorrelation, 2)}"),
-        ("history", "continuous over the runs" if recording.history == "continuous"
+        ("history", "continuous over the runs"
+         if recording.history == "continuous" or ONE_HISTORY in data.result.notes
          else "play, slip and creep start afresh with each run"),
         ("conditioning runs", ", ".join(map(str, recording.conditioning_runs)) or "none"),
         ("holdout runs", ", ".join(map(str, recording.holdout_runs)) or "chosen by blocks"),

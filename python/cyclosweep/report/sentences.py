@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from cyclosweep.recording.unbroken_runs import UNBROKEN
+from cyclosweep.recording.unbroken_runs import ONE_HISTORY, UNBROKEN
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import (
@@ -151,7 +151,7 @@ def untestable(data: ReportData) -> list[str]:
 
 def asked(data: ReportData) -> list[str]:
     """What the diagnosis asks about the recording because its file does not say it."""
-    return [note for note in data.result.notes if note == UNBROKEN]
+    return [note for note in data.result.notes if note in (ONE_HISTORY, UNBROKEN)]
 
 
 def explanations(data: ReportData) -> list[str]:

@@ -16,6 +16,7 @@ from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.elastic_curve import ElasticCurve
 from cyclosweep.simulation.json_fields import (
     count_of,
+    flag_of,
     list_of,
     number_of,
     object_of,
@@ -64,6 +65,9 @@ class Model:
         What line and effects miss at the same state of load, learned from a recording. A forecast
         of the twist adds it; a torque for a given twist and a spring of a torsional train leave it
         out.
+    one_history : bool
+        Runs of a programme go on from each other, unless the programme says that the rig is reset
+        between them. Without it, the programme's ``history`` alone decides.
     """
 
     compliance_deg_per_nm: float
@@ -77,6 +81,7 @@ class Model:
     notes: tuple[str, ...] = field(default=())
     elastic_curve: ElasticCurve | None = None
     model_error: ModelError | None = None
+    one_history: bool = False
 
     def __post_init__(self) -> None:
         numbers = ("compliance_deg_per_nm", "free_play_deg", "datum_deg", "torque_zero_nm")
@@ -250,6 +255,8 @@ class Model:
             content["elastic_curve"] = self.elastic_curve.as_dict()
         if self.model_error is not None:
             content["model_error"] = self.model_error.as_dict()
+        if self.one_history:
+            content["one_history"] = True
         return json.dumps(content, indent=1)
 
     @classmethod
@@ -313,4 +320,5 @@ class Model:
             notes=tuple(text_of({"note": note}, "note") for note in notes),
             elastic_curve=ElasticCurve.from_dict(curve) if curve else None,
             model_error=ModelError.from_dict(missed) if missed else None,
+            one_history=flag_of(content, "one_history"),
         )

@@ -53,7 +53,9 @@ def history_of(recording: Recording, model: Model) -> History:
     torque = np.ascontiguousarray(recording.torque_nm - model.torque_zero_nm, dtype=np.float64)
     run = np.cumsum(np.r_[False, np.diff(recording.run) != 0]).astype(np.int64)
     restart = np.r_[True, np.diff(run) != 0] if len(run) else np.zeros(0, dtype=bool)
-    if recording.history == "continuous":
+    if recording.history == "continuous" or (
+        model.one_history and not recording.reset_between_runs
+    ):
         restart = np.arange(len(torque)) == 0
     side = _flanks(torque, restart)
     twist = model.elastic_twist(torque)

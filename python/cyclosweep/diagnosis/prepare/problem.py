@@ -42,6 +42,8 @@ class Problem:
         Step of the angle reading [deg].
     torque_noise_nm : float
         Noise of the torque reading that was smoothed [N m]; zero: none that matters.
+    one_history : bool
+        Runs are taken to go on from each other although the recording does not say so.
     """
 
     recording: Recording
@@ -60,6 +62,7 @@ class Problem:
     torque_noise_nm: float
     nominal_compliance: float
     nominal_free_play: float
+    one_history: bool = False
 
     @property
     def count(self) -> int:
@@ -124,6 +127,8 @@ def prepare(
     output_pin_count: int,
     most_rows: int = MOST_ROWS,
     mesh_ratio: float = 1.0,
+    *,
+    one_history: bool = False,
 ) -> Problem:
     """Thin a long recording, find the flank in contact of every row, and what to fit.
 
@@ -153,7 +158,7 @@ def prepare(
     run_label = recording.run[first]
     run = np.cumsum(np.r_[False, np.diff(run_label) != 0]).astype(np.int64)
     restart = np.r_[True, np.diff(run) != 0]
-    if recording.history == "continuous":
+    if one_history or recording.history == "continuous":
         restart = np.arange(len(rows)) == 0
     counts = recording.counts[first] & rows.full
     scored = None if recording.unscored is None else ~recording.unscored[first]
@@ -198,6 +203,7 @@ def prepare(
     return Problem(
         recording=recording,
         history=history,
+        one_history=one_history,
         angle_deg=angle,
         weight=rows.samples,
         fitted=fitted,

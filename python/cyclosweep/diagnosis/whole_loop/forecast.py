@@ -136,6 +136,7 @@ def starting_model(problem: Problem) -> Model:
         datum_deg=history.datum_deg,
         side=problem.recording.side,
         output_pin_count=history.output_pin_count,
+        one_history=problem.one_history,
     )
 
 

@@ -1,0 +1,94 @@
+"""Whether runs that a recording takes to begin afresh go on from each other."""
+
+import numpy as np
+
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.friction_first import CONVERGED, cost
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.recording import Recording
+from cyclosweep.simulation.effects.datum_drift import DatumDrift
+
+CLEARLY = 20.0
+"""What one history must gain, as `cost` counts: two fifths of the mean square of what runs leave
+that begin afresh. Within the noise, minus twice the log likelihood has to fall by twice as much."""
+REMEMBERING = ("hysteresis", "relaxation")
+"""Families of effects whose state at the end of a run may be that at the beginning of the next."""
+
+
+def may_be_one_history(recording: Recording) -> bool:
+    """Whether runs could go on from each other without the recording saying so.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    bool
+        False for a single run, where the rig was reset, and for a clock that starts anew: it does
+        not tell how long a drive was at rest.
+    """
+    answered = recording.history == "continuous" or recording.reset_between_runs
+    if answered or len(recording.runs) < 2:
+        return False
+    return recording.time_s is None or bool(np.all(np.diff(recording.time_s) >= 0.0))
+
+
+def remembered(searched: Search) -> tuple[Term, ...]:
+    """Named effects of the best structure, where one of them has a memory of the load.
+
+    Parameters
+    ----------
+    searched : Search
+        After it has run.
+
+    Returns
+    -------
+    tuple of Term
+        Empty where none of them has.
+    """
+    named = tuple(term for term in _best(searched).terms if term.effect is not None)
+    remembering = any(term.slips or term.family in REMEMBERING for term in named)
+    return named if remembering else ()
+
+
+def explains_more(searched: Search, joined: Search) -> bool:
+    """Whether what was found explains clearly more where runs go on from each other.
+
+    Parameters
+    ----------
+    searched : Search
+        A search that has run, of runs that begin afresh.
+    joined : Search
+        Calibrated, with nothing visited, of the same runs as one history.
+
+    Returns
+    -------
+    bool
+    """
+    terms = remembered(searched)
+    if not np.array_equal(searched.problem.fitted, joined.problem.fitted):
+        return False
+    noise = searched.noise
+    afresh = fit(searched.problem, noise, terms, _best(searched), rounds=CONVERGED)
+    # What creep or friction leaves to the next run, a datum that drifts stands in for.
+    still = tuple(term for term in terms if term.name != DatumDrift.name)
+    going_on = min(
+        (
+            fit(joined.problem, noise, kept, joined.baseline.fit, rounds=CONVERGED)
+            for kept in dict.fromkeys((terms, still))
+        ),
+        key=cost,
+    )
+    within_noise = going_on.rmse_deg < noise.spread_deg
+    ahead = afresh.loss - going_on.loss if within_noise else cost(afresh) - cost(going_on)
+    return bool(ahead > (2.0 * CLEARLY if within_noise else CLEARLY))
+
+
+def _best(searched: Search) -> FittedStructure:
+    """The structure that a search prefers."""
+    best = searched.chosen or decide(searched, [], 0.0).best or searched.start
+    return best.fit

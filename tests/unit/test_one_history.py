@@ -1,0 +1,94 @@
+"""Runs that go on from each other although the recording takes each to begin afresh."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.one_history import may_be_one_history
+from cyclosweep.recording.unbroken_runs import ONE_HISTORY
+from cyclosweep.simulation.model import EffectValue, Model
+from tests.support.arrays import Floats, present
+
+NOISE_DEG = 0.05
+FRICTION = EffectValue("friction_hysteresis", {"slip_deg": 3.0, "scatter": 0.6}, (1.2,))
+MODEL = Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(FRICTION,))
+
+
+def programme(history: str = "per-run", *, pause_s: float = 60.0) -> cs.Recording:
+    """Five loops of one flank, each from the load at which the one before ended."""
+    parts = []
+    for k, top in enumerate((9.0, 14.0, 6.0, 12.0, 4.0)):
+        torque = np.interp(np.arange(160), [0, 80, 159], [1.0, top, 1.0])
+        parts.append((torque, np.arange(160.0) + k * (160.0 + pause_s), np.full(160, k + 1)))
+    torque, time, run = map(np.concatenate, zip(*parts, strict=True))
+    load = cs.Recording.from_arrays(torque, time_s=time, run=run)
+    return replace(load, history=history)
+
+
+def twist(model: Model, load: cs.Recording) -> Floats:
+    return present(cs.simulate(model, load).angle_deg)
+
+
+def measured(history: str) -> cs.Recording:
+    """Readings of a drive with this history, in a recording that says nothing of it."""
+    angle = twist(MODEL, programme(history))
+    noise = np.random.default_rng(5).normal(0.0, NOISE_DEG, len(angle))
+    return programme().with_angle(angle + noise)
+
+
+@pytest.fixture(scope="module")
+def found() -> cs.Diagnosis:
+    return cs.diagnose(measured("continuous"), cs.Drive.reference_87())
+
+
+def test_runs_that_go_on_from_each_other_are_found(found: cs.Diagnosis) -> None:
+    assert found.verdict == "IDENTIFIED"
+    assert [effect["name"] for effect in found.effects] == ["friction_hysteresis"]
+    assert ONE_HISTORY in found.content["notes"]
+    assert found.content["repaired"]["rmse_deg"] < 1.2 * NOISE_DEG
+
+
+def test_the_repaired_model_simulates_its_recording(found: cs.Diagnosis) -> None:
+    model = found.model
+    assert model is not None
+    load = programme()
+    missed = twist(model, load) - twist(MODEL, programme("continuous"))
+    assert np.sqrt(np.mean(missed**2)) < 0.5 * NOISE_DEG
+    again = Model.from_json(model.to_json())
+    assert np.array_equal(twist(again, load), twist(model, load))
+    afresh = twist(replace(model, one_history=False), load)
+    assert np.sqrt(np.mean((afresh - twist(model, load)) ** 2)) > 5.0 * NOISE_DEG
+    assert np.array_equal(twist(model, replace(load, reset_between_runs=True)), afresh)
+
+
+def test_runs_that_begin_afresh_stay_apart() -> None:
+    diagnosis = cs.diagnose(measured("per-run"), cs.Drive.reference_87(), full=False)
+    assert diagnosis.verdict == "IDENTIFIED"
+    assert ONE_HISTORY not in diagnosis.content["notes"]
+    assert diagnosis.model is not None
+    assert not diagnosis.model.one_history
+
+
+def test_a_rig_that_was_reset_has_no_history() -> None:
+    recording = replace(measured("continuous"), reset_between_runs=True)
+    diagnosis = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
+    assert ONE_HISTORY not in diagnosis.content["notes"]
+    assert diagnosis.content["repaired"]["rmse_deg"] > 2.0 * NOISE_DEG
+
+
+@pytest.mark.parametrize(
+    ("recording", "may_be"),
+    [
+        (programme(), True),
+        (programme("continuous"), False),
+        (replace(programme(), reset_between_runs=True), False),
+        (programme(pause_s=-160.0), False),
+        (replace(programme(), time_s=None), True),
+        (replace(programme(), run=np.zeros(800, dtype=np.int64)), False),
+    ],
+    ids=["pauses", "stated", "reset", "clock that starts anew", "no clock", "one run"],
+)
+def test_which_recordings_may_be_one_history(recording: cs.Recording, may_be: bool) -> None:
+    assert may_be_one_history(recording) is may_be
