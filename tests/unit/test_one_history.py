@@ -1,6 +1,7 @@
 """Runs that go on from each other although the recording takes each to begin afresh."""
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -12,11 +13,12 @@ from cyclosweep.simulation.model import EffectValue, Model
 from tests.support.arrays import Floats, present
 
 NOISE_DEG = 0.05
+History = Literal["per-run", "continuous"]
 FRICTION = EffectValue("friction_hysteresis", {"slip_deg": 3.0, "scatter": 0.6}, (1.2,))
 MODEL = Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(FRICTION,))
 
 
-def programme(history: str = "per-run", *, pause_s: float = 60.0) -> cs.Recording:
+def programme(history: History = "per-run", *, pause_s: float = 60.0) -> cs.Recording:
     """Five loops of one flank, each from the load at which the one before ended."""
     parts = []
     for k, top in enumerate((9.0, 14.0, 6.0, 12.0, 4.0)):
@@ -31,7 +33,7 @@ def twist(model: Model, load: cs.Recording) -> Floats:
     return present(cs.simulate(model, load).angle_deg)
 
 
-def measured(history: str) -> cs.Recording:
+def measured(history: History) -> cs.Recording:
     """Readings of a drive with this history, in a recording that says nothing of it."""
     angle = twist(MODEL, programme(history))
     noise = np.random.default_rng(5).normal(0.0, NOISE_DEG, len(angle))

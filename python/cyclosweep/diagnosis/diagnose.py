@@ -11,11 +11,10 @@ from cyclosweep.diagnosis.compose import compose
 from cyclosweep.diagnosis.decide import conclude
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_of
 from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.model_error_table import with_error_table
-from cyclosweep.diagnosis.one_history import explains_more, may_be_one_history, remembered
+from cyclosweep.diagnosis.one_history import identify_over_runs
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.prepare.single_outliers import without_single_outliers
@@ -104,8 +103,8 @@ def _run_stages(
 ) -> Diagnosis:
     """Run one stage after the other.
 
-    Identification starts over where its best structure shows the noise to be another, so that the
-    places of the mismatch are looked for after it.
+    Identification starts over where its best structure shows the noise to be another, or the runs
+    to be one history, so that the places of the mismatch are looked for after it.
     """
     say("preparing")
     check_recording(recording)
@@ -116,18 +115,12 @@ def _run_stages(
     mesh_ratio = float(drive.ratio) if recording.side == "output" else 1.0
     recording = without_single_outliers(recording, line)
 
-    def calibrated(*, one_history: bool) -> Search:
+    def calibrated(one_history: bool) -> Search:
         problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio, one_history=one_history)
         check_prepared(problem, drive)
-        library = build_library(problem.history, problem.fitted, effects)
-        return calibrate(problem, library, seed)
+        return calibrate(problem, build_library(problem.history, problem.fitted, effects), seed)
 
-    searched = identify(calibrated(one_history=False), say)
-    if may_be_one_history(recording) and remembered(searched):
-        joined = calibrated(one_history=True)
-        if explains_more(searched, joined):
-            say("starting over with runs that go on from each other")
-            searched = identify(joined, say)
+    searched = identify_over_runs(recording, calibrated, say)
     say("bounding what was not found")
     concluded = conclude(searched, drive, tolerance_deg)
     regions = locate(concluded)

@@ -1,5 +1,7 @@
 """Whether runs that a recording takes to begin afresh go on from each other."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit import fit
@@ -8,6 +10,7 @@ from cyclosweep.diagnosis.identify.friction_first import CONVERGED, cost
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.datum_drift import DatumDrift
 
@@ -16,6 +19,35 @@ CLEARLY = 20.0
 that begin afresh. Within the noise, minus twice the log likelihood has to fall by twice as much."""
 REMEMBERING = ("hysteresis", "relaxation")
 """Families of effects whose state at the end of a run may be that at the beginning of the next."""
+
+
+def identify_over_runs(
+    recording: Recording, calibrated: Callable[[bool], Search], say: Callable[[str], None]
+) -> Search:
+    """Identify what is missing of runs that begin afresh, or that go on from each other.
+
+    Parameters
+    ----------
+    recording : Recording
+    calibrated : callable
+        From whether runs go on from each other, though the recording does not say so, to the
+        calibrated search of it.
+    say : callable
+        Called with a few words before each long step.
+
+    Returns
+    -------
+    Search
+        With all visited structures.
+    """
+    searched = identify(calibrated(False), say)
+    if not (may_be_one_history(recording) and remembered(searched)):
+        return searched
+    joined = calibrated(True)
+    if not explains_more(searched, joined):
+        return searched
+    say("starting over with runs that go on from each other")
+    return identify(joined, say)
 
 
 def may_be_one_history(recording: Recording) -> bool:

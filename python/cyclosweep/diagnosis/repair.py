@@ -8,6 +8,7 @@ from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.elasticity import compliance_with_curve
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.result import Baseline, CalibratedParameter, LearnedError
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats
@@ -66,6 +67,8 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     base, fitted = concluded.search.baseline.fit, concluded.accepted.fit
     before, after = fitted.baseline_prediction(base), fitted.prediction
     model = fitted.model(drive.name)
+    if model.one_history:
+        model = replace(model, notes=(ONE_HISTORY, *model.notes))
     if base.beta[1] <= 0.0:
         model = replace(model, notes=(*model.notes, FALLING))
     unnamed = [check for check in concluded.naming.withdrawn if check.name in fitted.names]

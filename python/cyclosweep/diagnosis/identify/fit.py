@@ -17,7 +17,6 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, folds, restrict
-from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import EffectValue, Model
@@ -71,8 +70,7 @@ class ContactFit(FittedStructure):
 
     def model(self, drive: str) -> Model:
         """Return the structure as a simulation of a drive of this name."""
-        one_history = self.problem.one_history
-        values, notes = [], [ONE_HISTORY] if one_history else []
+        values, notes = [], list[str]()
         for index, term in enumerate(self.terms):
             shape = term.shape
             notes += term.place_in_words
@@ -95,7 +93,7 @@ class ContactFit(FittedStructure):
             output_pin_count=self.history.output_pin_count,
             drive=drive,
             notes=tuple(notes),
-            one_history=one_history,
+            one_history=self.problem.one_history,
         )
 
     def predict_left_out(self) -> list[LeftOutPrediction]:
