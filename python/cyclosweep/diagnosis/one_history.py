@@ -6,7 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, cost
+from cyclosweep.diagnosis.identify.friction_first import CONVERGED, charges, cost
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.verdict import decide
@@ -16,7 +16,9 @@ from cyclosweep.simulation.effects.datum_drift import DatumDrift
 
 CLEARLY = 20.0
 """What one history must gain, as `cost` counts: two fifths of the mean square of what runs leave
-that begin afresh. Within the noise, minus twice the log likelihood has to fall by twice as much."""
+that begin afresh."""
+CLEARLY_LIKELIER = 40.0
+"""What it must gain against the noise, as minus twice the log likelihood."""
 REMEMBERING = ("hysteresis", "relaxation")
 """Families of effects whose state at the end of a run may be that at the beginning of the next."""
 
@@ -115,9 +117,12 @@ def explains_more(searched: Search, joined: Search) -> bool:
         ),
         key=cost,
     )
+    likelier = afresh.loss + charges(afresh) - going_on.loss - charges(going_on)
+    if likelier <= CLEARLY_LIKELIER:
+        return False
+    # What is left of either may be error of the laws, of which there is less than there are rows.
     within_noise = going_on.rmse_deg < noise.spread_deg
-    ahead = afresh.loss - going_on.loss if within_noise else cost(afresh) - cost(going_on)
-    return bool(ahead > (2.0 * CLEARLY if within_noise else CLEARLY))
+    return within_noise or cost(afresh) - cost(going_on) > CLEARLY
 
 
 def _best(searched: Search) -> FittedStructure:

@@ -334,10 +334,20 @@ def cost(fitted: FittedStructure) -> float:
     -------
     float
     """
-    parameters = len(fitted.beta) + len(fitted.fit_parameters)
     beyond = max(fitted.rmse_deg**2 - fitted.noise.spread_deg**2, 1e-3 * fitted.noise.spread_deg**2)
-    return (
-        INDEPENDENT_PIECES * float(np.log(beyond))
-        + PARAMETER_CHARGE * parameters
-        + EFFECT_CHARGE * len(fitted.terms)
-    )
+    return INDEPENDENT_PIECES * float(np.log(beyond)) + charges(fitted)
+
+
+def charges(fitted: FittedStructure) -> float:
+    """What the parameters and effects of a fit are charged, as minus twice a log likelihood.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+
+    Returns
+    -------
+    float
+    """
+    parameters = len(fitted.beta) + len(fitted.fit_parameters)
+    return PARAMETER_CHARGE * parameters + EFFECT_CHARGE * len(fitted.terms)

@@ -18,9 +18,9 @@ from cyclosweep.simulation.effects.mesh_range import (
     LEAST_POSITIONS,
     LEAST_TRAVEL_DEG,
     load_count,
+    loaded_travel_deg,
     position_count,
     travels_far_from_positions,
-    whole_travel_deg,
 )
 
 RATIO = "travel_ratio"
@@ -83,8 +83,8 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
 
 
 def travel_deg(history: History) -> float:
-    """Range over which the mesh travelled [deg]; zero where it stood at few places."""
-    return whole_travel_deg(history) if load_count(history) >= FEWEST_STATES else 0.0
+    """Range over which the mesh travelled under load [deg]; zero where it stood at few places."""
+    return loaded_travel_deg(history) if load_count(history) >= FEWEST_STATES else 0.0
 
 
 def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
