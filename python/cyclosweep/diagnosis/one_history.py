@@ -4,9 +4,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, charges, cost
+from cyclosweep.diagnosis.identify.friction_first import (
+    CONVERGED,
+    charges,
+    cost,
+    friction_first,
+)
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.verdict import decide
@@ -110,10 +116,14 @@ def explains_more(searched: Search, joined: Search) -> bool:
     afresh = fit(searched.problem, noise, terms, _best(searched), rounds=CONVERGED)
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
+    offered = dict.fromkeys((terms, still), joined.baseline.fit)
+    friction = _friction_of(joined, _best(searched).rmse_deg)
+    if friction is not None:
+        offered[friction.terms] = friction
     going_on = min(
         (
-            fit(joined.problem, noise, kept, joined.baseline.fit, rounds=CONVERGED)
-            for kept in dict.fromkeys((terms, still))
+            fit(joined.problem, noise, kept, near, rounds=CONVERGED)
+            for kept, near in offered.items()
         ),
         key=cost,
     )
@@ -123,6 +133,28 @@ def explains_more(searched: Search, joined: Search) -> bool:
     # What is left of either may be error of the laws, of which there is less than there are rows.
     within_noise = going_on.rmse_deg < noise.spread_deg
     return within_noise or cost(afresh) - cost(going_on) > CLEARLY
+
+
+def _friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
+    """Friction alone of runs that go on, where much is left of those that begin afresh.
+
+    What was found of them may stand in for friction that starts otherwise.
+
+    Parameters
+    ----------
+    joined : Search
+        Calibrated, of the runs as one history.
+    left_deg : float
+        Error of what was found of runs that begin afresh [deg].
+
+    Returns
+    -------
+    FittedStructure or None
+        None where little is left, or no friction is found.
+    """
+    assert joined.flexible is not None
+    little = model_error_noise(joined.problem, joined.noise, joined.flexible)
+    return friction_first(joined, little) if left_deg > LOUD * little.sigma_deg else None
 
 
 def _best(searched: Search) -> FittedStructure:
