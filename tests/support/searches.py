@@ -17,8 +17,9 @@ def search_of(*values: EffectValue) -> Search:
     return search_of_recording(long_recording(3_000, values))
 
 
-def search_of_recording(recording: cs.Recording) -> Search:
+def search_of_recording(recording: cs.Recording, *, one_history: bool = False) -> Search:
     """Calibrated search of a recording."""
-    problem = prepare(recording, DRIVE.nominal_line("input"), int(DRIVE.output_pin_count))
+    line, pins = DRIVE.nominal_line("input"), int(DRIVE.output_pin_count)
+    problem = prepare(recording, line, pins, one_history=one_history)
     library = build_library(problem.history, problem.fitted, tuple(effects()))
     return calibrate(problem, library, 0)

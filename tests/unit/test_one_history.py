@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.one_history import may_be_one_history
+from cyclosweep.diagnosis.one_history import friction_of, may_be_one_history
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.simulation.model import EffectValue, Model
 from tests.support.arrays import Floats, present
+from tests.support.searches import search_of_recording
 
 NOISE_DEG = 0.05
 History = Literal["per-run", "continuous"]
@@ -78,6 +79,14 @@ def test_a_rig_that_was_reset_has_no_history() -> None:
     diagnosis = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
     assert ONE_HISTORY not in diagnosis.content["notes"]
     assert diagnosis.content["repaired"]["rmse_deg"] > 2.0 * NOISE_DEG
+
+
+def test_friction_of_one_history_is_tried_where_much_is_left() -> None:
+    joined = search_of_recording(measured("continuous"), one_history=True)
+    assert friction_of(joined, 1.2 * NOISE_DEG) is None
+    found = friction_of(joined, 20.0 * NOISE_DEG)
+    assert found is not None
+    assert found.rmse_deg < 1.2 * NOISE_DEG
 
 
 @pytest.mark.parametrize(

@@ -117,7 +117,7 @@ def explains_more(searched: Search, joined: Search) -> bool:
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
     offered = dict.fromkeys((terms, still), joined.baseline.fit)
-    friction = _friction_of(joined, _best(searched).rmse_deg)
+    friction = friction_of(joined, _best(searched).rmse_deg)
     if friction is not None:
         offered[friction.terms] = friction
     going_on = min(
@@ -135,7 +135,7 @@ def explains_more(searched: Search, joined: Search) -> bool:
     return within_noise or cost(afresh) - cost(going_on) > CLEARLY
 
 
-def _friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
+def friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
     """Friction alone of runs that go on, where much is left of those that begin afresh.
 
     What was found of them may stand in for friction that starts otherwise.
