@@ -9,14 +9,14 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.one_history import friction_of, may_be_one_history
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY
-from cyclosweep.simulation.model import EffectValue, Model
+from cyclosweep.simulation.model import EffectValue
 from tests.support.arrays import Floats, present
 from tests.support.searches import search_of_recording
 
 NOISE_DEG = 0.05
 History = Literal["per-run", "continuous"]
 FRICTION = EffectValue("friction_hysteresis", {"slip_deg": 3.0, "scatter": 0.6}, (1.2,))
-MODEL = Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(FRICTION,))
+MODEL = cs.Model(compliance_deg_per_nm=2.7, free_play_deg=28.0, effects=(FRICTION,))
 
 
 def programme(history: History = "per-run", *, pause_s: float = 60.0) -> cs.Recording:
@@ -30,7 +30,7 @@ def programme(history: History = "per-run", *, pause_s: float = 60.0) -> cs.Reco
     return replace(load, history=history)
 
 
-def twist(model: Model, load: cs.Recording) -> Floats:
+def twist(model: cs.Model, load: cs.Recording) -> Floats:
     return present(cs.simulate(model, load).angle_deg)
 
 
@@ -59,7 +59,7 @@ def test_the_repaired_model_simulates_its_recording(found: cs.Diagnosis) -> None
     load = programme()
     missed = twist(model, load) - twist(MODEL, programme("continuous"))
     assert np.sqrt(np.mean(missed**2)) < 0.5 * NOISE_DEG
-    again = Model.from_json(model.to_json())
+    again = cs.Model.from_json(model.to_json())
     assert np.array_equal(twist(again, load), twist(model, load))
     afresh = twist(replace(model, one_history=False), load)
     assert np.sqrt(np.mean((afresh - twist(model, load)) ** 2)) > 5.0 * NOISE_DEG
