@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.identify.testability import Testability, testability
 from cyclosweep.diagnosis.identify.verdict import (
     MOSTLY,
     Decision,
+    accepted_in_stages,
     decide,
     decide_in_stages,
     named_if_close,
@@ -116,8 +117,8 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     if search.noise.structured:
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
     staged: tuple[Candidate, Explained] | None = None
-    if search.noise.structured or search.start is not search.baseline:
-        found = search.chosen or search.start
+    found = accepted_in_stages(search)
+    if found is not None:
         staged = found, explained_share(search.baseline.fit, found.fit, search.seed)
         decision = decide_in_stages(search, staged[1].share or 0.0)
     else:

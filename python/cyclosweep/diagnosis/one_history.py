@@ -2,8 +2,6 @@
 
 from collections.abc import Callable
 
-import numpy as np
-
 from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -15,9 +13,10 @@ from cyclosweep.diagnosis.identify.friction_first import (
 )
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import decide
+from cyclosweep.diagnosis.identify.verdict import accepted_in_stages, decide
 from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.recording import Recording
+from cyclosweep.recording.unbroken_runs import runs_can_go_on
 from cyclosweep.simulation.effects.datum_drift import DatumDrift
 
 CLEARLY = 20.0
@@ -25,8 +24,8 @@ CLEARLY = 20.0
 that begin afresh."""
 CLEARLY_LIKELIER = 40.0
 """What it must gain against the noise, as minus twice the log likelihood."""
-REMEMBERING = ("hysteresis", "relaxation")
-"""Families of effects whose state at the end of a run may be that at the beginning of the next."""
+CREEP = "relaxation"
+"""Family of the effects whose delayed twist at the end of a run may go on in the next."""
 
 
 def identify_over_runs(
@@ -55,7 +54,8 @@ def identify_over_runs(
     if not explains_more(searched, joined):
         return searched
     say("starting over with runs that go on from each other")
-    return identify(joined, say)
+    again = identify(joined, say)
+    return again if remembered(again) else searched
 
 
 def may_be_one_history(recording: Recording) -> bool:
@@ -68,13 +68,10 @@ def may_be_one_history(recording: Recording) -> bool:
     Returns
     -------
     bool
-        False for a single run, where the rig was reset, and for a clock that starts anew: it does
-        not tell how long a drive was at rest.
+        False for a single run, and where `runs_can_go_on` is.
     """
-    answered = recording.history == "continuous" or recording.reset_between_runs
-    if answered or len(recording.runs) < 2:
-        return False
-    return recording.time_s is None or bool(np.all(np.diff(recording.time_s) >= 0.0))
+    stated = recording.history == "continuous"
+    return not stated and len(recording.runs) > 1 and runs_can_go_on(recording)
 
 
 def remembered(searched: Search) -> tuple[Term, ...]:
@@ -91,8 +88,7 @@ def remembered(searched: Search) -> tuple[Term, ...]:
         Empty where none of them has.
     """
     named = tuple(term for term in _best(searched).terms if term.effect is not None)
-    remembering = any(term.slips or term.family in REMEMBERING for term in named)
-    return named if remembering else ()
+    return named if any(term.slips or term.family == CREEP for term in named) else ()
 
 
 def explains_more(searched: Search, joined: Search) -> bool:
@@ -109,15 +105,12 @@ def explains_more(searched: Search, joined: Search) -> bool:
     -------
     bool
     """
-    terms = remembered(searched)
-    if not np.array_equal(searched.problem.fitted, joined.problem.fitted):
-        return False
-    noise = searched.noise
-    afresh = fit(searched.problem, noise, terms, _best(searched), rounds=CONVERGED)
+    terms, found, noise = remembered(searched), _best(searched), searched.noise
+    afresh = fit(searched.problem, noise, terms, found, rounds=CONVERGED)
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
     offered = dict.fromkeys((terms, still), joined.baseline.fit)
-    friction = friction_of(joined, _best(searched).rmse_deg)
+    friction = friction_of(joined, found.rmse_deg)
     if friction is not None:
         offered[friction.terms] = friction
     going_on = min(
@@ -158,6 +151,6 @@ def friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
 
 
 def _best(searched: Search) -> FittedStructure:
-    """The structure that a search prefers."""
-    best = searched.chosen or decide(searched, [], 0.0).best or searched.start
+    """The structure that the verdict on a search rests on."""
+    best = accepted_in_stages(searched) or decide(searched, [], 0.0).best or searched.baseline
     return best.fit

@@ -24,6 +24,25 @@ ONE_HISTORY = (
 )
 
 
+def runs_can_go_on(recording: Recording) -> bool:
+    """Whether runs may go on from each other.
+
+    Parameters
+    ----------
+    recording : Recording
+        A recording or a programme.
+
+    Returns
+    -------
+    bool
+        False where the rig was reset between them, and for a clock that starts anew: it does not
+        tell how long a drive was at rest.
+    """
+    clock = recording.time_s
+    goes_on = clock is None or bool(np.all(np.diff(clock) >= 0.0))
+    return goes_on and not recording.reset_between_runs
+
+
 def unbroken_runs(recording: Recording) -> tuple[str, ...]:
     """Ask whether runs are one load history.
 

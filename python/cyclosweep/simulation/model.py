@@ -67,7 +67,7 @@ class Model:
         out.
     one_history : bool
         Runs of a programme go on from each other, unless the programme says that the rig is reset
-        between them. Without it, the programme's ``history`` alone decides.
+        between them or its clock starts anew. Without it, the programme's ``history`` decides.
     """
 
     compliance_deg_per_nm: float
@@ -89,6 +89,7 @@ class Model:
             real_numbers(name, [getattr(self, name)])
         one_of("side", self.side, ("input", "output"))
         instance_of("effects", self.effects, tuple)
+        instance_of("one_history", self.one_history, bool)
         for value in self.effects:
             instance_of("effects", value, EffectValue)
 

@@ -170,6 +170,24 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
     return Decision("MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS", best, explanations, True)
 
 
+def accepted_in_stages(search: Search) -> Candidate | None:
+    """The structure that a search in stages accepted.
+
+    Parameters
+    ----------
+    search : Search
+        After it has run.
+
+    Returns
+    -------
+    Candidate or None
+        None where structures are compared by their evidence.
+    """
+    if search.noise.structured or search.start is not search.baseline:
+        return search.chosen or search.start
+    return None
+
+
 def no_more_than_fits(
     decision: Decision, accepted: Candidate, search: Search, explained_share: float
 ) -> Decision:

@@ -144,6 +144,8 @@ def prepare(
         About the largest number of rows.
     mesh_ratio : float
         Turns of the mesh zone a turn of the measured shaft.
+    one_history : bool
+        Runs go on from each other although the recording does not say so.
 
     Returns
     -------
