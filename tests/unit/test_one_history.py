@@ -34,9 +34,9 @@ def twist(model: cs.Model, load: cs.Recording) -> Floats:
     return present(cs.simulate(model, load).angle_deg)
 
 
-def measured(history: History) -> cs.Recording:
+def measured(history: History, model: cs.Model = MODEL) -> cs.Recording:
     """Readings of a drive with this history, in a recording that says nothing of it."""
-    angle = twist(MODEL, programme(history))
+    angle = twist(model, programme(history))
     noise = np.random.default_rng(5).normal(0.0, NOISE_DEG, len(angle))
     return programme().with_angle(angle + noise)
 
@@ -72,6 +72,20 @@ def test_runs_that_begin_afresh_stay_apart() -> None:
     assert ONE_HISTORY not in diagnosis.content["notes"]
     assert diagnosis.model is not None
     assert not diagnosis.model.one_history
+
+
+def test_creep_that_goes_on_is_found_instead_of_a_datum_that_drifts() -> None:
+    creep = EffectValue("creep", {"time_constant_s": 150.0}, (0.6,))
+    recording = measured("continuous", replace(MODEL, effects=(creep,)))
+    diagnosis = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
+    assert [effect["name"] for effect in diagnosis.effects] == ["creep"]
+    assert ONE_HISTORY in diagnosis.content["notes"]
+
+
+def test_a_programme_whose_clock_starts_anew_begins_afresh() -> None:
+    model, anew = replace(MODEL, one_history=True), programme(pause_s=-160.0)
+    assert np.array_equal(twist(model, anew), twist(MODEL, anew))
+    assert not np.allclose(twist(model, programme()), twist(MODEL, programme()))
 
 
 def test_a_rig_that_was_reset_has_no_history() -> None:
