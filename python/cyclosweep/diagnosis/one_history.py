@@ -5,12 +5,7 @@ from collections.abc import Callable
 from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import (
-    CONVERGED,
-    charges,
-    cost,
-    friction_first,
-)
+from cyclosweep.diagnosis.identify.friction_first import CONVERGED, charges, cost, friction_first
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.verdict import accepted_in_stages, decide
@@ -48,14 +43,17 @@ def identify_over_runs(
         With all visited structures.
     """
     searched = identify(calibrated(False), say)
-    if not (may_be_one_history(recording) and remembered(searched)):
+    if not may_be_one_history(recording):
+        return searched
+    found = _best(searched)
+    if not _remembers(found):
         return searched
     joined = calibrated(True)
-    if not explains_more(searched, joined):
+    if not explains_more(searched, found, joined):
         return searched
     say("starting over with runs that go on from each other")
     again = identify(joined, say)
-    return again if remembered(again) else searched
+    return again if _remembers(_best(again)) else searched
 
 
 def may_be_one_history(recording: Recording) -> bool:
@@ -74,30 +72,15 @@ def may_be_one_history(recording: Recording) -> bool:
     return not stated and len(recording.runs) > 1 and runs_can_go_on(recording)
 
 
-def remembered(searched: Search) -> tuple[Term, ...]:
-    """Named effects of the best structure, where one of them has a memory of the load.
-
-    Parameters
-    ----------
-    searched : Search
-        After it has run.
-
-    Returns
-    -------
-    tuple of Term
-        Empty where none of them has.
-    """
-    named = tuple(term for term in _best(searched).terms if term.effect is not None)
-    return named if any(term.slips or term.family == CREEP for term in named) else ()
-
-
-def explains_more(searched: Search, joined: Search) -> bool:
+def explains_more(searched: Search, found: FittedStructure, joined: Search) -> bool:
     """Whether what was found explains clearly more where runs go on from each other.
 
     Parameters
     ----------
     searched : Search
         A search that has run, of runs that begin afresh.
+    found : FittedStructure
+        Its best structure.
     joined : Search
         Calibrated, with nothing visited, of the same runs as one history.
 
@@ -105,7 +88,7 @@ def explains_more(searched: Search, joined: Search) -> bool:
     -------
     bool
     """
-    terms, found, noise = remembered(searched), _best(searched), searched.noise
+    terms, noise = _named(found), searched.noise
     afresh = fit(searched.problem, noise, terms, found, rounds=CONVERGED)
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
@@ -148,6 +131,16 @@ def friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
     assert joined.flexible is not None
     little = model_error_noise(joined.problem, joined.noise, joined.flexible)
     return friction_first(joined, little) if left_deg > LOUD * little.sigma_deg else None
+
+
+def _named(fitted: FittedStructure) -> tuple[Term, ...]:
+    """Effects of a structure that have a name."""
+    return tuple(term for term in fitted.terms if term.effect is not None)
+
+
+def _remembers(fitted: FittedStructure) -> bool:
+    """Whether a named effect of a structure has a memory of the load over runs."""
+    return any(term.slips or term.family == CREEP for term in _named(fitted))
 
 
 def _best(searched: Search) -> FittedStructure:

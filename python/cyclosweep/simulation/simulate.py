@@ -11,7 +11,7 @@ from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
 from cyclosweep.simulation.drag_compliance import under_drag_of
-from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.history import Flags, Floats, History, runs_and_restarts
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
@@ -52,10 +52,10 @@ def history_of(recording: Recording, model: Model) -> History:
         n samples.
     """
     torque = np.ascontiguousarray(recording.torque_nm - model.torque_zero_nm, dtype=np.float64)
-    run = np.cumsum(np.r_[False, np.diff(recording.run) != 0]).astype(np.int64)
-    restart = np.r_[True, np.diff(run) != 0] if len(run) else np.zeros(0, dtype=bool)
-    if recording.history == "continuous" or (model.one_history and runs_can_go_on(recording)):
-        restart = np.arange(len(torque)) == 0
+    found = model.one_history and runs_can_go_on(recording)
+    run, restart = runs_and_restarts(
+        recording.run, one_history=found or recording.history == "continuous"
+    )
     side = _flanks(torque, restart)
     twist = model.elastic_twist(torque)
     return History(

@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
 from cyclosweep.recording import Recording
-from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints
+from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints, runs_and_restarts
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,10 +158,9 @@ def prepare(
     time = None if recording.time_s is None else rows.mean(recording.time_s)
     warm = None if recording.temperature_c is None else rows.mean(recording.temperature_c)
     run_label = recording.run[first]
-    run = np.cumsum(np.r_[False, np.diff(run_label) != 0]).astype(np.int64)
-    restart = np.r_[True, np.diff(run) != 0]
-    if one_history or recording.history == "continuous":
-        restart = np.arange(len(rows)) == 0
+    run, restart = runs_and_restarts(
+        run_label, one_history=one_history or recording.history == "continuous"
+    )
     counts = recording.counts[first] & rows.full
     scored = None if recording.unscored is None else ~recording.unscored[first]
     flanks = find_flanks(torque, angle, line, scored)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cyclosweep.simulation.effects.corners import Corners, Flags, Floats, Ints, find_corners
 
-__all__ = ["Flags", "Floats", "History", "Ints"]
+__all__ = ["Flags", "Floats", "History", "Ints", "runs_and_restarts"]
 
 _OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s", "has_corners"))
 """What the values that are computed once for a load history follow from."""
@@ -209,3 +209,25 @@ class History:
                 if torque * step > 0:
                     lapse[first] = torque / step * (self.time_s[first + 1] - self.time_s[first])
         return lapse
+
+
+def runs_and_restarts(run: Ints, *, one_history: bool) -> tuple[Ints, Flags]:
+    """Number the runs of a load, and say where play, slip and creep start afresh.
+
+    Parameters
+    ----------
+    run : ndarray of int, shape (n,)
+        Label of the run of each sample.
+    one_history : bool
+        Runs go on from each other.
+
+    Returns
+    -------
+    number : ndarray of int, shape (n,)
+        Runs counted from zero in the order in which they follow.
+    restart : ndarray of bool, shape (n,)
+        At the first sample of all or, where runs begin afresh, of each run.
+    """
+    begins = np.diff(run, prepend=run[:1] - 1) != 0
+    restart = np.arange(len(run)) == 0 if one_history else begins
+    return np.cumsum(begins).astype(np.int64) - 1, restart
