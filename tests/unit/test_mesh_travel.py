@@ -159,14 +159,35 @@ def test_a_travelling_mesh_is_looked_for_where_no_position_was_recorded() -> Non
     effect = find("transmission_error")
     fixed = history(crank_deg=None)
     assert all("travel_ratio" in shape for shape in effect.shapes(fixed))
-    short = history(crank_deg=None, angle_deg=np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610))
+    angle = np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610)
+    short = history(crank_deg=None, angle_deg=angle, free_play_deg=0.0)
     assert "59 deg" in str(effect.untestable(short))
     assert effect.untestable(short.with_state(mesh_ratio=13.0)) is None
 
 
+def test_the_play_is_no_travel_under_load() -> None:
+    side = np.repeat([-1.0, 1.0], 305)
+    torque = np.linspace(-20.0, 20.0, 610)
+    both = history(
+        crank_deg=None, applied_nm=torque, side=side, angle_deg=20.0 * side + torque,
+        free_play_deg=20.0,
+    )  # fmt: skip
+    assert travel_deg(both) == pytest.approx(40.0)
+    assert "40 deg" in str(find("transmission_error").untestable(both))
+    orders = [shape["travel_order_1"] for shape in travel_shapes(both)]
+    assert orders[0] == pytest.approx(3.0 * 360.0 / 40.0)
+    assert np.diff(orders) == pytest.approx(CYCLE_STEP * 360.0 / 80.0)
+    # A reading without load on the other flank is no travel through the play.
+    light = both.with_state(side=np.where(np.abs(torque) < 0.5, -1.0, 1.0))
+    assert travel_deg(light) == pytest.approx(80.0)
+    one = both.with_state(side=np.ones(610))
+    assert travel_deg(one) == pytest.approx(80.0)
+    assert min(s["travel_order_1"] for s in travel_shapes(one)) == pytest.approx(3.0 * 360.0 / 80.0)
+
+
 def test_one_cycle_a_turn_of_the_shaft_is_left_to_the_dial() -> None:
     turning = history(crank_deg=None, angle_deg=np.linspace(0.0, 360.0 * 5.0, 610))
-    cycles = [s["travel_order_1"] * travel_deg(turning) / 360.0 for s in travel_shapes(turning)]
+    cycles = [s["travel_order_1"] * 5.0 for s in travel_shapes(turning)]
     assert min(abs(each - 5.0) for each in cycles) > CYCLE_STEP
     assert find("dial_eccentricity").untestable(turning) is None
 

@@ -76,6 +76,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         # Two frictions and their presliding have many optima: they are looked for once more.
         one = friction is not None and sum(term.slips for term in friction.terms) == 1
         return _by_size(search, flexible, say, friction if one else None)
+    given_up = False
     for _ in range(RESTARTS):
         search.run(say)
         best = search.best()
@@ -90,10 +91,10 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         search = Search(search.problem, noise, search.library, search.seed)
         search.not_extended = known or frozenset()
         if given_up:
-            return search_in_stages(search, flexible, say)
+            break
     else:
         search.run(say)
-    if not _leaves_something(search):
+    if not given_up and not _leaves_something(search):
         return search
     if pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)

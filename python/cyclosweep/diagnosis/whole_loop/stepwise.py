@@ -48,7 +48,8 @@ WORST = 0.02
 """Share of the rows without which it must not be far worse, either: a reading at which a flank is
 reached too late is off by the whole play, and a few of them outweigh all the rest."""
 FAR_WORSE = 1.5
-"""Error on the other rows over that of the structure fitted to the flanks, from which it is."""
+"""Error on the other rows over that of the structure fitted to the flanks, from which it is. Where
+the error on all rows falls by more than the square of this, its root is what it may be instead."""
 
 
 def whole_loop_structure(search: Search) -> Candidate | None:
@@ -196,10 +197,9 @@ def _is_clearly_better(model: Forecast, simulated: Floats | None) -> bool:
     if simulated is None:
         return False
     problem = model.problem
-    before = problem.rms_error(simulated, problem.whole_fitted)
-    usual_before = usual_error(problem, simulated)
-    not_far_worse = usual_error(problem, model.angle_deg) <= FAR_WORSE * usual_before
-    return model.error_deg < before / MOST_WORSE and not_far_worse
+    gain = problem.rms_error(simulated, problem.whole_fitted) / model.error_deg
+    loss = usual_error(problem, model.angle_deg) / usual_error(problem, simulated)
+    return bool(gain > MOST_WORSE and loss <= max(FAR_WORSE, np.sqrt(gain)))
 
 
 def usual_error(problem: Problem, angle_deg: Floats) -> float:

@@ -6,8 +6,10 @@ from cyclosweep.simulation.effects.base import spread
 from cyclosweep.simulation.effects.history import Floats, History
 
 LEAST_TRAVEL_DEG = 60.0
-"""Travel of the mesh from which orders are looked for: a sixth of a turn. Below it even three
-cycles within the travel are of order 18 and more, beyond most pins of a drive."""
+"""Travel of the mesh under load from which orders are looked for: a sixth of a turn. Below it even
+three cycles within the travel are of order 18 and more, beyond most pins of a drive."""
+LOADED = 0.05
+"""Load over the largest one from which a flank counts as loaded."""
 LEAST_POSITIONS = 3
 """Recorded positions of the mesh from which orders of the position are looked for."""
 LEAST_SPREAD_DEG = 60.0
@@ -57,6 +59,17 @@ def load_count(history: History) -> int:
 def whole_travel_deg(history: History) -> float:
     """Range over which the mesh travelled [deg], at however many places it stood."""
     return history.mesh_ratio * spread(history.travelled_deg)
+
+
+def loaded_travel_deg(history: History) -> float:
+    """Range over which the mesh travelled [deg], less the play that it crossed.
+
+    No readings within the play are fitted, so that a wave of which only two short parts are seen
+    would pass for three cycles.
+    """
+    loaded = history.load_nm > LOADED * history.largest_torque_nm
+    crossed = 2.0 * history.free_play_deg if len(np.unique(history.side[loaded])) > 1 else 0.0
+    return max(whole_travel_deg(history) - history.mesh_ratio * crossed, 0.0)
 
 
 def travels_far_from_positions(history: History) -> bool:

@@ -18,6 +18,7 @@ from cyclosweep.simulation.effects.mesh_range import (
     LEAST_POSITIONS,
     LEAST_TRAVEL_DEG,
     load_count,
+    loaded_travel_deg,
     position_count,
     travels_far_from_positions,
     whole_travel_deg,
@@ -43,8 +44,8 @@ FEWEST_STATES = 2 * int(MOST_CYCLES)
 """Different torques from which waves along the travel are looked for: two for each cycle. With
 fewer, as with weights, waves of different orders are the same."""
 CYCLE_STEP = 0.5
-"""Distance of neighbouring orders that are looked for, in cycles within the travel: half of what
-the travel tells apart."""
+"""Distance of neighbouring orders that are looked for, in cycles within the whole travel, with the
+play that is crossed: half of what the travel tells apart."""
 SAME_ORDER = 0.25
 """Share of an order within which another one is the same."""
 HARMONIC = 0.08
@@ -83,8 +84,8 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
 
 
 def travel_deg(history: History) -> float:
-    """Range over which the mesh travelled [deg]; zero where it stood at few places."""
-    return whole_travel_deg(history) if load_count(history) >= FEWEST_STATES else 0.0
+    """Range over which the mesh travelled under load [deg]; zero where it stood at few places."""
+    return loaded_travel_deg(history) if load_count(history) >= FEWEST_STATES else 0.0
 
 
 def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
@@ -114,13 +115,14 @@ def travel_shapes(history: History) -> list[Shape]:
 
     One cycle a turn of the measured shaft itself is left to an eccentric dial, which is the same.
     """
-    turns = travel_deg(history) / 360.0
-    cycles = np.arange(FEWEST_CYCLES, MOST_CYCLES + 0.5 * CYCLE_STEP, CYCLE_STEP)
-    dial = turns / history.mesh_ratio
+    turns, step = travel_deg(history) / 360.0, CYCLE_STEP * 360.0 / whole_travel_deg(history)
+    lowest, highest = FEWEST_CYCLES / turns, MOST_CYCLES / turns
+    orders = np.linspace(lowest, highest, 1 + round((highest - lowest) / step))
+    dial = 1.0 / history.mesh_ratio
     return [
-        travelling_shape(history.mesh_ratio, [float(each / turns)])
-        for each in cycles
-        if abs(each - dial) > CYCLE_STEP
+        travelling_shape(history.mesh_ratio, [float(each)])
+        for each in orders
+        if abs(each - dial) > step
     ]
 
 
@@ -205,7 +207,7 @@ class MeshPeriodic(Effect):
     """An effect that is periodic in the position of the mesh zone."""
 
     needs = ("crank_deg",)
-    shown_by = "runs at three or more recorded mesh positions, or a travel of a sixth of a turn"
+    shown_by = "runs at three or more recorded mesh positions, or a sixth of a turn under load"
     forms = (
         ShapeForm(numbered=WHOLE_ORDER),
         ShapeForm((RATIO,), numbered=WHOLE_ORDER),
@@ -315,7 +317,7 @@ class MeshPeriodic(Effect):
         if position_count(history) >= LEAST_POSITIONS or travel_deg(history) >= LEAST_TRAVEL_DEG:
             return None
         reason = super().untestable(history) or "the mesh zone stood at fewer than three positions"
-        return f"{reason}, and it travelled by {travel_deg(history):.3g} deg only"
+        return f"{reason}, and it travelled by {travel_deg(history):.3g} deg under load only"
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Orders of both; none where the position is known in different ways."""
@@ -363,7 +365,7 @@ class MeshPeriodic(Effect):
                 "Here it goes with where the mesh was locked and how far it has travelled since, "
                 f"in cycles a turn of the input {unit}: {', '.join(parts)}."
             )
-        apart = 360.0 / travel_deg(history)
+        apart = 360.0 / whole_travel_deg(history)
         return (
             f"Here it goes with the travel of the mesh, in cycles a turn of the input {unit}: "
             f"{', '.join(parts)}; the travel tells orders apart that differ by {apart:.2g}. "
