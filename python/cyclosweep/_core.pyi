@@ -233,6 +233,7 @@ def solve_slip(
     compliance: float,
     limit: float,
     load_factor: float = 0.0,
+    load_power: float = 0.0,
     growth: float = 0.0,
     reference_torque: float = 1.0,
     forgetting: float = 0.0,

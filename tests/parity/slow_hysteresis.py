@@ -49,6 +49,7 @@ def solve_slip(
     growth: float = 0.0,
     reference_nm: float = 1.0,
     forgetting: float = 0.0,
+    load_power: float = 0.0,
 ) -> tuple[Floats, Floats]:
     """Balance of torques by bisection, one sample after the other."""
     angle, friction = np.zeros(len(torque)), np.zeros(len(torque))
@@ -62,7 +63,8 @@ def solve_slip(
 
     def hold(twist: float) -> tuple[float, float]:
         """Friction limit, and how much longer the presliding distances are."""
-        most = limit + load * abs(elastic(twist))
+        held = abs(elastic(twist))
+        most = limit + load * held * ((1 + min(held / reference_nm, 4)) / 2) ** load_power
         return most, stretch_by(most, limit + load * reference_nm, growth)
 
     def force(at: float, base: float) -> float:

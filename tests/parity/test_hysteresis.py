@@ -35,7 +35,10 @@ def random_history(seed: int, play: float) -> tuple[Floats, Floats, Mask, Floats
 @pytest.mark.parametrize(
     ("growth", "forgetting"), [(0.0, 0.0), (0.4, 0.0), (1.0, 0.0), (0.0, 1.0), (0.4, 0.35)]
 )
-@pytest.mark.parametrize(("limit", "load"), [(0.8, 0.0), (0.0, 0.2), (0.6, 0.25)])
+@pytest.mark.parametrize(
+    ("limit", "load", "power"),
+    [(0.8, 0.0, 0.0), (0.0, 0.2, 0.0), (0.6, 0.25, 0.0), (0.0, 0.3, -1.0), (0.6, 0.08, 1.5)],
+)
 @pytest.mark.parametrize("play", [0.0, 3.0])
 def test_slip_in_the_angle(
     seed: int,
@@ -44,21 +47,22 @@ def test_slip_in_the_angle(
     forgetting: float,
     limit: float,
     load: float,
+    power: float,
     play: float,
 ) -> None:
     torque, offset, restart, start = random_history(seed, play)
     slip, share = np.array([0.05, 0.4, 2.0]), np.array([0.5, 0.3, 0.2])
     angle, friction = core.solve_slip(
         torque, offset, restart, start, slip, share,
-        free_play=play, compliance=2.0, limit=limit, load_factor=load, growth=growth,
-        reference_torque=9.0, forgetting=forgetting,
+        free_play=play, compliance=2.0, limit=limit, load_factor=load, load_power=power,
+        growth=growth, reference_torque=9.0, forgetting=forgetting,
         law_torque=LAW_TORQUE if curved else None,
         law_twist=LAW_TWIST if curved else None,
     )  # fmt: skip
     law = slow.through(LAW_TORQUE, LAW_TWIST) if curved else slow.line(2.0)
     expected, force = slow.solve_slip(
         torque, offset, restart, start, slip, share, play, law, limit, load, growth, 9.0,
-        forgetting,
+        forgetting, power,
     )  # fmt: skip
     np.testing.assert_allclose(angle, expected, atol=1e-6)
     np.testing.assert_allclose(friction, force, atol=1e-6)
@@ -95,9 +99,10 @@ def test_only_what_is_remembered_closes_a_small_loop() -> None:
     assert abs(opens[3] - opens[1]) > 1e-3
 
 
-@pytest.mark.parametrize("growth", [0.0, 0.7])
-def test_fitted_model_is_solved_like_its_formulas(growth: float) -> None:
+@pytest.mark.parametrize(("growth", "power"), [(0.0, 0.0), (0.7, 0.0), (0.7, 1.2), (0.0, -0.8)])
+def test_fitted_model_is_solved_like_its_formulas(growth: float, power: float) -> None:
     slip = {"slip_deg": 0.5, "scatter": 0.8, "growth": growth, "reference_nm": 8.0}
+    slip |= {"load_power": power} if power else {}
     model = cs.Model(
         compliance_deg_per_nm=2.0,
         free_play_deg=5.0,
@@ -126,7 +131,7 @@ def test_fitted_model_is_solved_like_its_formulas(growth: float) -> None:
     start = np.full(len(torque), history.start_angle_deg[0])
     angle, friction = slow.solve_slip(
         torque, np.full(len(torque), 0.3), fresh, start, elements.slip_deg, elements.share,
-        5.0, law, 0.8, 0.15, growth, 8.0,
+        5.0, law, 0.8, 0.15, growth, 8.0, 0.0, power,
     )  # fmt: skip
     # The law is laid through points, a thousandth of the twist apart from its formula.
     np.testing.assert_allclose(history.angle_deg, angle, atol=2e-3)

@@ -296,6 +296,30 @@ def test_a_structure_that_is_accepted_whole_stands_for_one_that_holds_too_much(
     assert staged_search._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0) == []
 
 
+def test_one_of_two_laws_that_cancel_is_accepted_and_not_none() -> None:
+    """Two laws of one class whose difference is a curve, of which either alone is most of it."""
+    search = search_of(EffectValue("load_asymmetry", {"power": 0.7}, (1.2,)))
+    asymmetry, dial = find("load_asymmetry"), find("dial_eccentricity")
+    one = structure(search, Term(asymmetry, {"power": 1.0}))
+    both = structure(search, Term(asymmetry, {"power": 1.0}), Term(dial, {"order": 1.0}))
+    search.visited = {each.names: replace(each, gain=100.0) for each in (one, both)}
+    best = search.visited[both.names]
+
+    def found() -> frozenset[str] | None:
+        part = staged_search._without_cancelling(search, best, mismatch(search))
+        return None if part is None else part.names
+
+    laws = {"cancel": True}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(staged_search, "cancels", lambda *_: laws["cancel"])
+        assert found() == one.names
+        laws["cancel"] = False
+        assert found() is None
+        laws["cancel"] = True
+        search.visited[one.names] = replace(one, gain=5.0)
+        assert found() is None
+
+
 @pytest.mark.parametrize(("times", "leaves"), [(1.0, False), (5.0, True)])
 def test_a_fit_far_above_the_noise_leaves_something_whatever_the_tests_say(
     times: float, leaves: bool, monkeypatch: pytest.MonkeyPatch

@@ -161,7 +161,9 @@ def law_of_twist(
     """
     half = 3.0 * max(largest_torque_nm, 1e-9) * np.geomspace(1e-5, 1.0, LAW_POINTS)
     twists = twist(np.r_[-half[::-1], half])
-    least = 1e-3 * compliance_deg_per_nm
+    # Of a drive without compliance neighbouring twists would be the same number.
+    told_apart = 1e-9 * float(np.abs(twists).max()) / half[0]
+    least = max(1e-3 * compliance_deg_per_nm, told_apart)
     upper = np.maximum.accumulate(np.r_[0.0, twists[LAW_POINTS:]] - least * np.r_[0.0, half])
     lower = np.maximum.accumulate(np.r_[0.0, -twists[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])
     upper, lower = upper + least * np.r_[0.0, half], lower + least * np.r_[0.0, half]

@@ -17,7 +17,8 @@ def spring_of(model: CalibratedLine, largest_torque_nm: float) -> TrainSpring:
     """Spring of a model at the shaft to which it belongs.
 
     Elastic effects bend the law point by point; friction becomes slip elements in parallel. Their
-    limits and how these follow the load are the model's. They remember their turning points
+    limits without load and under it are the model's, the latter in proportion to the load as at the
+    model's `reference_nm` (`load_power` is left out). They remember their turning points
     (`forgetting` is left out), and their stiffness is constant: the one that they have at the
     torque for which the model states its presliding distances, or at half of the largest torque
     where it states none. Friction behind the play is taken as if it slid through it.
@@ -39,8 +40,7 @@ def spring_of(model: CalibratedLine, largest_torque_nm: float) -> TrainSpring:
     if sliding:
         of = Friction.of((v.effect, v.shape, v.amplitudes[0]) for v in sliding)
         plain, loaded = of.limits
-        grows = float(of.shape.get("growth", 0.0)) > 0
-        reference = float(of.shape["reference_nm"]) if grows else 0.5 * largest_torque_nm
+        reference = float(of.shape.get("reference_nm", 0.5 * largest_torque_nm))
         limit = plain + loaded * reference
         for distance, share in zip(of.elements.slip_deg, of.elements.share, strict=True):
             stiffness = float(share) * limit / math.radians(float(distance))

@@ -18,8 +18,8 @@ impl From<HistoryError> for PyErr {
 /// Angle and friction torque of a spring behind a dead zone with slip elements in parallel.
 #[pyfunction]
 #[pyo3(signature = (torque, offset, restart, start_angle, slip_angle, share, *, free_play, compliance,
-                    limit, load_factor=0.0, growth=0.0, reference_torque=1.0, forgetting=0.0,
-                    law_torque=None, law_twist=None))]
+                    limit, load_factor=0.0, load_power=0.0, growth=0.0, reference_torque=1.0,
+                    forgetting=0.0, law_torque=None, law_twist=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments on the Python side"
@@ -36,6 +36,7 @@ fn solve_slip<'py>(
     compliance: f64,
     limit: f64,
     load_factor: f64,
+    load_power: f64,
     growth: f64,
     reference_torque: f64,
     forgetting: f64,
@@ -50,6 +51,7 @@ fn solve_slip<'py>(
         share: share.as_slice()?,
         limit,
         load_factor,
+        load_power,
         growth,
         reference_torque,
         forgetting,
@@ -103,6 +105,7 @@ fn slip_state<'py>(
         share: share.as_slice()?,
         limit: 1.0,
         load_factor: 0.0,
+        load_power: 0.0,
         growth: 0.0,
         reference_torque: 1.0,
         forgetting,

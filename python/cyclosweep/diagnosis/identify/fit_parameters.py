@@ -9,6 +9,9 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.base import Parameter
 
+BY_LOAD = frozenset({"growth", "load_power"})
+"""Shape parameters of a friction that mean nothing where its limit does not grow with the load."""
+
 
 @dataclass(frozen=True, slots=True)
 class FitParameter:
@@ -87,7 +90,7 @@ def fit_parameters_of(terms: Sequence[Term], problem: Problem) -> tuple[FitParam
                 continue
             sliding = True
         for parameter in term.effect.shape_parameters:
-            if parameter.name not in term.shape or (parameter.name == "growth" and not grows):
+            if parameter.name not in term.shape or (parameter.name in BY_LOAD and not grows):
                 continue
             bounded = term.effect.shape_bounds(parameter, problem.history)
             found.append(FitParameter(index, parameter.name, bounded))

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cyclosweep.diagnosis.identify.bent_friction import bent_instead_of_others
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
@@ -26,6 +27,7 @@ from cyclosweep.diagnosis.identify.friction_first import (
     friction_first,
     from_better_start,
 )
+from cyclosweep.diagnosis.identify.law_in_class import cancels
 from cyclosweep.diagnosis.identify.model_error_terms import (
     TIMES_WHAT_IS_LEFT,
     without_model_error,
@@ -195,7 +197,13 @@ def search_in_stages(
             if whole:
                 decision = replace(decision, explanations=likely(probabilities(whole)))
                 best, found = whole[0], whole[0].fit.terms
+        if {term.name for term in found} == before:
+            other = _without_cancelling(search, best, mismatch)
+            best, found = (best, found) if other is None else (other, other.fit.terms)
         freer_form = freer_instead_of_others(search, best, part)
+        if freer_form is None:
+            acceptable = search.visited.get(frozenset(term.name for term in found), search.start)
+            freer_form = bent_instead_of_others(search, acceptable)
         if freer_form is not None:
             fitted = refitted(freer_form.fit.terms, freer_form.fit)
             accepted, last = fitted.terms, _stage(searched, flexible, fitted)
@@ -298,6 +306,44 @@ def _accepted_whole(search: Search, best: Candidate, mismatch_deg: float) -> lis
         return len(kept) == len(other.fit.terms) and search.start.names < other.names
 
     return [each for each in search.explanations() if each.score >= least and is_whole(each)]
+
+
+def _without_cancelling(search: Search, best: Candidate, mismatch_deg: float) -> Candidate | None:
+    """Part of a structure that is accepted in its place where its new terms cancel each other.
+
+    Two laws whose difference is any curve may fit best and leave nothing to accept, though one of
+    them alone explains most of it.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the stage.
+    best : Candidate
+        Its best structure.
+    mismatch_deg : float
+        Root mean square error of the calibrated model without effects [deg].
+
+    Returns
+    -------
+    Candidate or None
+        None where no new terms cancel, or no part is worth as much as is asked.
+    """
+    start = search.start
+    new = [k for k, term in enumerate(best.fit.terms) if term.name not in start.names]
+    if not best.all_recognised or not any(cancels(best.fit, k) for k in new):
+        return None
+    least = start.score + INDISPENSABLE
+
+    def holds(other: Candidate) -> bool:
+        if other.score < least or not start.names < other.names < best.names:
+            return False
+        return len(without_model_error(other.fit, start.fit, mismatch_deg)) == len(other.fit.terms)
+
+    return max(
+        (each for each in search.visited.values() if holds(each)),
+        key=lambda each: each.score,
+        default=None,
+    )
 
 
 def _doubtful(search: Search, best: Candidate) -> frozenset[str]:

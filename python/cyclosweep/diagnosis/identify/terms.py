@@ -8,6 +8,7 @@ from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.orders import travels
+from cyclosweep.simulation.effects.slip import friction_limit_nm
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
 
 
@@ -97,5 +98,6 @@ class Term:
     def friction_limit(self, history: History) -> Floats:
         """Limit of a friction along the path, shape (n,) [N m]."""
         assert self.effect is not None
-        plain, loaded = self.effect.friction_limits(self.shape)
-        return np.asarray(self.amplitude * (plain + loaded * np.abs(history.elastic_nm)))
+        limits = self.effect.friction_limits(self.shape)
+        load = np.abs(history.elastic_nm)
+        return np.asarray(self.amplitude * friction_limit_nm(self.shape, limits, load))

@@ -8,7 +8,10 @@ from cyclosweep.simulation.effects.slip import FrictionEffect
 
 
 class LoadDependentFriction(FrictionEffect):
-    """Friction whose limit grows with the transmitted torque, ``mu |T_e|``."""
+    """Friction whose limit grows with the transmitted torque, ``mu |T_e|``.
+
+    With `load_power` it grows with another power of the load, see `slip.friction_limit_nm`.
+    """
 
     name = "load_dependent_friction"
     physics = (

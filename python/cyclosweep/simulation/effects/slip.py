@@ -32,6 +32,7 @@ from cyclosweep.simulation.effects.slip_start import (
 
 __all__ = [
     "ELEMENTS",
+    "LOAD_POWER",
     "SLIP_FORMS",
     "SLIP_PARAMETERS",
     "Elements",
@@ -54,7 +55,11 @@ SLIP_PARAMETERS = (
     Parameter("skew", "", "1: a power law up to a longest distance, 0: lognormal", -1.0, 1.0),
     Parameter("forgetting", "", "0: turning points are remembered, 1: Dahl's law", 0.0, 1.0),
     Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
+    Parameter("load_power", "", "power by which friction over load grows with the load", -1.0, 1.0),
 )
+LOAD_POWER = "load_power"
+MOST_BENT = 4.0
+"""Load over `reference_nm` up to which the ratio of limit and load changes with the load."""
 OPTIONAL = ("skew", "slack", "forgetting", "behind_play", BY_READING)
 BEHIND_PLAY_PENALTY = 1.0
 """Log prior odds against friction behind the play [nat]."""
@@ -63,8 +68,39 @@ LEAST_UNLOADED = 0.02
 is one percent of the twist; a friction worth that is reversed only after twice its torque."""
 SLIP_FORMS = (
     ShapeForm(("slip_deg", "scatter"), OPTIONAL),
-    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), OPTIONAL),
+    ShapeForm(("slip_deg", "scatter", "growth", "reference_nm"), (*OPTIONAL, LOAD_POWER)),
+    ShapeForm(("slip_deg", "scatter", LOAD_POWER, "reference_nm"), OPTIONAL),
 )
+
+
+def friction_limit_nm(shape: Shape, limits: tuple[float, float], load_nm: Floats | float) -> Floats:
+    """Limit of a friction under a load.
+
+    It grows in proportion to the load, or with `load_power` as ``T ((1 + T/T0) / 2)^p`` where
+    ``T0`` is `reference_nm`: -1 saturates, 1 bends upwards. Beyond four times ``T0`` it goes on in
+    proportion to the load.
+
+    Parameters
+    ----------
+    shape : mapping
+        Shape of the friction.
+    limits : tuple of float
+        Friction limit without load [N m], and over the transmitted torque at `reference_nm`.
+    load_nm : float or ndarray, shape (n,)
+        Size of the transmitted torque [N m].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In N m.
+    """
+    plain, loaded = limits
+    growing = loaded * np.asarray(load_nm)
+    power = float(shape.get(LOAD_POWER, 0.0))
+    if power != 0.0:
+        relative = np.minimum(load_nm / float(shape["reference_nm"]), MOST_BENT)
+        growing = growing * (0.5 * (1.0 + relative)) ** power
+    return np.asarray(plain + growing)
 
 
 def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> Floats:
@@ -93,7 +129,7 @@ def stretch_of(history: History, shape: Shape, limits: tuple[float, float]) -> F
         return np.ones(len(history))
     plain, loaded = limits
     at_reference = plain + loaded * float(shape["reference_nm"])
-    ratio = (plain + loaded * history.load_nm) / at_reference
+    ratio = friction_limit_nm(shape, limits, history.load_nm) / at_reference
     return np.asarray(np.maximum(ratio, 1e-9) ** growth)
 
 
@@ -146,6 +182,13 @@ class FrictionEffect(Effect):
             return [shape]
         return between_and_by_reading(shape)
 
+    def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """A limit that is no line of the load, as where contacts join or carry no more."""
+        own = self.shape_parameters != SLIP_PARAMETERS
+        if own or LOAD_POWER in shape or self.friction_limits(shape)[1] <= 0.0:
+            return []
+        return [{"reference_nm": 0.5 * history.largest_torque_nm, **shape, LOAD_POWER: 0.0}]
+
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep presliding distances to what a recording of this twist can show."""
         if parameter.name != "slip_deg":
@@ -153,12 +196,27 @@ class FrictionEffect(Effect):
         twist = history.largest_twist_deg
         return replace(parameter, lower=5e-4 * twist, upper=0.6 * twist)
 
+    def amplitude_bounds(self, history: History, shape: Shape) -> tuple[Parameter, ...]:
+        """Keep a limit that grows with another power of the load from holding all of it.
+
+        See `Effect.amplitude_bounds` for the parameters.
+        """
+        bounds = super().amplitude_bounds(history, shape)
+        if LOAD_POWER not in shape or self.friction_limits(shape)[1] <= 0.0:
+            return bounds
+        power = next(each.upper for each in SLIP_PARAMETERS if each.name == LOAD_POWER)
+        top, reference = history.largest_torque_nm, float(shape["reference_nm"])
+        steepest = (0.5 * (1.0 + top / reference)) ** power * (
+            1.0 + power * top / (reference + top)
+        )
+        return tuple(replace(each, upper=each.upper / steepest) for each in bounds)
+
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist taken away by a friction of unit amplitude [deg]."""
-        plain, loaded = self.friction_limits(shape)
-        stretch = stretch_of(history, shape, (plain, loaded))
+        limits = self.friction_limits(shape)
+        stretch = stretch_of(history, shape, limits)
         state = slip_state(history, shape, stretch, self.slip_elements(shape))
-        limit = plain + loaded * history.load_nm
+        limit = friction_limit_nm(shape, limits, history.load_nm)
         return np.asarray(-history.compliance_deg_per_nm * limit * state)[:, None]
 
     def known_shape(self, shape: Shape) -> Shape:
@@ -286,7 +344,7 @@ class Friction:
         """Friction torque along the path of a history, shape (n,) [N m]."""
         stretch = stretch_of(history, self.shape, self.limits)
         state = slip_state(history, self.shape, stretch, self.elements)
-        limit = self.limits[0] + self.limits[1] * np.abs(history.elastic_nm)
+        limit = friction_limit_nm(self.shape, self.limits, np.abs(history.elastic_nm))
         return np.asarray(limit * state)
 
 

@@ -146,7 +146,8 @@ def solve_slip(
     offset : ndarray, shape (n,)
         Everything that shifts the datum [deg].
     limits : tuple of float
-        Friction limit without load [N m], and in proportion to the transmitted torque.
+        Friction limit without load [N m], and over the transmitted torque (at the shape's
+        ``reference_nm``, where it has a ``load_power``).
     free_play : float
         Half width of the dead zone; zero where `offset` already holds the flank in contact [deg].
     law : pair of ndarray, optional
@@ -176,6 +177,7 @@ def solve_slip(
         compliance=history.compliance_deg_per_nm,
         limit=limits[0],
         load_factor=limits[1],
+        load_power=float(shape.get("load_power", 0.0)),
         growth=float(shape.get("growth", 0.0)),
         reference_torque=float(shape.get("reference_nm", 1.0)),
         forgetting=float(shape.get("forgetting", 0.0)),

@@ -5,6 +5,10 @@ use crate::model::hysteresis::checks::{
 };
 use crate::model::hysteresis::exponential::{LANES, decay};
 
+/// Load over the reference torque up to which the ratio of limit and load changes with the load:
+/// beyond it, a growing one would hold whatever is applied.
+const MOST_BENT: f64 = 4.0;
+
 /// Friction of the contacts: slip elements in parallel that share one limit.
 #[derive(Debug, Clone)]
 pub struct SlipElements<'a> {
@@ -14,11 +18,13 @@ pub struct SlipElements<'a> {
     pub share: &'a [f64],
     /// Friction limit without load, in the unit of the torque.
     pub limit: f64,
-    /// Friction limit in proportion to the transmitted torque, below one.
+    /// Friction limit over the transmitted torque at the reference torque, below one.
     pub load_factor: f64,
+    /// Power by which that ratio grows with the load; 0: the limit is in proportion to the load.
+    pub load_power: f64,
     /// 0: presliding distance independent of load. 1: it grows with the limit (constant stiffness).
     pub growth: f64,
-    /// Elastic torque at which the given slip distances hold when they grow with the limit.
+    /// Elastic torque at which the given slip distances and load factor hold.
     pub reference_torque: f64,
     /// Share of every element that follows Dahl's law, from 0 to 1; the rest is Maxwell slip.
     pub forgetting: f64,
@@ -32,6 +38,10 @@ impl SlipElements<'_> {
         finite("share", self.share)?;
         numbers("limit", &[self.limit])?;
         numbers("load_factor", &[self.load_factor])?;
+        finite("load_power", &[self.load_power])?;
+        if self.load_power != 0.0 {
+            positive("reference_torque", &[self.reference_torque])?;
+        }
         numbers("growth", &[self.growth])?;
         numbers("reference_torque", &[self.reference_torque])?;
         not_negative("forgetting", &[self.forgetting])?;
@@ -41,7 +51,30 @@ impl SlipElements<'_> {
     /// Friction limit under an elastic torque.
     #[inline(always)]
     pub(super) fn load_limit(&self, elastic_torque: f64) -> f64 {
-        self.limit + self.load_factor * elastic_torque.abs()
+        let load = elastic_torque.abs();
+        self.limit + self.load_share(load) * load
+    }
+
+    /// Friction limit over a load, less what is there without load.
+    #[inline(always)]
+    fn load_share(&self, load: f64) -> f64 {
+        if self.load_power == 0.0 {
+            return self.load_factor;
+        }
+        let relative = (load / self.reference_torque).min(MOST_BENT);
+        self.load_factor * (0.5 * (1.0 + relative)).powf(self.load_power)
+    }
+
+    /// Slope of the friction limit in the elastic torque.
+    #[inline(always)]
+    pub(super) fn limit_slope(&self, elastic_torque: f64) -> f64 {
+        let load = elastic_torque.abs();
+        let bends = if self.load_power == 0.0 || load > MOST_BENT * self.reference_torque {
+            0.0
+        } else {
+            self.load_power * load / (self.reference_torque + load)
+        };
+        self.load_share(load) * (1.0 + bends) * elastic_torque.signum()
     }
 
     /// How much longer than given the slip distances are under this limit.

@@ -143,7 +143,13 @@ impl<'a> Solver<'a> {
         let largest = torque
             .iter()
             .fold(0.0, |most: f64, value| most.max(value.abs()));
-        let bound = (largest + elements.limit) / (1.0 - elements.load_factor).max(0.05);
+        let proportional = elements.load_power == 0.0;
+        let factor = if proportional {
+            elements.load_factor
+        } else {
+            1.0
+        };
+        let bound = (largest + elements.limit) / (1.0 - factor).max(0.05);
         Self {
             spring,
             elements,
@@ -162,10 +168,8 @@ impl<'a> Solver<'a> {
         let stretch = elements.stretch(limit);
         let sums = self.states.look_at(angle, stretch);
         // A growing limit also stretches the elements.
-        let growth = elements.load_factor
-            * stiffness
-            * elastic.signum()
-            * (sums.state - elements.growth * sums.falls);
+        let growth =
+            elements.limit_slope(elastic) * stiffness * (sums.state - elements.growth * sums.falls);
         let force = limit * sums.state;
         Balance {
             angle,

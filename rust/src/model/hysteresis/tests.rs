@@ -9,6 +9,7 @@ fn single(limit: f64, slip: &[f64]) -> SlipElements<'_> {
         share: &[1.0],
         limit,
         load_factor: 0.0,
+        load_power: 0.0,
         growth: 0.0,
         reference_torque: 1.0,
         forgetting: 0.0,
@@ -249,16 +250,15 @@ proptest! {
     #[test]
     fn balance_holds_and_friction_stays_within_its_limit(
         torque in prop::collection::vec(-30.0..30.0f64, 2..60),
-        limit in 0.0..2.0f64, load in 0.0..0.3f64, growth in prop::sample::select(vec![0.0, 1.0]),
+        limit in 0.0..2.0f64, load in 0.0..0.08f64, power in -1.0..1.0f64, growth in prop::sample::select(vec![0.0, 1.0]),
         forgetting in 0.0..1.0f64, curved: bool,
     ) {
         let torques = [-60.0, -20.0, -2.0, 0.0, 2.0, 20.0, 60.0];
         let n = torque.len();
         let slip = [0.05, 0.4, 2.0];
         let elements = SlipElements {
-            slip_angle: &slip, share: &[0.5, 0.3, 0.2], limit, load_factor: load, growth,
-            reference_torque: 10.0,
-            forgetting,
+            slip_angle: &slip, share: &[0.5, 0.3, 0.2], limit, load_factor: load,
+            load_power: power, growth, reference_torque: 10.0, forgetting,
         };
         let bent = [-90.0, -60.0, -2.0, 0.0, 2.0, 60.0, 90.0];
         let spring = if curved {
@@ -271,7 +271,7 @@ proptest! {
                    &mut angle, &mut friction).expect("numbers");
         for i in 0..n {
             let elastic = spring.torque(angle[i], &mut 0).0;
-            prop_assert!(friction[i].abs() <= limit + load * elastic.abs() + 1e-9);
+            prop_assert!(friction[i].abs() <= elements.load_limit(elastic) + 1e-9);
             prop_assert!((elastic + friction[i] - torque[i]).abs() < 1e-6);
         }
     }
