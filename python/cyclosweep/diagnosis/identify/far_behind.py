@@ -9,7 +9,10 @@ LEAST_BEHIND = 50.0
 
 
 def far_behind(search: Search) -> frozenset[frozenset[str]]:
-    """Structures of which every extension is far less likely than the best structure.
+    """Structures of which every extension is far less likely than the best, or has a better origin.
+
+    An extension that is not far behind, and has a part that is not either, is found again from that
+    part.
 
     A better estimate of the noise scales the evidence of all structures alike. It does not bring
     those together that are far apart, and fits beside them are most of the time of a search.
@@ -28,10 +31,18 @@ def far_behind(search: Search) -> frozenset[frozenset[str]]:
     if best is None:
         return search.not_extended
     least = best.score - max(FAR_BEHIND * best.score, LEAST_BEHIND)
-    likeliest: dict[frozenset[str], float] = {}
+    near = {names for names, each in search.visited.items() if each.score >= least}
+    children: dict[frozenset[str], set[frozenset[str]]] = {}
     for parent, hypothesis in search.tried:
-        child = search.visited.get(parent.names | {hypothesis})
-        score = -float("inf") if child is None else child.score
-        likeliest[parent.names] = max(likeliest.get(parent.names, score), score)
-    behind = {names for names, score in likeliest.items() if score < least}
+        children.setdefault(parent.names, set()).add(parent.names | {hypothesis})
+
+    def leads_on(names: frozenset[str], child: frozenset[str]) -> bool:
+        others = any(child - {name} in near for name in child if child - {name} != names)
+        return child in near and (names in near or not others)
+
+    behind = {
+        names
+        for names, found in children.items()
+        if not any(leads_on(names, child) for child in found)
+    }
     return search.not_extended | {names for names in behind if not names <= best.names}
