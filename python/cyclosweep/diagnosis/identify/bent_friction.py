@@ -32,16 +32,16 @@ def bent_instead_of_others(search: Search, acceptable: Candidate) -> Candidate |
         None where no friction grows with the load, where a bent limit leaves more than half of the
         mean square beyond the noise, or where what is acceptable is likelier.
     """
-    start = search.start
-    if start.fit.rmse_deg <= start.fit.noise.spread_deg:
+    start, left = search.start, beyond_noise_deg(search.start.fit)
+    if left == 0.0:
         return None
     found: Candidate | None = None
-    for terms in _bent(start.fit.terms, search):
+    for terms in _bent(search):
         fitted = fit(search.problem, search.noise, terms, start.fit, rounds=CONVERGED)
         joint = with_right_signs(fitted)
         if joint is None or len(joint.terms) < len(terms):
             continue
-        if beyond_noise_deg(joint) ** 2 > (1.0 - LEAST_REMOVED) * beyond_noise_deg(start.fit) ** 2:
+        if beyond_noise_deg(joint) ** 2 > (1.0 - LEAST_REMOVED) * left**2:
             continue
         fewer = len(start.fit.terms) - len(terms)
         added = float(evidence(search.gain(start.fit, joint), 1.0))
@@ -52,20 +52,19 @@ def bent_instead_of_others(search: Search, acceptable: Candidate) -> Candidate |
     return found if found is not None and found.score > least else None
 
 
-def _bent(terms: tuple[Term, ...], search: Search) -> list[tuple[Term, ...]]:
+def _bent(search: Search) -> list[tuple[Term, ...]]:
     """Structures with bent friction, and the same without the friction that knows no load.
 
     Parameters
     ----------
-    terms : tuple of Term
-        Of the structure that a stage starts from.
     search : Search
+        Search of a stage, whose start it is about.
 
     Returns
     -------
     list of tuple of Term
     """
-    history = search.problem.history
+    history, terms = search.problem.history, search.start.fit.terms
     found = []
     for grows in [term for term in terms if term.slips]:
         assert grows.effect is not None

@@ -300,12 +300,18 @@ def _accepted_whole(search: Search, best: Candidate, mismatch_deg: float) -> lis
     least = max(best.score - HARDLY_LESS_LIKELY, search.start.score)
 
     def is_whole(other: Candidate) -> bool:
-        if not (other.all_recognised and search.suffices(other)):
-            return False
-        kept = without_model_error(other.fit, search.start.fit, mismatch_deg)
-        return len(kept) == len(other.fit.terms) and search.start.names < other.names
+        recognised = other.all_recognised and search.suffices(other)
+        return recognised and _adds_no_model_error(search, other, mismatch_deg)
 
     return [each for each in search.explanations() if each.score >= least and is_whole(each)]
+
+
+def _adds_no_model_error(search: Search, other: Candidate, mismatch_deg: float) -> bool:
+    """Whether a structure holds more than a stage started from, none of it perhaps model error."""
+    if not search.start.names < other.names:
+        return False
+    kept = without_model_error(other.fit, search.start.fit, mismatch_deg)
+    return len(kept) == len(other.fit.terms)
 
 
 def _without_cancelling(search: Search, best: Candidate, mismatch_deg: float) -> Candidate | None:
@@ -335,9 +341,8 @@ def _without_cancelling(search: Search, best: Candidate, mismatch_deg: float) ->
     least = start.score + INDISPENSABLE
 
     def holds(other: Candidate) -> bool:
-        if other.score < least or not start.names < other.names < best.names:
-            return False
-        return len(without_model_error(other.fit, start.fit, mismatch_deg)) == len(other.fit.terms)
+        part = other.score >= least and other.names < best.names
+        return part and _adds_no_model_error(search, other, mismatch_deg)
 
     return max(
         (each for each in search.visited.values() if holds(each)),

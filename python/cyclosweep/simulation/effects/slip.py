@@ -32,7 +32,6 @@ from cyclosweep.simulation.effects.slip_start import (
 
 __all__ = [
     "ELEMENTS",
-    "LOAD_POWER",
     "SLIP_FORMS",
     "SLIP_PARAMETERS",
     "Elements",
@@ -40,6 +39,7 @@ __all__ = [
     "FrictionEffect",
     "SlipPath",
     "elements_of",
+    "friction_limit_nm",
     "on_shared_elements",
     "slip_shapes",
     "slip_state",
@@ -49,15 +49,19 @@ __all__ = [
     "stretch_of",
 ]
 
+LOAD_POWER = "load_power"
+MOST_POWER = 1.0
+"""Largest power by which the ratio of limit and load grows with the load."""
 SLIP_PARAMETERS = (
     Parameter("slip_deg", "deg", "median presliding distance", 1e-6, 1e3, logarithmic=True),
     Parameter("scatter", "", "spread of the presliding distances (sd of log)", 0.05, 3.0, True),
     Parameter("skew", "", "1: a power law up to a longest distance, 0: lognormal", -1.0, 1.0),
     Parameter("forgetting", "", "0: turning points are remembered, 1: Dahl's law", 0.0, 1.0),
     Parameter("growth", "", "power by which presliding distances grow with the limit", 0.0, 1.0),
-    Parameter("load_power", "", "power by which friction over load grows with the load", -1.0, 1.0),
+    Parameter(
+        LOAD_POWER, "", "power by which friction over load grows with the load", -1.0, MOST_POWER
+    ),
 )
-LOAD_POWER = "load_power"
 MOST_BENT = 4.0
 """Load over `reference_nm` up to which the ratio of limit and load changes with the load."""
 OPTIONAL = ("skew", "slack", "forgetting", "behind_play", BY_READING)
@@ -204,11 +208,9 @@ class FrictionEffect(Effect):
         bounds = super().amplitude_bounds(history, shape)
         if LOAD_POWER not in shape or self.friction_limits(shape)[1] <= 0.0:
             return bounds
-        power = next(each.upper for each in SLIP_PARAMETERS if each.name == LOAD_POWER)
-        top, reference = history.largest_torque_nm, float(shape["reference_nm"])
-        steepest = (0.5 * (1.0 + top / reference)) ** power * (
-            1.0 + power * top / (reference + top)
-        )
+        relative = history.largest_torque_nm / float(shape["reference_nm"])
+        steepest = (0.5 * (1.0 + relative)) ** MOST_POWER
+        steepest *= 1.0 + MOST_POWER * relative / (1.0 + relative)
         return tuple(replace(each, upper=each.upper / steepest) for each in bounds)
 
     def columns(self, history: History, shape: Shape) -> Floats:

@@ -143,13 +143,12 @@ impl<'a> Solver<'a> {
         let largest = torque
             .iter()
             .fold(0.0, |most: f64, value| most.max(value.abs()));
-        let proportional = elements.load_power == 0.0;
-        let factor = if proportional {
-            elements.load_factor
+        let least_elastic = if elements.load_power == 0.0 {
+            1.0 - elements.load_factor
         } else {
-            1.0
+            0.0
         };
-        let bound = (largest + elements.limit) / (1.0 - factor).max(0.05);
+        let bound = (largest + elements.limit) / least_elastic.max(0.05);
         Self {
             spring,
             elements,

@@ -250,7 +250,8 @@ proptest! {
     #[test]
     fn balance_holds_and_friction_stays_within_its_limit(
         torque in prop::collection::vec(-30.0..30.0f64, 2..60),
-        limit in 0.0..2.0f64, load in 0.0..0.08f64, power in -1.0..1.0f64, growth in prop::sample::select(vec![0.0, 1.0]),
+        limit in 0.0..2.0f64, load in 0.0..0.3f64, growth in prop::sample::select(vec![0.0, 1.0]),
+        power in prop::sample::select(vec![0.0, 0.0, -1.0, -0.4, 0.5, 1.0]),
         forgetting in 0.0..1.0f64, curved: bool,
     ) {
         let torques = [-60.0, -20.0, -2.0, 0.0, 2.0, 20.0, 60.0];
