@@ -307,7 +307,22 @@ def _accepted_whole(search: Search, best: Candidate, mismatch_deg: float) -> lis
 
 
 def _adds_no_model_error(search: Search, other: Candidate, mismatch_deg: float) -> bool:
-    """Whether a structure holds more than a stage started from, none of it perhaps model error."""
+    """Whether a structure holds more than a stage started from, none of it perhaps model error.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the stage.
+    other : Candidate
+        Structure that may be accepted whole.
+    mismatch_deg : float
+        Root mean square error of the calibrated model without effects [deg].
+
+    Returns
+    -------
+    bool
+        Whether it may.
+    """
     if not search.start.names < other.names:
         return False
     kept = without_model_error(other.fit, search.start.fit, mismatch_deg)
