@@ -57,14 +57,34 @@ class ElasticLaw:
         Elastic torque, rising [N m].
     twist_deg : ndarray, shape (2 LAW_POINTS + 1,)
         Twist at that torque [deg].
+    line_deg_per_nm : float
+        Compliance of the straight line from which the law was bent [deg/(N m)].
     """
 
     torque_nm: Floats
     twist_deg: Floats
+    line_deg_per_nm: float
 
     def twist_at(self, torque_nm: Floats) -> Floats:
         """Twist at elastic torques [deg], shape as ``torque_nm`` [N m]."""
         return np.interp(torque_nm, self.torque_nm, self.twist_deg)
+
+    def line_equivalent_nm(self, torque_nm: Floats) -> Floats:
+        """Torques that twist the straight line as far as these do the law [N m].
+
+        Parameters
+        ----------
+        torque_nm : ndarray
+            Elastic torques [N m].
+
+        Returns
+        -------
+        ndarray
+            In the same shape; the torques themselves where the line does not yield.
+        """
+        if self.line_deg_per_nm <= 0.0:
+            return torque_nm
+        return self.twist_at(torque_nm) / self.line_deg_per_nm
 
 
 def elastic_law(
@@ -167,4 +187,5 @@ def law_of_twist(
     upper = np.maximum.accumulate(np.r_[0.0, twists[LAW_POINTS:]] - least * np.r_[0.0, half])
     lower = np.maximum.accumulate(np.r_[0.0, -twists[:LAW_POINTS][::-1]] - least * np.r_[0.0, half])
     upper, lower = upper + least * np.r_[0.0, half], lower + least * np.r_[0.0, half]
-    return ElasticLaw(np.r_[-half[::-1], 0.0, half], np.r_[-lower[:0:-1], upper])
+    torque = np.r_[-half[::-1], 0.0, half]
+    return ElasticLaw(torque, np.r_[-lower[:0:-1], upper], compliance_deg_per_nm)

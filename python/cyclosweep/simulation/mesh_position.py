@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.orders import MeshPeriodic, travels
+from cyclosweep.simulation.effects.order_names import travels
+from cyclosweep.simulation.effects.orders import MeshPeriodic
 from cyclosweep.simulation.model import EffectValue, linear_twist
 
 MESH_ROUNDS = 24

@@ -226,12 +226,10 @@ def settle(
         The same load with the settled path.
     """
     sliding = [value for value in model.effects if value.effect.slips]
-    law = None
-    if sliding:
-        law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
+    law = elastic_law(model, history.largest_torque_nm, held_by_friction=bool(sliding))
     others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
-    history = history.with_state(measured_deg=None)
+    history = history.with_state(measured_deg=None, elastic_law=law)
     if moving:
         rounds += MESH_ROUNDS
         history = on_the_mesh(moving, history, history.angle_deg)
@@ -339,6 +337,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
     law = elastic_law(
         model, farthest / model.compliance_deg_per_nm, held_by_friction=held_back is not None
     )
+    history = history.with_state(elastic_law=law)
     others = [
         value
         for value in model.effects

@@ -7,7 +7,7 @@ from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.datum_drift import FEWEST_RUNS, MOST_RUNS
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.effects.orders import from_recorded_position, travels
+from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
 
 SMOOTH = (
     "torque and direction",

@@ -90,7 +90,8 @@ def fit_parameters_of(terms: Sequence[Term], problem: Problem) -> tuple[FitParam
                 continue
             sliding = True
         for parameter in term.effect.shape_parameters:
-            if parameter.name not in term.shape or (parameter.name in BY_LOAD and not grows):
+            by_load = term.slips and parameter.name in BY_LOAD
+            if parameter.name not in term.shape or (by_load and not grows):
                 continue
             bounded = term.effect.shape_bounds(parameter, problem.history)
             found.append(FitParameter(index, parameter.name, bounded))

@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.identify.other_laws import FAR_LESS, left_beyond_noise
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.simulation.effects.orders import travels
+from cyclosweep.simulation.effects.order_names import travels
 
 SHARED = ("datum_drift", "transmission_error")
 """Effects that give each run an offset by other means than a recorded temperature."""

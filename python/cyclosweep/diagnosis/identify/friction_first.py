@@ -12,6 +12,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.loop_check import is_curve_of_torque
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
@@ -54,7 +55,8 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     Returns
     -------
     FittedStructure or None
-        None where they take away too little, or do as well without friction.
+        None where they take away too little, or do as well without friction, or where friction
+        stands in for a curve of the torque.
     """
     baseline = search.baseline.fit
     best: FittedStructure | None = None
@@ -88,7 +90,7 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     for own in (search.noise, noise):
         found = fit(search.problem, own, _settled(kept), best, rounds=CONVERGED)
         if _explains_most(found, baseline):
-            return found
+            return None if is_curve_of_torque(found) else found
         # Where friction was taken for slow noise, a fit against that noise forgets the loop.
     return None
 

@@ -222,10 +222,11 @@ class JointFit:
             history = self._calibrated(history, beta, mean)
             if self.drags:
                 history = under_drag(terms, design, beta, history)
+            law = path_law(elastic_parts(terms, design, beta), history)
+            history = history.with_state(elastic_law=law)
             if self.slides:
                 beyond = beyond_friction(terms, design, beta)
                 history = history.with_state(angle_deg=history.held_deg + beyond, beyond_deg=beyond)
-                law = path_law(elastic_parts(terms, design, beta), history)
             if self._is_settled(before, mean):
                 break
         return history, mean, beta, law

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import smooth_columns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.problem import line_design
+from cyclosweep.simulation.effects.history import Floats
 
 VISIBLE = 30.0
 """Signal-to-noise ratio of a friction from which its loop has to show: below it the many directions
@@ -17,6 +18,42 @@ of a curve take up as much noise as the loop is large."""
 
 NOISE_ALONE = 1.1
 """What a curve leaves over the noise, up to which it is the noise."""
+
+LEAST_LOOP = 0.1
+"""Share of the mean square twist by friction that is a loop, below which it is a curve."""
+
+
+def is_curve_of_torque(fitted: FittedStructure) -> bool:
+    """Whether what the frictions of a structure add is a curve of the torque, and hardly a loop.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+
+    Returns
+    -------
+    bool
+        False where it has no friction.
+    """
+    problem = fitted.problem
+    use, history = problem.fitted, problem.history
+    parts = [fitted.contribution(k)[use] for k, term in enumerate(fitted.terms) if term.slips]
+    if not parts:
+        return False
+    line = line_design(history, history.applied_nm, one_sided=problem.one_sided)[use]
+    by_friction = _left(line, np.sum(parts, axis=0))
+    curves = smooth_columns(np.abs(history.applied_nm[use]) / history.largest_torque_nm)
+    both_flanks = np.column_stack(
+        [line, curves, np.sign(history.applied_nm[use])[:, None] * curves]
+    )
+    loop = _left(both_flanks, by_friction)
+    return bool(np.sum(loop**2) < LEAST_LOOP * np.sum(by_friction**2))
+
+
+def _left(columns: Floats, values: Floats) -> Floats:
+    """What columns, shape (n, k), leave of values, shape (n,), by least squares."""
+    return np.asarray(values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0])
 
 
 def is_without_loop(fitted: FittedStructure, index: int) -> bool:
@@ -43,6 +80,5 @@ def is_without_loop(fitted: FittedStructure, index: int) -> bool:
     load = np.clip(history.load_nm / history.largest_torque_nm, 0.0, 1.0)
     others = [fitted.contribution(k) for k, term in enumerate(fitted.terms) if not term.slips]
     columns = np.column_stack([line, history.side[:, None] * smooth_columns(load), *others])[use]
-    angle = problem.angle_deg[use]
-    left = angle - columns @ np.linalg.lstsq(columns, angle, rcond=None)[0]
+    left = _left(columns, problem.angle_deg[use])
     return float(np.sqrt(np.mean(left**2))) <= NOISE_ALONE * fitted.noise.spread_deg

@@ -32,7 +32,7 @@ from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Flags, History
-from cyclosweep.simulation.effects.orders import from_recorded_position, travels
+from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
 
 LEAST_OF_MISMATCH = 0.04
 """Size from which an effect is told from the model error of the others, as a share of the mismatch

@@ -21,7 +21,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     withdrawn_where,
 )
 from cyclosweep.simulation.effects.history import Flags, History
-from cyclosweep.simulation.effects.orders import travels
+from cyclosweep.simulation.effects.order_names import travels
 
 
 def without_leftovers(

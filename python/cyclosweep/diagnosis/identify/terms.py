@@ -7,7 +7,7 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.orders import travels
+from cyclosweep.simulation.effects.order_names import travels
 from cyclosweep.simulation.effects.slip import friction_limit_nm
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
 

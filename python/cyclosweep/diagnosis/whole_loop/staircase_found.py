@@ -8,7 +8,7 @@ from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Floats
-from cyclosweep.simulation.effects.orders import from_recorded_position, travels
+from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
 
 STEPS = (3.0, 40.0)
 """Fewest and most steps of a staircase over the range of the angle."""

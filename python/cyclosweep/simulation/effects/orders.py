@@ -8,6 +8,7 @@ value, because a part of a turn does not tell neighbouring whole numbers apart.
 """
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,14 +24,18 @@ from cyclosweep.simulation.effects.mesh_range import (
     travels_far_from_positions,
     whole_travel_deg,
 )
+from cyclosweep.simulation.effects.order_names import (
+    ORDER,
+    RATIO,
+    WHOLE_ORDER,
+    beside_orders,
+    from_recorded_position,
+    numbered,
+    orders_of,
+    travelling_shape,
+    travels,
+)
 
-RATIO = "travel_ratio"
-"""Shape parameter: turns of the mesh zone a turn of the measured shaft. A shape without it depends
-on the locking position alone."""
-WHOLE_ORDER = "order_{}"
-"""Name of each order of a position that is counted from a recorded one: a whole number."""
-ORDER = "travel_order_{}"
-"""Name of each order of the position of a travelling mesh that was not recorded."""
 MOST_ORDERS = 2
 """Orders up to which those found along a travel are joined. More, free to move, make any curve."""
 HIGHEST_LOW_ORDER = 3
@@ -52,21 +57,6 @@ HARMONIC = 0.08
 """Share of an order within which a multiple of the first one is taken for its harmonic."""
 
 
-def from_recorded_position(shape: Shape) -> bool:
-    """Whether a shape counts the position from recorded ones, so that its orders are whole."""
-    return WHOLE_ORDER.format(1) in shape
-
-
-def travels(shape: Shape) -> bool:
-    """Whether a shape goes with the travel of the mesh, so that twist and position interact."""
-    return RATIO in shape
-
-
-def orders_of(shape: Shape) -> tuple[float, ...]:
-    """Orders of a shape, of any of the three kinds."""
-    return tuple(value for name, value in shape.items() if name != RATIO)
-
-
 def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
     """Columns that a programme has to have for an effect of this shape.
 
@@ -86,28 +76,6 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
 def travel_deg(history: History) -> float:
     """Range over which the mesh travelled under load [deg]; zero where it stood at few places."""
     return loaded_travel_deg(history) if load_count(history) >= FEWEST_STATES else 0.0
-
-
-def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
-    """Shape that goes with the travel of a mesh of which no position was recorded.
-
-    Parameters
-    ----------
-    ratio : float
-        Turns of the mesh zone a turn of the measured shaft.
-    orders : sequence of float
-        Orders of the position.
-
-    Returns
-    -------
-    mapping
-    """
-    return {RATIO: ratio, **_numbered(ORDER, orders)}
-
-
-def _numbered(name: str, orders: Sequence[float]) -> dict[str, float]:
-    """Orders by name."""
-    return {name.format(k): float(order) for k, order in enumerate(orders, 1)}
 
 
 def travel_shapes(history: History) -> list[Shape]:
@@ -150,40 +118,6 @@ def harmonics(history: History, shape: Shape) -> Floats:
     )
 
 
-def order_shapes(sets: list[tuple[int, ...]]) -> list[Shape]:
-    """Shapes that name their orders."""
-    return [_numbered(WHOLE_ORDER, orders) for orders in sets]
-
-
-def order_amplitudes(shape: Shape, what: str, unit: str) -> tuple[Parameter, ...]:
-    """One cosine and one sine amplitude an order.
-
-    Parameters
-    ----------
-    shape : mapping of str to float
-        The orders [1], by name.
-    what : str
-        What the amplitude is of, for its meaning.
-    unit : str
-        Unit of the amplitude.
-
-    Returns
-    -------
-    tuple of Parameter
-    """
-    if not from_recorded_position(shape):
-        return tuple(
-            Parameter(f"{wave}_{place}", unit, f"{what}, {wave} of travel order {place}")
-            for place in range(1, len(shape))
-            for wave in ("cos", "sin")
-        )
-    return tuple(
-        Parameter(f"{wave}_{int(order)}", unit, f"{what}, {wave} of order {int(order)}")
-        for order in orders_of(shape)
-        for wave in ("cos", "sin")
-    )
-
-
 def _travelling(locked: Sequence[Shape], ratio: float) -> list[Shape]:
     """Shapes of low orders of a locking position, as they are where the mesh travels from it.
 
@@ -213,7 +147,7 @@ class MeshPeriodic(Effect):
         ShapeForm((RATIO,), numbered=WHOLE_ORDER),
         ShapeForm((RATIO,), numbered=ORDER),
     )
-    shape_parameters = (
+    shape_parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(ORDER.format(1), "", "cycles a turn of the mesh zone", 1e-3, 1e4),
     )
 
@@ -239,7 +173,7 @@ class MeshPeriodic(Effect):
         return [*locked, *_travelling(locked, history.mesh_ratio)]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Orders that are looked for.
+        """Orders that are looked for; see `Effect.shape_bounds` for what is no order.
 
         Parameters
         ----------
@@ -253,6 +187,8 @@ class MeshPeriodic(Effect):
         Parameter
             The same with other bounds.
         """
+        if parameter.name != ORDER.format(1):
+            return super().shape_bounds(parameter, history)
         turns = max(travel_deg(history), 1e-9) / 360.0
         lower, upper = FEWEST_CYCLES / turns, MOST_CYCLES / turns
         return Parameter(parameter.name, parameter.unit, parameter.meaning, lower, upper)
@@ -303,10 +239,11 @@ class MeshPeriodic(Effect):
         known = super().known_shape(shape)
         if not from_recorded_position(known):
             return known
-        for name, value in known.items():
-            if name != RATIO and (value < 1.0 or value != round(value)):
-                raise InputError(f"{name}: found {value:g}, expected a whole number above zero")
         orders = orders_of(known)
+        for k, value in enumerate(orders, 1):
+            if value < 1.0 or value != round(value):
+                name = WHOLE_ORDER.format(k)
+                raise InputError(f"{name}: found {value:g}, expected a whole number above zero")
         if len(set(orders)) < len(orders):
             found = " ".join(f"{order:g}" for order in orders)
             raise InputError(f"order: found {found}, expected each order once")
@@ -326,14 +263,14 @@ class MeshPeriodic(Effect):
             return None
         if recorded:
             both = listed(WHOLE_ORDER, [*orders_of(shape), *orders_of(found)])
-            return both if both is None or not travels(shape) else {RATIO: shape[RATIO], **both}
+            return None if both is None else {**beside_orders(shape), **both}
         known, new = orders_of(shape), orders_of(found)[0]
         multiple = max(round(new / known[0]), 1) * known[0]
         if abs(multiple - new) < HARMONIC * new:
             new = multiple
         if len(known) >= MOST_ORDERS or any(abs(new - old) < SAME_ORDER * old for old in known):
             return None
-        return travelling_shape(shape[RATIO], (*known, new))
+        return {**beside_orders(shape), **numbered(ORDER, (*known, new))}
 
     def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
         """Orders that were found, with the phase of each.

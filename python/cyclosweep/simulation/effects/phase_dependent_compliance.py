@@ -2,20 +2,30 @@
 
 from collections.abc import Sequence
 
-from cyclosweep.simulation.effects.base import Parameter, Shape
+import numpy as np
+
+from cyclosweep.errors import InputError
+from cyclosweep.simulation.effects.base import Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.orders import (
-    MeshPeriodic,
-    harmonics,
+from cyclosweep.simulation.effects.order_names import (
+    LOAD_POWER,
+    ORDER,
+    RATIO,
+    REFERENCE,
+    WHOLE_ORDER,
     order_amplitudes,
     order_shapes,
 )
+from cyclosweep.simulation.effects.orders import MeshPeriodic, harmonics
 
 
 class PhaseDependentCompliance(MeshPeriodic):
     """Compliance periodic in the mesh position: orders 1-4, and those of the output pins.
 
-    Orders 1 to 3 where it travels from recorded positions, any order where none was recorded.
+    It multiplies the twist of all elastic parts, a stiffening or a side load among them.
+    Orders 1 to 3 where it travels from recorded positions, any order where none was recorded. With
+    `load_power` it grows with another power of the load, as where contacts alone pulsate that
+    stiffen under load, and the rest of the compliance does not.
     """
 
     name = "phase_dependent_compliance"
@@ -26,6 +36,41 @@ class PhaseDependentCompliance(MeshPeriodic):
     source = "Kumar et al. 2016, section 4 (map of active pins); McIver's claim in section 5"
     tell_tale = "slope differs by crank position; orders 1-4, N_OP and 2 N_OP"
     family = "position"
+    shape_parameters = (
+        *MeshPeriodic.shape_parameters,
+        Parameter(LOAD_POWER, "", "power of the load", 0.3, 1.0),
+    )
+    forms = (
+        ShapeForm(optional=(LOAD_POWER, REFERENCE), numbered=WHOLE_ORDER),
+        ShapeForm((RATIO,), (LOAD_POWER, REFERENCE), WHOLE_ORDER),
+        ShapeForm((RATIO,), (LOAD_POWER, REFERENCE), ORDER),
+    )
+
+    def known_shape(self, shape: Shape) -> Shape:
+        """Refuse a reference that is no load; see `MeshPeriodic.known_shape`.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape parameters by name, in any order.
+
+        Returns
+        -------
+        mapping
+
+        Raises
+        ------
+        InputError
+            As there, or only one of `load_power` and `reference_nm` is stated, or the latter is not
+            above zero.
+        """
+        if (LOAD_POWER in shape) != (REFERENCE in shape):
+            raise InputError(
+                f"shape: found {' '.join(shape)}, expected {LOAD_POWER} with {REFERENCE}"
+            )
+        if not shape.get(REFERENCE, 1.0) > 0.0:
+            raise InputError(f"{REFERENCE}: found {shape[REFERENCE]:g}, expected a load above zero")
+        return super().known_shape(shape)
 
     def locked_shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, the low ones together, and the pin orders."""
@@ -39,7 +84,17 @@ class PhaseDependentCompliance(MeshPeriodic):
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Twist for unit amplitudes of the compliance [deg]."""
-        return history.elastic_nm[:, None] * harmonics(history, shape)
+        torque = history.line_equivalent_nm
+        if LOAD_POWER in shape:
+            share = np.abs(torque) / shape[REFERENCE]
+            torque = np.sign(torque) * shape[REFERENCE] * share ** shape[LOAD_POWER]
+        return torque[:, None] * harmonics(history, shape)
+
+    def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Pulsation that grows with another power of the load; see `Effect.refinements`."""
+        if LOAD_POWER in shape:
+            return []
+        return [{LOAD_POWER: 0.8, REFERENCE: history.largest_torque_nm, **shape}]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Amplitudes of the compliance."""

@@ -11,13 +11,22 @@ from cyclosweep.simulation.effects.history import Floats, History
 
 REFERENCE_C = 20.0
 KINDS = ("datum", "clearance", "compliance")
+DELAYS = (0.01, 0.04)
+"""Delays that are looked for, as shares of the duration of the recording."""
+GRADIENT = "gradient"
+"""Shape parameter: a datum that moves with the difference of the temperature and what follows it
+late, too."""
+MOVED = (*KINDS, GRADIENT)
+"""Names in a shape that stand for an amplitude."""
 
 
 class ThermalDrift(Effect):
     """Offset, clearance or compliance in proportion to the temperature above 20 degC.
 
-    `datum`, `clearance` and `compliance` say which of them moves. With `delay_s` it follows the
-    recorded temperature late, because the sensor sits elsewhere than the part that expands.
+    `datum`, `clearance` and `compliance` say which of them moves; a compliance does so in all
+    elastic parts alike. With `delay_s` it follows the recorded temperature late, because the sensor
+    sits elsewhere than the part that expands. With `gradient` the datum also moves with what that
+    part still lags behind, because another one has warmed up already.
     """
 
     name = "thermal_drift"
@@ -36,6 +45,7 @@ class ThermalDrift(Effect):
     )
     forms = (
         ShapeForm(("datum",), ("clearance", "compliance", "delay_s")),
+        ShapeForm((GRADIENT, "delay_s"), KINDS),
         ShapeForm(("clearance",), ("compliance", "delay_s")),
         ShapeForm(("compliance",), ("delay_s",)),
     )
@@ -48,15 +58,16 @@ class ThermalDrift(Effect):
         return reason
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Datum, clearance, compliance, or the first two, at once or with a delay.
+        """Datum, clearance, compliance, or the first two, at once or with a delay, and a gradient.
 
         Others move together where a search finds so, see `combined`.
         """
         kinds: list[Shape] = [*({kind: 1.0} for kind in KINDS), {"datum": 1.0, "clearance": 1.0}]
         if history.time_s is None or not spread(history.time_s) > 0:
             return kinds
-        delays = [share * spread(history.time_s) for share in (0.01, 0.04)]
-        return kinds + [{**kind, "delay_s": delay} for kind in kinds for delay in delays]
+        delays = [share * spread(history.time_s) for share in DELAYS]
+        late = [*kinds, {GRADIENT: 1.0}]
+        return kinds + [{**kind, "delay_s": delay} for kind in late for delay in delays]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep the delay to a tenth of the recording."""
@@ -68,14 +79,22 @@ class ThermalDrift(Effect):
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """All that moves, with one delay."""
-        kinds = {kind: 1.0 for kind in KINDS if kind in shape or kind in found}
-        both = {**kinds, **{k: v for k, v in {**found, **shape}.items() if k == "delay_s"}}
+        moved = {name: 1.0 for name in MOVED if name in shape or name in found}
+        both = {**moved, **{k: v for k, v in {**found, **shape}.items() if k not in MOVED}}
         return None if set(both) == set(shape) else both
 
+    def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
+        """Datum that moves with a difference of temperatures, too; see `Effect.refinements`."""
+        if history.time_s is None or not spread(history.time_s) > 0:
+            return []
+        late = {"delay_s": DELAYS[-1] * spread(history.time_s)} | dict(shape)
+        both = {**late, "datum": 1.0, GRADIENT: 1.0}
+        return [] if set(both) == set(shape) else [both]
+
     def columns(self, history: History, shape: Shape) -> Floats:
-        """Twist for 1 deg/K, and for 1 deg/(N m K) of compliance [deg]."""
+        """Twist for 1 deg/K, and for 1 deg/(N m K) of compliance [deg], in the order of `MOVED`."""
         assert history.temperature_c is not None
-        warm = history.temperature_c - REFERENCE_C
+        warm = sensed = history.temperature_c - REFERENCE_C
         if "delay_s" in shape:
             assert history.time_s is not None
             once = np.arange(len(warm)) == 0
@@ -84,9 +103,10 @@ class ThermalDrift(Effect):
         parts = {
             "datum": warm,
             "clearance": history.side * warm,
-            "compliance": history.elastic_nm * warm,
+            "compliance": history.line_equivalent_nm * warm,
+            GRADIENT: sensed - warm,
         }
-        return np.column_stack([parts[name] for name in KINDS if name in shape])
+        return np.column_stack([parts[name] for name in MOVED if name in shape])
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Change of datum, clearance or compliance a kelvin."""
@@ -94,8 +114,8 @@ class ThermalDrift(Effect):
             Parameter(
                 f"{name}_per_k",
                 "deg/(N m K)" if name == "compliance" else "deg/K",
-                f"{name} a kelvin",
+                f"{'datum a kelvin of difference' if name == GRADIENT else f'{name} a kelvin'}",
             )
-            for name in KINDS
+            for name in MOVED
             if name in shape
         )

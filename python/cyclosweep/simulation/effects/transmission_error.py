@@ -4,12 +4,8 @@ from collections.abc import Sequence
 
 from cyclosweep.simulation.effects.base import Parameter, Shape
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.orders import (
-    MeshPeriodic,
-    harmonics,
-    order_amplitudes,
-    order_shapes,
-)
+from cyclosweep.simulation.effects.order_names import order_amplitudes, order_shapes
+from cyclosweep.simulation.effects.orders import MeshPeriodic, harmonics
 
 
 class TransmissionError(MeshPeriodic):

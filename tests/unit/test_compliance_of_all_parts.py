@@ -1,0 +1,136 @@
+"""A compliance that pulsates or warms up multiplies the twist of all elastic parts."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.model import EffectValue
+from tests.support.arrays import present
+
+C, PLAY, TOP = 2.7, 28.0, 20.0
+PULSATION = EffectValue("phase_dependent_compliance", {"order_1": 1.0}, (0.15 * C, 0.0))
+WARMS = EffectValue("thermal_drift", {"compliance": 1.0}, (0.01 * C,))
+BENT = (
+    EffectValue("overload_softening", {"onset_nm": 8.0, "power": 2.0}, (0.8,)),
+    EffectValue("load_asymmetry", {"power": 1.0}, (3.0,)),
+)
+
+
+def loops(positions: int = 8) -> cs.Recording:
+    """One loop at each of a few locking positions, warming up from one to the next."""
+    one = TOP * np.concatenate(
+        [np.linspace(0, 1, 40), np.linspace(1, -1, 80), np.linspace(-1, 0, 40)]
+    )
+    run = np.repeat(np.arange(positions), len(one))
+    return cs.Recording.from_arrays(
+        np.tile(one, positions),
+        run=run,
+        crank_deg=run * 360.0 / positions,
+        temperature_c=20.0 + run,
+        time_s=1.0 * np.arange(len(run)),
+    )
+
+
+def twist_of(*effects: EffectValue) -> Floats:
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=effects)
+    recording = loops()
+    angle = present(cs.simulate(model, recording).angle_deg)
+    return np.asarray((angle - PLAY * np.sign(recording.torque_nm))[recording.torque_nm != 0])
+
+
+@pytest.mark.parametrize("of_compliance", [PULSATION, WARMS], ids=lambda v: v.name)
+def test_it_multiplies_softening_and_side_load(of_compliance: EffectValue) -> None:
+    recording = loops()
+    loaded = recording.torque_nm != 0
+    position = np.radians(present(recording.crank_deg)[loaded])
+    share = 0.15 * np.cos(position)
+    if of_compliance is WARMS:
+        share = 0.01 * (present(recording.temperature_c)[loaded] - 20.0)
+    still = twist_of(*BENT)
+    np.testing.assert_allclose(twist_of(*BENT, of_compliance), still * (1 + share), rtol=2e-3)
+    # The line alone is multiplied exactly, and no effect is none.
+    line = twist_of()
+    np.testing.assert_allclose(twist_of(of_compliance), line * (1 + share), rtol=1e-12)
+
+
+def test_torque_and_angle_are_inverse() -> None:
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(*BENT, PULSATION, WARMS))
+    there = cs.simulate(model, loops())
+    back = cs.simulate(model, there, predict="torque")
+    loaded = np.abs(there.torque_nm) > 0.1
+    np.testing.assert_allclose(back.torque_nm[loaded], there.torque_nm[loaded], rtol=2e-3)
+
+
+def test_what_pulsates_with_a_bent_law_is_not_split() -> None:
+    """The twist of a stiffening and a soft flank pulsates, too: no error of the transmission."""
+    load = loops()
+    torque, crank = load.torque_nm, np.radians(present(load.crank_deg))
+    share = np.abs(torque) / TOP
+    elastic = C * torque + np.sign(torque) * 0.1 * C * TOP * np.log1p(share / 0.1) / np.log(11.0)
+    elastic += np.where(torque > 0, 0.12 * C * torque, 0.0)
+    pulsates = 1.0 + 0.12 * np.cos(crank + 0.8) + 0.05 * np.cos(2.0 * crank - 0.4)
+    noise = 0.01 * np.random.default_rng(9).normal(size=len(torque))
+    angle = PLAY * np.sign(torque) + elastic * pulsates + noise
+    found = cs.diagnose(load.with_angle(angle), cs.Drive.reference_87(), full=False)
+    names = {effect["name"] for effect in found.effects}
+    assert names == {"phase_dependent_compliance", "contact_stiffening", "load_asymmetry"}
+
+
+def test_contacts_that_pulsate_alone_grow_with_another_power() -> None:
+    """A pulsation after Hertz is the power 2/3 of the load."""
+    load = loops()
+    torque, crank = load.torque_nm, np.radians(present(load.crank_deg))
+    contacts = 0.2 * C * TOP * np.sign(torque) * np.abs(torque / TOP) ** (2 / 3)
+    noise = 0.02 * np.random.default_rng(2).normal(size=len(torque))
+    angle = PLAY * np.sign(torque) + C * torque + contacts * np.cos(crank - 1.0) + noise
+    found = cs.diagnose(load.with_angle(angle), cs.Drive.reference_87(), full=False)
+    (effect,) = found.effects
+    assert effect["name"] == "phase_dependent_compliance"
+    (value,) = found.model.effects
+    assert value.shape["load_power"] == pytest.approx(2 / 3, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("shape", "what"),
+    [
+        ({"load_power": 0.7}, "reference_nm"),
+        ({"reference_nm": 5.0}, "load_power"),
+        ({"load_power": 0.7, "reference_nm": 0.0}, "above zero"),
+    ],
+)
+def test_a_power_needs_its_reference(tmp_path: Path, shape: dict[str, float], what: str) -> None:
+    value = EffectValue("phase_dependent_compliance", {**shape, "order_1": 1.0}, (0.1, 0.0))
+    path = tmp_path / "model.json"
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
+    path.write_text(model.to_json())
+    with pytest.raises(cs.InputError, match=what):
+        cs.Model.from_json(path)
+
+
+def test_datum_that_follows_a_difference_of_temperatures(tmp_path: Path) -> None:
+    """A disc that has warmed up within a housing that has not: the datum goes and comes back."""
+    load = loops(12)
+    time = present(load.time_s)
+    warm = 30.0 * (1.0 - np.exp(-time / 300.0)) * (1.0 + 0.3 * np.sin(time / 100.0))
+    load = cs.Recording.from_arrays(
+        load.torque_nm, run=load.run, time_s=time, temperature_c=20.0 + warm
+    )
+    late = np.zeros(len(time))
+    for k in range(1, len(time)):
+        late[k] = warm[k] + (late[k - 1] - warm[k]) * np.exp(-(time[k] - time[k - 1]) / 90.0)
+    noise = 0.01 * np.random.default_rng(5).normal(size=len(time))
+    angle = PLAY * np.sign(load.torque_nm) + C * load.torque_nm + 0.05 * (warm - late) + noise
+    found = cs.diagnose(load.with_angle(angle), cs.Drive.reference_87(), full=False)
+    assert [effect["name"] for effect in found.effects] == ["thermal_drift"]
+    (value,) = found.model.effects
+    assert value.shape["delay_s"] == pytest.approx(90.0, rel=0.1)
+    assert value.amplitudes[-1] == pytest.approx(0.05, rel=0.1)
+    path = tmp_path / "model.json"
+    path.write_text(found.model.to_json())
+    assert cs.Model.from_json(path).effects == (value,)
+    names = [p.name for p in find("thermal_drift").amplitudes(value.shape)]
+    assert names == ["gradient_per_k"]
