@@ -88,6 +88,7 @@ def test_contacts_that_pulsate_alone_grow_with_another_power() -> None:
     noise = 0.02 * np.random.default_rng(2).normal(size=len(torque))
     angle = PLAY * np.sign(torque) + C * torque + contacts * np.cos(crank - 1.0) + noise
     found = cs.diagnose(load.with_angle(angle), cs.Drive.reference_87(), full=False)
+    assert found.model is not None
     (effect,) = found.effects
     assert effect["name"] == "phase_dependent_compliance"
     (value,) = found.model.effects
@@ -125,6 +126,7 @@ def test_datum_that_follows_a_difference_of_temperatures(tmp_path: Path) -> None
     noise = 0.01 * np.random.default_rng(5).normal(size=len(time))
     angle = PLAY * np.sign(load.torque_nm) + C * load.torque_nm + 0.05 * (warm - late) + noise
     found = cs.diagnose(load.with_angle(angle), cs.Drive.reference_87(), full=False)
+    assert found.model is not None
     assert [effect["name"] for effect in found.effects] == ["thermal_drift"]
     (value,) = found.model.effects
     assert value.shape["delay_s"] == pytest.approx(90.0, rel=0.1)

@@ -52,7 +52,17 @@ def is_curve_of_torque(fitted: FittedStructure) -> bool:
 
 
 def _left(columns: Floats, values: Floats) -> Floats:
-    """What columns, shape (n, k), leave of values, shape (n,), by least squares."""
+    """What columns leave of values by least squares.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (n, k)
+    values : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
     return np.asarray(values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0])
 
 

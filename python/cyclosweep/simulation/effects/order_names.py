@@ -52,7 +52,19 @@ def travelling_shape(ratio: float, orders: Sequence[float]) -> Shape:
 
 
 def numbered(name: str, orders: Sequence[float]) -> dict[str, float]:
-    """Orders by name."""
+    """Orders by name.
+
+    Parameters
+    ----------
+    name : str
+        Pattern of the names, `WHOLE_ORDER` or `ORDER`.
+    orders : sequence of float
+        Orders of the position.
+
+    Returns
+    -------
+    dict of str to float
+    """
     return {name.format(k): float(order) for k, order in enumerate(orders, 1)}
 
 
