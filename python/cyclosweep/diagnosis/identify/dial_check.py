@@ -49,7 +49,8 @@ def without_other_dials(
         smaller, larger = sorted(places, key=lambda place: abs(float(fitted.beta[place])))
         most = abs(float(fitted.beta[smaller])) + ERRORS * float(errors[smaller])
         size = float(np.hypot(*fitted.beta[places]))
-        steepest = float(np.radians(size - ERRORS * float(errors[larger])))
+        order = float(term.shape.get("order", 1.0))
+        steepest = order * float(np.radians(size - ERRORS * float(errors[larger])))
         if most < LEAST_PART * size or steepest > MOST_STEEP:
             withdrawn.add(term.name)
     return withdrawn_where(withdrawn.__contains__, checks)

@@ -57,7 +57,9 @@ class DialEccentricity(Effect):
         Sine and cosine together would claim a freedom that the recording may not have: over part
         of a turn the calibration takes up nearly all of the sine.
         """
-        return [{"order": 1.0, "phase_deg": phase} for phase in PHASES_DEG]
+        return [
+            {"order": order, "phase_deg": phase} for order in (1.0, 2.0) for phase in PHASES_DEG
+        ]
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Sine and cosine together, whatever phase fits best."""

@@ -70,12 +70,12 @@ class ThermalDrift(Effect):
         return kinds + [{**kind, "delay_s": delay} for kind in late for delay in delays]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Keep the delay to a tenth of the recording."""
+        """Keep the delay to a quarter of the recording."""
         bounds = super().shape_bounds(parameter, history)
         step = history.usual_step_s
         if history.time_s is None or not step > 0:
             return bounds
-        return replace(bounds, upper=max(0.1 * spread(history.time_s), 4.0 * step))
+        return replace(bounds, upper=max(0.25 * spread(history.time_s), 4.0 * step))
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """All that moves, with one delay."""
