@@ -29,6 +29,15 @@ def test_a_dial_errs_by_a_curve_neither_even_nor_odd_and_of_its_size(
     assert check.holds == is_dial
 
 
+@pytest.mark.parametrize(("size_deg", "is_dial"), [(3.0, True), (8.0, False)])
+def test_an_error_twice_a_turn_is_twice_as_steep(size_deg: float, *, is_dial: bool) -> None:
+    shape = {"order": 2.0}
+    search = search_of(EffectValue("dial_eccentricity", shape, (size_deg, 0.7 * size_deg)))
+    term = Term(find("dial_eccentricity"), shape)
+    (check,) = check_laws(fit(search.problem, search.noise, (term,), search.baseline.fit))
+    assert check.holds == is_dial
+
+
 def test_two_errors_far_larger_than_a_dials_are_none() -> None:
     """They made up for each other, and a simulation with them was off by thirty degrees."""
     history = search_of().problem.history

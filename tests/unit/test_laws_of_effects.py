@@ -179,6 +179,18 @@ def test_a_tilted_dial_errs_twice_a_turn() -> None:
     assert dial.is_recognised(recorded, both, np.array([1.0, 1.0, 0.5, 0.0]))
 
 
+def test_a_universal_joint_errs_twice_a_turn(programme: tuple[Floats, Floats]) -> None:
+    """A joint bent by 25 deg between shaft and dial: a stiffening was named instead."""
+    torque, run = programme
+    turned = np.radians(28.0 * np.sign(torque) + 2.7 * torque + 20.0)
+    bent = np.cos(np.radians(25.0))
+    seen = np.arctan2(np.sin(turned) * bent, np.cos(turned))
+    found = made(np.degrees((seen - turned + np.pi) % (2.0 * np.pi) - np.pi), torque, run)
+    assert [effect["name"] for effect in found.effects] == ["dial_eccentricity"]
+    assert found.model is not None
+    assert found.model.effects[0].shape["order"] == 2.0
+
+
 def test_joints_part_about_the_mean_of_their_onsets() -> None:
     load = np.array([1e-6, 5.0, 60.0])
     found = slope("overload_softening", {"onset_nm": 5.0, "spread": 0.2}, load)

@@ -11,6 +11,8 @@ PHASES_DEG = tuple(15.0 * k for k in range(12))
 """Directions of the eccentricity in which it is looked for; half a turn, as its size may be
 negative."""
 
+ORDERS = (1.0, 2.0)
+"""Errors a turn that are looked for."""
 BOTH: Shape = {"order": 1.0, "order_2": 2.0}
 """Errors once and twice a turn."""
 TWO_ORDERS = 6.0
@@ -25,7 +27,8 @@ of its radius."""
 class DialEccentricity(Effect):
     """Error ``a cos(angle) + b sin(angle)`` of the indicated angle.
 
-    A disc that is tilted errs twice a turn: with `order_2` the same of twice the angle is added.
+    A disc that is tilted, or a universal joint between shaft and dial, errs twice a turn: the order
+    is then two, or with `order_2` the same of twice the angle is added.
     Over part of a turn these make many curves. They are called by this name only where the error
     has an even and an odd part: what is nearly even is a side load, what is nearly odd a contact.
     """
@@ -33,11 +36,13 @@ class DialEccentricity(Effect):
     name = "dial_eccentricity"
     physics = (
         "A dial or encoder disc mounted off centre reads too much on one side and too little on "
-        "the other. The error repeats with every turn of the dial, twice where the disc is tilted."
+        "the other. The error repeats with every turn of the dial, twice where the disc is tilted "
+        "or a universal joint turns it."
     )
     source = (
         "geometry: a circle read from a point off its centre; once and twice a turn: Lu, Trumper, "
-        "CIRP Ann. 56, 2007"
+        "CIRP Ann. 56, 2007; joints: Seherr-Thoss, Schmelz, Aucktor, Universal Joints and "
+        "Driveshafts, 2006"
     )
     tell_tale = "periodic in the indicated angle itself"
     shown_by = "twists over a good part of a turn of the dial"
@@ -52,14 +57,12 @@ class DialEccentricity(Effect):
         return super().untestable(history)
 
     def shapes(self, history: History) -> Sequence[Shape]:
-        """Sinusoids of one period a turn of the dial, at phases all round.
+        """Sinusoids of one period a turn of the dial, or of two, at phases all round.
 
         Sine and cosine together would claim a freedom that the recording may not have: over part
         of a turn the calibration takes up nearly all of the sine.
         """
-        return [
-            {"order": order, "phase_deg": phase} for order in (1.0, 2.0) for phase in PHASES_DEG
-        ]
+        return [{"order": order, "phase_deg": phase} for order in ORDERS for phase in PHASES_DEG]
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Sine and cosine together, whatever phase fits best."""
@@ -100,9 +103,10 @@ class DialEccentricity(Effect):
         """Amplitudes of the error."""
         if "phase_deg" in shape:
             return (Parameter("eccentric_deg", "deg", "largest error, in this direction"),)
+        of = "the angle" if shape["order"] == 1.0 else f"{shape['order']:g} times the angle"
         once = (
-            Parameter("cos_deg", "deg", "error in phase with the cosine of the angle"),
-            Parameter("sin_deg", "deg", "error in phase with the sine of the angle"),
+            Parameter("cos_deg", "deg", f"error in phase with the cosine of {of}"),
+            Parameter("sin_deg", "deg", f"error in phase with the sine of {of}"),
         )
         if "order_2" not in shape:
             return once
