@@ -222,7 +222,7 @@ def test_times_are_bound_by_the_step_and_the_recording() -> None:
     creep, thermal = effects.find("creep"), effects.find("thermal_drift")
     assert creep.shape_bounds(creep.shape_parameters[0], h).lower == pytest.approx(3.0)
     delay = thermal.shape_bounds(thermal.shape_parameters[0], h)
-    assert delay.upper == pytest.approx(0.1 * (609.0 + 400.0))
+    assert delay.upper == pytest.approx(0.25 * (609.0 + 400.0))
 
 
 def test_friction_is_bound_by_the_torque() -> None:
