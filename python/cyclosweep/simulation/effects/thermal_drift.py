@@ -10,14 +10,22 @@ from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeFo
 from cyclosweep.simulation.effects.history import Floats, History
 
 REFERENCE_C = 20.0
-KINDS = ("datum", "clearance", "compliance")
 DELAYS = (0.01, 0.04)
 """Delays that are looked for, as shares of the duration of the recording."""
+LONGEST_DELAY = 0.25
+"""Largest delay that a fit may find, as such a share."""
 GRADIENT = "gradient"
 """Shape parameter: a datum that moves with the difference of the temperature and what follows it
 late, too."""
-MOVED = (*KINDS, GRADIENT)
-"""Names in a shape that stand for an amplitude."""
+MOVED = {
+    "datum": ("deg/K", "datum a kelvin"),
+    "clearance": ("deg/K", "clearance a kelvin"),
+    "compliance": ("deg/(N m K)", "compliance a kelvin"),
+    GRADIENT: ("deg/K", "datum a kelvin of difference"),
+}
+"""Unit and meaning of the amplitudes that a shape may name, in their order."""
+KINDS = ("datum", "clearance", "compliance")
+"""Those that follow one temperature."""
 
 
 class ThermalDrift(Effect):
@@ -70,12 +78,12 @@ class ThermalDrift(Effect):
         return kinds + [{**kind, "delay_s": delay} for kind in late for delay in delays]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Keep the delay to a quarter of the recording."""
+        """Keep the delay to a part of the recording."""
         bounds = super().shape_bounds(parameter, history)
         step = history.usual_step_s
         if history.time_s is None or not step > 0:
             return bounds
-        return replace(bounds, upper=max(0.25 * spread(history.time_s), 4.0 * step))
+        return replace(bounds, upper=max(LONGEST_DELAY * spread(history.time_s), 4.0 * step))
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """All that moves, with one delay."""
@@ -111,11 +119,7 @@ class ThermalDrift(Effect):
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Change of datum, clearance or compliance a kelvin."""
         return tuple(
-            Parameter(
-                f"{name}_per_k",
-                "deg/(N m K)" if name == "compliance" else "deg/K",
-                f"{'datum a kelvin of difference' if name == GRADIENT else f'{name} a kelvin'}",
-            )
-            for name in MOVED
+            Parameter(f"{name}_per_k", unit, meaning)
+            for name, (unit, meaning) in MOVED.items()
             if name in shape
         )
