@@ -95,12 +95,55 @@ def test_contacts_that_pulsate_alone_grow_with_another_power() -> None:
     assert value.shape["load_power"] == pytest.approx(2 / 3, abs=0.03)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_torque_of_a_twist_where_contacts_alone_pulsate(sign: float) -> None:
+    """Near no load, too, where the slope of a bare power is infinite."""
+    shape = {"load_power": 2 / 3, "reference_nm": TOP, "order_1": 1.0}
+    value = EffectValue("phase_dependent_compliance", shape, (sign * 0.2 * C, 0.0))
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
+    torque = np.r_[-np.geomspace(20.0, 0.02, 40), np.geomspace(0.02, 20.0, 40)]
+    load = cs.Recording.from_arrays(torque, crank_deg=np.zeros(80))
+    there = cs.simulate(model, load)
+    assert np.all(np.diff(present(there.angle_deg)) > 0.0)
+    back = cs.simulate(model, there, predict="torque").torque_nm
+    np.testing.assert_allclose(back, torque, rtol=1e-3, atol=1e-4)
+
+
+def test_a_part_in_series_with_friction_is_left_out_with_and_without_it() -> None:
+    """Friction that is next to nothing changed the twist by a twentieth."""
+    series = EffectValue("load_asymmetry", {"power": 1.0}, (9.0,), in_series=True)
+    slide = {"slip_deg": 0.2, "scatter": 0.3, "slack": 0.0}
+    friction = EffectValue("friction_hysteresis", slide, (1e-6,))
+    without, beside = twist_of(series, PULSATION), twist_of(series, PULSATION, friction)
+    np.testing.assert_allclose(without, beside, atol=1e-3)
+
+
+def test_a_delay_needs_a_clock() -> None:
+    value = EffectValue("thermal_drift", {"gradient": 1.0, "delay_s": 5.0}, (0.01,))
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
+    load = cs.Recording.from_arrays([1.0, 2.0], temperature_c=[20.0, 21.0])
+    with pytest.raises(cs.InputError, match="time_s"):
+        cs.simulate(model, load)
+
+
+@pytest.mark.parametrize("orders", [{"order": 0.0}, {"order": 2.0, "order_2": 2.0}])
+def test_a_dial_errs_once_or_twice_a_turn(tmp_path: Path, orders: dict[str, float]) -> None:
+    value = EffectValue("dial_eccentricity", orders, (0.1, 0.0, 0.1, 0.0)[: 2 * len(orders)])
+    path = tmp_path / "model.json"
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
+    path.write_text(model.to_json())
+    with pytest.raises(cs.InputError, match="expected 1, or 2, or 1 and 2"):
+        cs.Model.from_json(path)
+
+
 @pytest.mark.parametrize(
     ("shape", "what"),
     [
         ({"load_power": 0.7}, "reference_nm"),
         ({"reference_nm": 5.0}, "load_power"),
         ({"load_power": 0.7, "reference_nm": 0.0}, "above zero"),
+        ({"load_power": 0.7, "reference_nm": 1e-320}, "above zero"),
+        ({"load_power": -1.0, "reference_nm": 5.0}, "expected 0.3 to 1"),
     ],
 )
 def test_a_power_needs_its_reference(tmp_path: Path, shape: dict[str, float], what: str) -> None:

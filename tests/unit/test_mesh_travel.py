@@ -185,10 +185,11 @@ def test_the_play_is_no_travel_under_load() -> None:
     assert min(s["travel_order_1"] for s in travel_shapes(one)) == pytest.approx(3.0 * 360.0 / 80.0)
 
 
-def test_one_cycle_a_turn_of_the_shaft_is_left_to_the_dial() -> None:
+def test_one_cycle_and_two_a_turn_of_the_shaft_are_left_to_the_dial() -> None:
     turning = history(crank_deg=None, angle_deg=np.linspace(0.0, 360.0 * 5.0, 610))
     cycles = [s["travel_order_1"] * 5.0 for s in travel_shapes(turning)]
     assert min(abs(each - 5.0) for each in cycles) > CYCLE_STEP
+    assert min(abs(each - 10.0) for each in cycles) > CYCLE_STEP
     assert find("dial_eccentricity").untestable(turning) is None
 
 

@@ -226,7 +226,7 @@ def settle(
         The same load with the settled path.
     """
     sliding = [value for value in model.effects if value.effect.slips]
-    law = elastic_law(model, history.largest_torque_nm, held_by_friction=bool(sliding))
+    law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
     history = history.with_state(measured_deg=None, elastic_law=law)
@@ -334,10 +334,9 @@ def _torque(model: Model, programme: Recording) -> Floats:
     held_back = _friction(sliding) if sliding else None
     history = history_of(programme, model).with_state(has_corners=False)
     farthest = float(np.abs(angle - model.datum_deg).max(initial=0.0))
-    law = elastic_law(
-        model, farthest / model.compliance_deg_per_nm, held_by_friction=held_back is not None
-    )
-    history = history.with_state(elastic_law=law)
+    largest = farthest / model.compliance_deg_per_nm
+    law = elastic_law(model, largest, held_by_friction=held_back is not None)
+    history = history.with_state(elastic_law=elastic_law(model, largest, held_by_friction=True))
     others = [
         value
         for value in model.effects

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm, spread
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.orders import DIAL_ORDERS
 
 PHASES_DEG = tuple(15.0 * k for k in range(12))
 """Directions of the eccentricity in which it is looked for; half a turn, as its size may be
 negative."""
 
-ORDERS = (1.0, 2.0)
-"""Errors a turn that are looked for."""
 BOTH: Shape = {"order": 1.0, "order_2": 2.0}
 """Errors once and twice a turn."""
 TWO_ORDERS = 6.0
@@ -50,6 +50,30 @@ class DialEccentricity(Effect):
     vector = True
     forms = (ShapeForm(("order",), ("phase_deg",)), ShapeForm(("order", "order_2")))
 
+    def known_shape(self, shape: Shape) -> Shape:
+        """Refuse orders that are none, or the same twice; see `Effect.known_shape`.
+
+        Parameters
+        ----------
+        shape : mapping
+            Shape parameters by name, in any order.
+
+        Returns
+        -------
+        mapping
+
+        Raises
+        ------
+        InputError
+            A shape parameter is unknown or missing, or the orders are neither 1, nor 2, nor both.
+        """
+        known = super().known_shape(shape)
+        orders = [known[name] for name in ("order", "order_2") if name in known]
+        if orders not in ([1.0], [2.0], [1.0, 2.0]):
+            found = " ".join(f"{order:g}" for order in orders)
+            raise InputError(f"order: found {found}, expected 1, or 2, or 1 and 2")
+        return known
+
     def untestable(self, history: History) -> str | None:
         """Need a good part of a turn."""
         if spread(history.angle_deg) < 30.0:
@@ -62,7 +86,9 @@ class DialEccentricity(Effect):
         Sine and cosine together would claim a freedom that the recording may not have: over part
         of a turn the calibration takes up nearly all of the sine.
         """
-        return [{"order": order, "phase_deg": phase} for order in ORDERS for phase in PHASES_DEG]
+        return [
+            {"order": order, "phase_deg": phase} for order in DIAL_ORDERS for phase in PHASES_DEG
+        ]
 
     def variants(self, history: History, shape: Shape) -> Sequence[Shape]:
         """Sine and cosine together, whatever phase fits best."""

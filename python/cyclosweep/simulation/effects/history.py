@@ -133,7 +133,8 @@ class History:
         """Torque that would twist the straight line as far as the elastic parts are twisted [N m].
 
         It is what a change of their compliance multiplies: where they stiffen, a compliance that
-        grows by a tenth adds a tenth of the twist that they have, not of that of the line.
+        grows by a tenth adds a tenth of the twist that they have, not of that of the line. Parts in
+        series with friction, which carry another torque, are left out.
         """
         if self.elastic_law is None:
             return self.elastic_nm

@@ -14,7 +14,7 @@ ORDER = "travel_order_{}"
 LOAD_POWER = "load_power"
 """Shape parameter: power of the load with which the effect grows, where that is not one."""
 REFERENCE = "reference_nm"
-"""Load at which an effect with `LOAD_POWER` is as large as without, in N m."""
+"""Torque [N m] of the straight line at which an effect with `LOAD_POWER` is as large as without."""
 _BESIDE = (RATIO, LOAD_POWER, REFERENCE)
 """Shape parameters that are no orders."""
 

@@ -36,6 +36,8 @@ from cyclosweep.simulation.effects.order_names import (
     travels,
 )
 
+DIAL_ORDERS = (1.0, 2.0)
+"""Cycles a turn of the measured shaft that are an error of the dial's own."""
 MOST_ORDERS = 2
 """Orders up to which those found along a travel are joined. More, free to move, make any curve."""
 HIGHEST_LOW_ORDER = 3
@@ -70,7 +72,8 @@ def needed_columns(effect: Effect, shape: Shape) -> tuple[str, ...]:
     tuple of str
     """
     unrecorded = isinstance(effect, MeshPeriodic) and not from_recorded_position(shape)
-    return () if unrecorded else effect.needs
+    late = ("time_s",) if "delay_s" in shape else ()
+    return () if unrecorded else (*effect.needs, *late)
 
 
 def travel_deg(history: History) -> float:
@@ -81,16 +84,17 @@ def travel_deg(history: History) -> float:
 def travel_shapes(history: History) -> list[Shape]:
     """Single orders of the position of a travelling mesh, from a few cycles within the travel on.
 
-    One cycle a turn of the measured shaft itself is left to an eccentric dial, which is the same.
+    One cycle and two a turn of the measured shaft itself are left to an eccentric or tilted dial,
+    which is the same.
     """
     turns, step = travel_deg(history) / 360.0, CYCLE_STEP * 360.0 / whole_travel_deg(history)
     lowest, highest = FEWEST_CYCLES / turns, MOST_CYCLES / turns
     orders = np.linspace(lowest, highest, 1 + round((highest - lowest) / step))
-    dial = 1.0 / history.mesh_ratio
+    dial = np.array(DIAL_ORDERS) / history.mesh_ratio
     return [
         travelling_shape(history.mesh_ratio, [float(each)])
         for each in orders
-        if abs(each - dial) > step
+        if np.abs(each - dial).min() > step
     ]
 
 

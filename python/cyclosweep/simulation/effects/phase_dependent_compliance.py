@@ -18,14 +18,23 @@ from cyclosweep.simulation.effects.order_names import (
 )
 from cyclosweep.simulation.effects.orders import MeshPeriodic, harmonics
 
+PRELOADED = 0.05
+"""Share of the reference load below which a pulsation is in proportion to the load, so that the
+compliance is finite without load."""
+POWERS = (0.3, 1.0)
+"""Least and largest power of the load."""
+LEAST_REFERENCE_NM = 1e-6
+"""Least reference load [N m]."""
+
 
 class PhaseDependentCompliance(MeshPeriodic):
     """Compliance periodic in the mesh position: orders 1-4, and those of the output pins.
 
-    It multiplies the twist of all elastic parts, a stiffening or a side load among them.
-    Orders 1 to 3 where it travels from recorded positions, any order where none was recorded. With
-    `load_power` it grows with another power of the load, as where contacts alone pulsate that
-    stiffen under load, and the rest of the compliance does not.
+    It multiplies the twist of all elastic parts that carry what friction leaves, a stiffening or a
+    side load among them. Orders 1 to 3 where it travels from recorded positions, any order where
+    none was recorded. With `load_power` it grows with another power of the load, as where contacts
+    alone pulsate that stiffen under load, and the rest of the compliance does not; below a
+    twentieth of `reference_nm` it grows in proportion to it, as contacts that are preloaded.
     """
 
     name = "phase_dependent_compliance"
@@ -38,7 +47,7 @@ class PhaseDependentCompliance(MeshPeriodic):
     family = "position"
     shape_parameters = (
         *MeshPeriodic.shape_parameters,
-        Parameter(LOAD_POWER, "", "power of the load", 0.3, 1.0),
+        Parameter(LOAD_POWER, "", "power of the load", *POWERS),
     )
     forms = (
         ShapeForm(optional=(LOAD_POWER, REFERENCE), numbered=WHOLE_ORDER),
@@ -47,7 +56,7 @@ class PhaseDependentCompliance(MeshPeriodic):
     )
 
     def known_shape(self, shape: Shape) -> Shape:
-        """Refuse a reference that is no load; see `MeshPeriodic.known_shape`.
+        """Refuse a power beyond its bounds, or without its reference; see `MeshPeriodic`.
 
         Parameters
         ----------
@@ -61,14 +70,19 @@ class PhaseDependentCompliance(MeshPeriodic):
         Raises
         ------
         InputError
-            As there, or only one of `load_power` and `reference_nm` is stated, or the latter is not
-            above zero.
+            As there, or only one of `load_power` and `reference_nm` is stated, or the former is
+            beyond its bounds, or the latter is not above zero.
         """
         if (LOAD_POWER in shape) != (REFERENCE in shape):
             raise InputError(
                 f"shape: found {' '.join(shape)}, expected {LOAD_POWER} with {REFERENCE}"
             )
-        if not shape.get(REFERENCE, 1.0) > 0.0:
+        if not POWERS[0] <= shape.get(LOAD_POWER, 1.0) <= POWERS[1]:
+            least, most = POWERS
+            raise InputError(
+                f"{LOAD_POWER}: found {shape[LOAD_POWER]:g}, expected {least:g} to {most:g}"
+            )
+        if not shape.get(REFERENCE, 1.0) >= LEAST_REFERENCE_NM:
             raise InputError(f"{REFERENCE}: found {shape[REFERENCE]:g}, expected a load above zero")
         return super().known_shape(shape)
 
@@ -86,8 +100,8 @@ class PhaseDependentCompliance(MeshPeriodic):
         """Twist for unit amplitudes of the compliance [deg]."""
         torque = history.line_equivalent_nm
         if LOAD_POWER in shape:
-            share = np.abs(torque) / shape[REFERENCE]
-            torque = np.sign(torque) * shape[REFERENCE] * share ** shape[LOAD_POWER]
+            share = np.maximum(np.abs(torque) / shape[REFERENCE], PRELOADED)
+            torque = torque * share ** (shape[LOAD_POWER] - 1.0)
         return torque[:, None] * harmonics(history, shape)
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
