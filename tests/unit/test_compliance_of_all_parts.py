@@ -42,6 +42,13 @@ def twist_of(*effects: EffectValue) -> Floats:
     return np.asarray((angle - PLAY * np.sign(recording.torque_nm))[recording.torque_nm != 0])
 
 
+def read_back(path: Path, value: EffectValue) -> cs.Model:
+    """Model with one effect, written to a file and read again."""
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
+    path.write_text(model.to_json())
+    return cs.Model.from_json(path)
+
+
 @pytest.mark.parametrize("of_compliance", [PULSATION, WARMS], ids=lambda v: v.name)
 def test_it_multiplies_softening_and_side_load(of_compliance: EffectValue) -> None:
     recording = loops()
@@ -129,11 +136,8 @@ def test_a_delay_needs_a_clock() -> None:
 @pytest.mark.parametrize("orders", [{"order": 0.0}, {"order": 2.0, "order_2": 2.0}])
 def test_a_dial_errs_once_or_twice_a_turn(tmp_path: Path, orders: dict[str, float]) -> None:
     value = EffectValue("dial_eccentricity", orders, (0.1, 0.0, 0.1, 0.0)[: 2 * len(orders)])
-    path = tmp_path / "model.json"
-    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
-    path.write_text(model.to_json())
     with pytest.raises(cs.InputError, match="expected 1, or 2, or 1 and 2"):
-        cs.Model.from_json(path)
+        read_back(tmp_path / "model.json", value)
 
 
 @pytest.mark.parametrize(
@@ -148,11 +152,8 @@ def test_a_dial_errs_once_or_twice_a_turn(tmp_path: Path, orders: dict[str, floa
 )
 def test_a_power_needs_its_reference(tmp_path: Path, shape: dict[str, float], what: str) -> None:
     value = EffectValue("phase_dependent_compliance", {**shape, "order_1": 1.0}, (0.1, 0.0))
-    path = tmp_path / "model.json"
-    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(value,))
-    path.write_text(model.to_json())
     with pytest.raises(cs.InputError, match=what):
-        cs.Model.from_json(path)
+        read_back(tmp_path / "model.json", value)
 
 
 def test_datum_that_follows_a_difference_of_temperatures(tmp_path: Path) -> None:
@@ -174,8 +175,6 @@ def test_datum_that_follows_a_difference_of_temperatures(tmp_path: Path) -> None
     (value,) = found.model.effects
     assert value.shape["delay_s"] == pytest.approx(90.0, rel=0.1)
     assert value.amplitudes[-1] == pytest.approx(0.05, rel=0.1)
-    path = tmp_path / "model.json"
-    path.write_text(found.model.to_json())
-    assert cs.Model.from_json(path).effects == (value,)
+    assert read_back(tmp_path / "model.json", value).effects == (value,)
     names = [p.name for p in find("thermal_drift").amplitudes(value.shape)]
     assert names == ["gradient_per_k"]

@@ -35,7 +35,7 @@ class Wandering:
 
     def expand_at(self, values: Floats) -> Expansion:
         chi2 = self.left[min(len(self.seen), len(self.left) - 1)]
-        self.seen.append(Expansion(chi2, chi2, values, *cast(Any, (None, None, None, ()))))
+        self.seen.append(Expansion(chi2, chi2, values, *cast(Any, (None, None, ()))))
         return self.seen[-1]
 
     def return_to(self, before: Expansion) -> None:

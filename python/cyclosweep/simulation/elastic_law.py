@@ -1,13 +1,13 @@
 """Twist over elastic torque of a model whose effects bend the straight line."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.twist_law import ElasticLaw
 from cyclosweep.simulation.elastic_curve import ElasticCurve
 
 LAW_POINTS = 128
@@ -45,46 +45,6 @@ class CalibratedLine(Protocol):
     def output_pin_count(self) -> int:
         """Number of output pins."""
         ...
-
-
-@dataclass(frozen=True, slots=True)
-class ElasticLaw:
-    """Twist beyond the dead zone over the elastic torque, point by point.
-
-    Attributes
-    ----------
-    torque_nm : ndarray, shape (2 LAW_POINTS + 1,)
-        Elastic torque, rising [N m].
-    twist_deg : ndarray, shape (2 LAW_POINTS + 1,)
-        Twist at that torque [deg].
-    line_deg_per_nm : float
-        Compliance of the straight line from which the law was bent [deg/(N m)].
-    """
-
-    torque_nm: Floats
-    twist_deg: Floats
-    line_deg_per_nm: float
-
-    def twist_at(self, torque_nm: Floats) -> Floats:
-        """Twist at elastic torques [deg], shape as ``torque_nm`` [N m]."""
-        return np.interp(torque_nm, self.torque_nm, self.twist_deg)
-
-    def line_equivalent_nm(self, torque_nm: Floats) -> Floats:
-        """Torques that twist the straight line as far as these do the law [N m].
-
-        Parameters
-        ----------
-        torque_nm : ndarray
-            Elastic torques [N m].
-
-        Returns
-        -------
-        ndarray
-            In the same shape; the torques themselves where the line does not yield.
-        """
-        if self.line_deg_per_nm <= 0.0:
-            return torque_nm
-        return self.twist_at(torque_nm) / self.line_deg_per_nm
 
 
 def elastic_law(

@@ -15,7 +15,8 @@ from cyclosweep.simulation.effects.history import Flags, Floats, History, runs_a
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
-from cyclosweep.simulation.elastic_law import ElasticLaw, elastic_law
+from cyclosweep.simulation.effects.twist_law import ElasticLaw
+from cyclosweep.simulation.elastic_law import elastic_law
 from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist
 
@@ -226,9 +227,9 @@ def settle(
         The same load with the settled path.
     """
     sliding = [value for value in model.effects if value.effect.slips]
-    law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
+    law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     history = history.with_state(measured_deg=None, elastic_law=law)
     if moving:
         rounds += MESH_ROUNDS
@@ -240,7 +241,7 @@ def settle(
         before = history.angle_deg
         if sliding:
             history = history.with_state(beyond_deg=linear_twist(beyond, history))
-            history = _slide(model, history, sliding, added, law, known_side)
+            history = _slide(model, history, sliding, added, known_side)
         else:
             base = model.datum_deg + history.side * model.free_play_deg
             angle = base + model.elastic_twist(history.applied_nm) + added
@@ -260,7 +261,6 @@ def _slide(
     history: History,
     sliding: Sequence[EffectValue],
     added: Floats,
-    law: ElasticLaw | None,
     known_side: Floats | None,
 ) -> History:
     """Solve the path of the shaft under friction.
@@ -270,13 +270,11 @@ def _slide(
     model : Model
         Calibrated model.
     history : History
-        Load history, with the twist that lies beyond the friction.
+        Load history, with the elastic law and the twist that lies beyond the friction.
     sliding : sequence of EffectValue
         Friction effects.
     added : ndarray, shape (n,)
         Twist that effects other than friction add, that beyond it included [deg].
-    law : ElasticLaw or None
-        Elastic law; None for the straight line.
     known_side : ndarray, shape (n,), or None
         Flank in contact, +1 or -1, where it is read off the recording.
 
@@ -287,6 +285,7 @@ def _slide(
     """
     flank = 0.0 if known_side is None else known_side * model.free_play_deg
     play = model.free_play_deg if known_side is None else 0.0
+    law = history.elastic_law
     points = None if law is None else (law.torque_nm, law.twist_deg)
     beyond = history.beyond_deg
     offset = model.datum_deg + added - beyond + flank
@@ -335,8 +334,10 @@ def _torque(model: Model, programme: Recording) -> Floats:
     history = history_of(programme, model).with_state(has_corners=False)
     farthest = float(np.abs(angle - model.datum_deg).max(initial=0.0))
     largest = farthest / model.compliance_deg_per_nm
-    law = elastic_law(model, largest, held_by_friction=held_back is not None)
-    history = history.with_state(elastic_law=elastic_law(model, largest, held_by_friction=True))
+    law = elastic_law(model, largest, held_by_friction=True)
+    history = history.with_state(elastic_law=law)
+    if held_back is None and any(value.in_series for value in model.effects):
+        law = elastic_law(model, largest)
     others = [
         value
         for value in model.effects

@@ -231,8 +231,9 @@ def fit(
     history = history.with_state(measured_deg=None)
     if start is not None and not any(term.slips for term in terms):
         history = history.with_state(elastic_nm=history.applied_nm, angle_deg=mean, beyond_deg=0.0)
-    law = None if start is None else path_law(start.elastic_parts, start.history)
-    work = JointFit(problem, noise, terms, parameters, history, mean, law)
+    if start is not None:
+        history = history.with_state(elastic_law=path_law(start.elastic_parts, start.history))
+    work = JointFit(problem, noise, terms, parameters, history, mean)
     values = np.array([each.to_scale(_value(terms[each.term], each.name)) for each in parameters])
     if len(parameters):
         lower = np.array([each.to_scale(each.quantity.lower) for each in parameters])

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.elastic_law import ElasticLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,11 +19,9 @@ class Expansion:
     values : ndarray
         Nonlinear parameters, in the fit's own scale.
     history : History
-        All rows with the path of the shaft.
+        All rows with the path of the shaft and the elastic law.
     mean_deg : ndarray, shape (n,)
         Modelled twist of all rows [deg].
-    law : ElasticLaw or None
-        Elastic law; None for the line.
     terms : tuple of Term
         With shapes that follow from the amplitudes.
     """
@@ -34,7 +31,6 @@ class Expansion:
     values: Floats
     history: History
     mean_deg: Floats
-    law: ElasticLaw | None
     terms: tuple[Term, ...]
 
 

@@ -5,12 +5,9 @@ from collections.abc import Sequence
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip import Friction
-from cyclosweep.simulation.elastic_law import ElasticLaw
 
 
-def friction_path(
-    terms: Sequence[Term], history: History, mean_deg: Floats, law: ElasticLaw | None
-) -> History:
+def friction_path(terms: Sequence[Term], history: History, mean_deg: Floats) -> History:
     """Path of the shaft with these friction terms, everything else held.
 
     Parameters
@@ -19,11 +16,9 @@ def friction_path(
         All terms of a structure, at least one of them friction; all friction terms share the slip
         elements of the first.
     history : History
-        All rows with the calibrated line and the elastic torque of the round before.
+        All rows with the calibrated line, and the elastic law and torque of the round before.
     mean_deg : ndarray, shape (n,)
         Modelled twist of all rows in the round before [deg].
-    law : ElasticLaw or None
-        Elastic law of the round before; None for the line.
 
     Returns
     -------
@@ -35,6 +30,7 @@ def friction_path(
         for term in terms
         if term.effect is not None and term.slips
     )
+    law = history.elastic_law
     if law is None:
         twist, points = history.compliance_deg_per_nm * history.elastic_nm, None
     else:

@@ -19,7 +19,6 @@ from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip import on_shared_elements
-from cyclosweep.simulation.elastic_law import ElasticLaw
 
 SETTLED = 0.01
 """Change of the modelled twist, over the noise, below which path and linear parameters agree."""
@@ -41,8 +40,6 @@ class JointFit:
         All rows with the path from which the iteration starts.
     mean_deg : ndarray, shape (n,)
         Modelled twist of all rows from which it starts [deg].
-    law : ElasticLaw or None
-        Elastic law from which it starts; None for the line.
     """
 
     def __init__(
@@ -53,7 +50,6 @@ class JointFit:
         parameters: tuple[FitParameter, ...],
         history: History,
         mean_deg: Floats,
-        law: ElasticLaw | None = None,
     ) -> None:
         self.problem, self.noise, self.terms = problem, noise, terms
         self.fit_parameters = parameters
@@ -62,7 +58,7 @@ class JointFit:
         self.angle = problem.angle_deg[self.use]
         self.drags = any(term.effect is not None and term.effect.is_drag for term in terms)
         self.history = history if self.drags else history.with_state(drag_compliance=None)
-        self.mean, self.law = mean_deg, law
+        self.mean = mean_deg
         self._work_at(self.mean)
 
     def _work_at(self, mean: Floats) -> None:
@@ -143,9 +139,7 @@ class JointFit:
         self._known_columns[index] = (history, shape, columns, white)
         return columns, white
 
-    def _path(
-        self, terms: tuple[Term, ...], history: History, mean: Floats, law: ElasticLaw | None
-    ) -> History:
+    def _path(self, terms: tuple[Term, ...], history: History, mean: Floats) -> History:
         """Path of the shaft, computed once for the same friction from the same state.
 
         Parameters
@@ -155,8 +149,6 @@ class JointFit:
             All rows in the state from which the path is solved.
         mean : ndarray, shape (n,)
             Modelled twist of all rows there [deg].
-        law : ElasticLaw or None
-            Elastic law there.
 
         Returns
         -------
@@ -166,7 +158,7 @@ class JointFit:
         known = self._known_path
         if known is not None and known[0] is history and known[1] is mean and known[2] == friction:
             return known[3]
-        path = friction_path(terms, history, mean, law)
+        path = friction_path(terms, history, mean)
         self._known_path = (history, mean, friction, path)
         return path
 
@@ -175,7 +167,6 @@ class JointFit:
         terms: tuple[Term, ...],
         history: History,
         mean: Floats,
-        law: ElasticLaw | None,
     ) -> tuple[History, list[Floats], Floats, Floats]:
         """Solve path and linear parameters once, from a path and a mean.
 
@@ -186,8 +177,6 @@ class JointFit:
             All rows in the state from which the path is solved.
         mean : ndarray, shape (n,)
             Modelled twist of all rows there [deg].
-        law : ElasticLaw or None
-            Elastic law there.
 
         Returns
         -------
@@ -196,11 +185,11 @@ class JointFit:
             parameters.
         """
         if self.slides:
-            history = self._path(terms, history, mean, law)
+            history = self._path(terms, history, mean)
         design, white, hold = self._design(terms, history)
         return history, design, white, _solve(white, self._shifted, hold)
 
-    def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats, ElasticLaw | None]:
+    def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats]:
         """Solve path and linear parameters in turn at these values of the nonlinear ones.
 
         Parameters
@@ -210,14 +199,14 @@ class JointFit:
 
         Returns
         -------
-        history, mean, beta, law
-            Path of the shaft, modelled twist [deg], linear parameters, elastic law.
+        history, mean, beta
+            Path of the shaft with the elastic law, modelled twist [deg], linear parameters.
         """
         terms = self._terms_at(values)
-        history, mean, law = self.history, self.mean, self.law
+        history, mean = self.history, self.mean
         for _ in range(INNER if self.slides else 1):
             before = mean
-            history, design, _, beta = self._solve_at(terms, history, mean, law)
+            history, design, _, beta = self._solve_at(terms, history, mean)
             mean = np.concatenate(design, axis=1) @ beta
             history = self._calibrated(history, beta, mean)
             if self.drags:
@@ -229,7 +218,7 @@ class JointFit:
                 history = history.with_state(angle_deg=history.held_deg + beyond, beyond_deg=beyond)
             if self._is_settled(before, mean):
                 break
-        return history, mean, beta, law
+        return history, mean, beta
 
     def _is_settled(self, before: Floats, mean: Floats) -> bool:
         """Whether a round hardly changes the modelled twist of the fitted rows."""
@@ -270,7 +259,7 @@ class JointFit:
     def residual(self, values: Floats) -> Floats:
         """Working residual, path and linear parameters solved for these nonlinear ones."""
         terms = self._terms_at(values)
-        _, _, white, beta = self._solve_at(terms, self.history, self.mean, self.law)
+        _, _, white, beta = self._solve_at(terms, self.history, self.mean)
         self._last = (terms, white, beta)
         return self._shifted - white @ beta
 
@@ -281,16 +270,16 @@ class JointFit:
             self.noise = exact.with_sigma(level)
             self._work_at(self.mean)
             for _ in range(6):
-                history, mean, beta, law = self._evaluate(values)
+                history, mean, beta = self._evaluate(values)
                 settled = self._is_settled(self.mean, mean)
-                self.history, self.mean, self.law = history, mean, law
+                self.history, self.mean = history, mean
                 self._follow_amplitudes(history, beta)
                 self._work_at(mean)
                 if settled:
                     break
         chi2 = float(self.target @ self.target)
         misfit = self.misfit_of(self.mean)
-        return Expansion(chi2, misfit, values, self.history, self.mean, self.law, self.terms)
+        return Expansion(chi2, misfit, values, self.history, self.mean, self.terms)
 
     def misfit_of(self, mean: Floats) -> float:
         """Twice the log likelihood that a modelled twist [deg] lacks to a perfect fit."""
@@ -298,8 +287,7 @@ class JointFit:
 
     def return_to(self, before: Expansion) -> None:
         """Move the point back to one about which the likelihood was expanded before."""
-        self.history, self.mean = before.history, before.mean_deg
-        self.law, self.terms = before.law, before.terms
+        self.history, self.mean, self.terms = before.history, before.mean_deg, before.terms
         self._work_at(self.mean)
 
     def _follow_amplitudes(self, history: History, beta: Floats) -> None:

@@ -12,7 +12,8 @@ import numpy as np
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.drag_compliance import with_drag_compliance
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.elastic_law import ElasticLaw, history_through, law_of_twist
+from cyclosweep.simulation.effects.twist_law import ElasticLaw
+from cyclosweep.simulation.elastic_law import history_through, law_of_twist
 
 
 def path_law(elastic: Sequence[tuple[Term, Floats]], history: History) -> ElasticLaw | None:

@@ -3,13 +3,14 @@
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol, Self
+from typing import Self
 
 import numpy as np
 
 from cyclosweep.simulation.effects.corners import Corners, Flags, Floats, Ints, find_corners
+from cyclosweep.simulation.effects.twist_law import ElasticLaw
 
-__all__ = ["Flags", "Floats", "History", "Ints", "TwistLaw", "runs_and_restarts"]
+__all__ = ["Flags", "Floats", "History", "Ints", "runs_and_restarts"]
 
 _OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s", "has_corners"))
 """What the values that are computed once for a load history follow from."""
@@ -17,14 +18,6 @@ _BY_THE_LOAD = frozenset(
     ("largest_torque_nm", "run_starts", "run_count", "sense", "usual_step_s", "lapse_s", "corners")
 )
 """Those values; another state of the model on the same load leaves them as they are."""
-
-
-class TwistLaw(Protocol):
-    """Twist of the elastic parts over their torque."""
-
-    def line_equivalent_nm(self, torque_nm: Floats) -> Floats:
-        """Torques that twist the straight line as far as these do the elastic parts [N m]."""
-        ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,7 +38,7 @@ class History:
     drag_compliance : ndarray, shape (n,), or None
         Twist that the elastic parts lose for each unit of drag, by which they carry less than
         `elastic_nm` [deg/(N m)]; None for the compliance of the line.
-    elastic_law : TwistLaw or None
+    elastic_law : ElasticLaw or None
         How the elastic parts twist, where effects bend the line; None for the line.
     side : ndarray, shape (n,)
         Flank in contact: +1 or -1.
@@ -98,7 +91,7 @@ class History:
     corner_nm: Floats | None = None
     has_corners: bool = True
     drag_compliance: Floats | None = None
-    elastic_law: TwistLaw | None = None
+    elastic_law: ElasticLaw | None = None
 
     def __len__(self) -> int:
         return len(self.applied_nm)

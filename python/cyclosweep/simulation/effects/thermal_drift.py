@@ -24,7 +24,7 @@ MOVED = {
     GRADIENT: ("deg/K", "datum a kelvin of difference"),
 }
 """Unit and meaning of the amplitudes that a shape may name, in their order."""
-KINDS = ("datum", "clearance", "compliance")
+KINDS = tuple(name for name in MOVED if name != GRADIENT)
 """Those that follow one temperature."""
 
 
