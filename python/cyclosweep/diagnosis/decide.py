@@ -6,6 +6,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import explained_share
 from cyclosweep.diagnosis.identify.freer_laws import with_freer_laws
+from cyclosweep.diagnosis.identify.law_that_holds import with_law_that_holds
 from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.search import Search
@@ -135,6 +136,10 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         decision = _with_structure(decision, accepted, naming.part)
         decision = replace(decision, verdict="IDENTIFIED", unexplained=False)
         accepted, naming = naming.part, naming.without_withdrawn()
+    other = _with_other_law(search, decision, accepted, naming)
+    if other is not None:
+        decision, naming = other
+        accepted = naming.part
     if staged is not None and staged[0] is naming.part:
         explained = staged[1]
     else:
@@ -201,8 +206,48 @@ def _with_structure(decision: Decision, accepted: Candidate, other: Candidate) -
     Decision
     """
     best = other if decision.best is accepted else decision.best
-    listed = [(other if each is accepted else each, p) for each, p in decision.explanations]
-    return replace(decision, best=best, explanations=listed)
+    probable = dict[Candidate, float]()
+    for each, probability in decision.explanations:
+        same = each is accepted or each.names == other.names
+        found = other if same else each
+        probable[found] = probable.get(found, 0.0) + probability
+    return replace(decision, best=best, explanations=list(probable.items()))
+
+
+def _with_other_law(
+    search: Search, decision: Decision, accepted: Candidate, naming: Naming
+) -> tuple[Decision, Naming] | None:
+    """Put a law that stands for its class in the place of those that do not.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    decision : Decision
+        Verdict and explanations.
+    accepted : Candidate
+        The structure that it rests on.
+    naming : Naming
+        Which of its effects may be named.
+
+    Returns
+    -------
+    (Decision, Naming) or None
+        None where no law holds, or something without a name remains beside the laws, or so few
+        readings tell no laws apart.
+    """
+    fitted = accepted.fit
+    if not naming.withdrawn or decision.best is not accepted or fitted.independent_share < 1.0:
+        return None
+    if search.problem.count <= FEW_READINGS:
+        return None
+    other = with_law_that_holds(search, accepted, naming)
+    if other is None:
+        return None
+    enough = _is_enough(search, other.part)
+    verdict: Verdict = "IDENTIFIED" if enough else "MOSTLY_EXPLAINED"
+    decision = _with_structure(decision, accepted, other.part)
+    return replace(decision, verdict=verdict, unexplained=not enough), other
 
 
 def _with_names_that_hold(
@@ -233,7 +278,8 @@ def _with_names_that_hold(
     if few and not told:
         return replace(decision, verdict="INSUFFICIENT_DATA", unexplained=False)
     nothing = decision.verdict in NAMING and not naming.names
-    if not naming.withdrawn and not nothing:
+    too_little = decision.verdict == "MOSTLY_EXPLAINED" and share < MOSTLY
+    if not (naming.withdrawn or nothing or too_little):
         return decision
     mostly = bool(naming.names) and share >= MOSTLY
     verdict: Verdict = "MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS"

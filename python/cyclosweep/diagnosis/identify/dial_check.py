@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import voigt_profile
+from scipy.stats import norm
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
@@ -18,6 +20,31 @@ LEAST_PART = 0.03
 an even one: of dials of any direction one in twenty-five has so little of one of them."""
 ERRORS = 2.0
 """Standard errors within which a part has to be so small, or so large."""
+LEAST_ODDS = -1.0
+"""Log odds of a dial of any direction over an even or an odd curve below which it is no dial [nat].
+A recording that does not determine the smaller part well is never as decided as that."""
+
+
+def direction_odds(smaller: float, larger: float, error: float) -> float:
+    """Log odds of an error of any direction over one that has its larger part only [nat].
+
+    Where all directions are equally likely, the ratio of the two parts has a Cauchy distribution.
+
+    Parameters
+    ----------
+    smaller, larger : float
+        Its amplitudes in the two directions, in absolute values; the larger one is known well
+        [deg].
+    error : float
+        Standard error of the smaller one [deg].
+
+    Returns
+    -------
+    float
+        Negative where the smaller one is zero within an error that is less than the larger one.
+    """
+    any_direction = float(np.log(voigt_profile(smaller, error, larger)))
+    return any_direction - float(norm.logpdf(smaller, scale=error))
 
 
 def without_other_dials(
@@ -25,7 +52,8 @@ def without_other_dials(
 ) -> tuple[LawCheck, ...]:
     """Withdraw dials whose error is an even curve or an odd one, or steeper than any dial's.
 
-    Such a curve is a side load's or a contact's. What is left open counts for the dial.
+    Such a curve is a side load's or a contact's. Where the recording leaves the smaller part open,
+    that counts for the dial.
 
     Parameters
     ----------
@@ -47,10 +75,12 @@ def without_other_dials(
         if len(places) != 2 or not set(own_classes(term)) >= BOTH_CURVES:
             continue
         smaller, larger = sorted(places, key=lambda place: abs(float(fitted.beta[place])))
-        most = abs(float(fitted.beta[smaller])) + ERRORS * float(errors[smaller])
-        size = float(np.hypot(*fitted.beta[places]))
+        parts = np.abs(fitted.beta[[smaller, larger]])
+        most = float(parts[0]) + ERRORS * float(errors[smaller])
+        size = float(np.hypot(*parts))
+        odds = direction_odds(float(parts[0]), float(parts[1]), float(errors[smaller]))
         order = float(term.shape.get("order", 1.0))
         steepest = order * float(np.radians(size - ERRORS * float(errors[larger])))
-        if most < LEAST_PART * size or steepest > MOST_STEEP:
+        if most < LEAST_PART * size or odds < LEAST_ODDS or steepest > MOST_STEEP:
             withdrawn.add(term.name)
     return withdrawn_where(withdrawn.__contains__, checks)

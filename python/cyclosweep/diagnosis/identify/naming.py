@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
 from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
+from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, worth
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 
@@ -94,6 +95,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             # Those that are left stood for their class together with the small ones.
             larger = without_small_laws(part.fit, checks)
             checks = without_laws_of_one_class(part.fit, larger)
+            checks = without_waves_of_a_curve(search.baseline.fit, part.fit, checks)
             checks = _without_lesser_laws(part.fit, checks, best.fit)
             checks = withdrawn_where(is_needless, checks)
             judged = checks == larger
@@ -188,6 +190,7 @@ def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
             break
         withdrawn += gone
     checks = without_small_laws(accepted.fit, checks)
+    checks = without_waves_of_a_curve(search.baseline.fit, accepted.fit, checks)
     withdrawn += [check for check in checks if not check.holds]
     checks = tuple(check for check in checks if check.holds)
     part = accepted

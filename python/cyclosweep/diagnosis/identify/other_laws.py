@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -31,7 +32,8 @@ LEAST_LEFT = 0.1
 """What is left beyond the noise counts from this share of the noise."""
 FAR_LESS = 0.5
 """What another law leaves beyond the noise, over what the accepted one leaves, from which it takes
-its place although the error of models that is allowed for makes both alike."""
+its place although the error of models that is allowed for makes both alike; or what it misses of
+its class over what the accepted one misses, from which a small lead is enough."""
 
 
 def with_better_laws(search: Search) -> FittedStructure:
@@ -50,7 +52,7 @@ def with_better_laws(search: Search) -> FittedStructure:
     fitted = search.start.fit
     for name in fitted.names:
         term = next(each for each in fitted.terms if each.name == name)
-        rivals = [] if term.effect is None or term.slips else list(_rivals(search, fitted, term))
+        rivals = [] if term.effect is None or term.slips else list(rivals_of(search, fitted, term))
         if not rivals:
             continue
         others = tuple(each for each in fitted.terms if each is not term)
@@ -72,9 +74,32 @@ def with_better_laws(search: Search) -> FittedStructure:
         ahead = best.score - _score(own)
         leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
         clearly = max(CLEARLY, ERROR_OF_LAWS * _score(own))
-        if ahead > clearly or (leaves_less and ahead > -CLEARLY):
+        better = ahead > clearly or (leaves_less and ahead > -CLEARLY)
+        if better or (own is not None and ahead > CLEARLY and _misses_less(best.fit, own.fit)):
             fitted = best.fit
     return fitted
+
+
+def _misses_less(other: FittedStructure, own: FittedStructure) -> bool:
+    """Whether the last law of a structure misses far less of its class than that of another.
+
+    Parameters
+    ----------
+    other : FittedStructure
+        Structure with another law in the last place.
+    own : FittedStructure
+        Structure with the accepted law there.
+
+    Returns
+    -------
+    bool
+        False unless it may be named.
+    """
+    check, accepted = (
+        next(each for each in check_laws(fitted) if each.name == fitted.names[-1])
+        for fitted in (other, own)
+    )
+    return check.holds and check.missed_share < FAR_LESS * accepted.missed_share
 
 
 def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:
@@ -169,7 +194,7 @@ def _score(candidate: Candidate | None) -> float:
     return float("-inf") if candidate is None else candidate.score
 
 
-def _rivals(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str]:
+def rivals_of(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str]:
     """Effects of the same class as a term that are not part of the structure.
 
     Parameters

@@ -101,13 +101,16 @@ class Search:
         base = fit(problem, noise, ())
         self.whitened = base.whitened(library.columns, noise)
         self.gram = self.whitened.T @ self.whitened
-        terms = () if accepted is None else accepted.terms
-        first = fit(problem, noise, terms, accepted) if terms else base
+        first = base
+        if accepted is not None and accepted.terms:
+            again = fit(problem, noise, accepted.terms, accepted)
+            # Under other noise an amplitude may change its sign: such an effect is left out.
+            first = with_right_signs(again, whole_effects=True) or again
         self.alarm = Alarm.calibrate(self._scan(first), np.random.default_rng([seed, 1]))
         self.threshold = self.alarm.threshold
         self.baseline = self.start = self.judged(base, 0.0, 0.0)
         self.visited: dict[frozenset[str], Candidate] = {}
-        if terms:
+        if first is not base:
             self.start = self.judged(first, 0.0, 0.0)
             self.visited[self.start.names] = self.start
         self.tried: set[tuple[Candidate, str]] = set()

@@ -4,12 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
 from cyclosweep.diagnosis.whole_loop.step_order import step_order
-from cyclosweep.simulation.effects.history import Flags, Floats
+from cyclosweep.simulation.effects.history import Flags, Floats, History
 
 DRIFT_RATIO = 1.8
 """Error on another run over that on its own beyond which the two are not the same drive."""
@@ -48,14 +49,14 @@ def steadiness(known: Forecast) -> list[Steadiness]:
     """Fit runs alone and see how far each model errs on itself and on the run's replicates.
 
     Runs over another range of torque are left out: a model of small loops does not hold for large
-    ones, nor the reverse, on the steadiest drive.
+    ones, nor the reverse, on the steadiest drive. So are runs at other positions of the mesh: a
+    run tells nothing of a position where it was not.
     """
     problem = known.problem
-    torque = problem.history.applied_nm
     parts = _by_run(problem, problem.whole_fitted)
     found = []
     for rows in parts[:MOST_RUNS]:
-        replicates = [p for p in parts if p is not rows and _same_range(torque[p], torque[rows])]
+        replicates = [p for p in parts if p is not rows and _replicates(problem.history, p, rows)]
         if not replicates:
             continue
         alone = refit(known, rows=rows, most=4)
@@ -84,23 +85,26 @@ def _by_run(problem: Problem, rows: Flags) -> list[Flags]:
     return [part for part in parts if np.count_nonzero(part) > FEWEST_ROWS]
 
 
-def _same_range(first: Floats, second: Floats) -> bool:
-    """Whether the torques of two runs reach about as far on either side.
+def _replicates(history: History, first: Flags, second: Flags) -> bool:
+    """Whether two runs are of the same positions of the mesh, and of about the same torques.
 
     Parameters
     ----------
-    first : ndarray
-        Torques of one run [N m].
-    second : ndarray
-        Torques of the other [N m].
+    history : History
+    first, second : ndarray of bool, shape (n,)
+        Rows of either run.
 
     Returns
     -------
     bool
     """
-    room = SAME_RANGE * max(float(np.ptp(first)), float(np.ptp(second)))
-    ends = (first.min() - second.min(), first.max() - second.max())
-    return bool(np.max(np.abs(ends)) <= room)
+    one, two = history.applied_nm[first], history.applied_nm[second]
+    room = SAME_RANGE * max(float(np.ptp(one)), float(np.ptp(two)))
+    if max(abs(one.min() - two.min()), abs(one.max() - two.max())) > room:
+        return False
+    if history.crank_deg is None:
+        return True
+    return set(positions(history.crank_deg[first])) == set(positions(history.crank_deg[second]))
 
 
 def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
