@@ -72,6 +72,16 @@ def test_torque_and_angle_are_inverse() -> None:
     np.testing.assert_allclose(back.torque_nm[loaded], there.torque_nm[loaded], rtol=2e-3)
 
 
+@pytest.mark.parametrize("share", [-0.9, 0.6, 0.9])
+def test_the_torque_settles_where_nearly_all_compliance_pulsates(share: float) -> None:
+    """It was off by two newton metres in fourteen."""
+    pulsation = EffectValue("phase_dependent_compliance", {"order_1": 1.0}, (share * C, 0.0))
+    model = cs.Model(compliance_deg_per_nm=C, free_play_deg=PLAY, effects=(pulsation,))
+    there = cs.simulate(model, loops())
+    back = cs.simulate(model, there, predict="torque")
+    np.testing.assert_allclose(back.torque_nm, there.torque_nm, atol=1e-6 * TOP)
+
+
 def test_what_pulsates_with_a_bent_law_is_not_split() -> None:
     """The twist of a stiffening and a soft flank pulsates, too: no error of the transmission."""
     load = loops()

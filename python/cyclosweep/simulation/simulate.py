@@ -35,6 +35,11 @@ __all__ = [
 
 ROUNDS = 12
 """Most rounds in which twist, flank and effects settle on each other."""
+TORQUE_ROUNDS = 300
+"""The same for the torque at a given twist. A compliance that pulsates by nine tenths of itself
+leaves nine tenths of the error in each round."""
+STALLED_AFTER = 10
+"""Rounds without an improvement after which the torque moves to and fro, as friction may let it."""
 
 
 def history_of(recording: Recording, model: Model) -> History:
@@ -348,7 +353,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
     beyond = [value for value in others if value not in moving]
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
-    for _ in range(ROUNDS):
+    least, stalled = np.inf, 0
+    for _ in range(TORQUE_ROUNDS):
         side = _flanks(elastic, history.restart)
         applied = elastic + friction
         history = history.with_state(
@@ -373,6 +379,8 @@ def _torque(model: Model, programme: Recording) -> Floats:
             if behind:
                 carries = np.sign(twist) * (elastic + friction) > 0.0
                 friction = np.where(carries & (held != 0.0), friction, -elastic)
-        if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9):
+        stalled = 0 if moved < least else stalled + 1
+        least = min(least, moved)
+        if moved < 1e-9 * max(float(np.max(np.abs(elastic))), 1e-9) or stalled > STALLED_AFTER:
             break
     return elastic + friction + model.torque_zero_nm

@@ -8,7 +8,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape, unnamed_shapes
 from cyclosweep.simulation.effects import Effect, Shape
-from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +68,21 @@ class Library:
     columns: Floats
     untestable: dict[str, str]
     unbounded: dict[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def single(self) -> tuple[Ints, Ints, Floats]:
+        """Index, column and sign of every signature of one column."""
+        found = [(k, s) for k, s in enumerate(self.signatures) if s.stop - s.first == 1]
+        return (
+            np.array([k for k, _ in found], dtype=np.int64),
+            np.array([s.first for _, s in found], dtype=np.int64),
+            np.array([s.signs[0] for _, s in found], dtype=np.float64),
+        )
+
+    @cached_property
+    def several(self) -> tuple[int, ...]:
+        """Indices of the signatures of several columns."""
+        return tuple(k for k, s in enumerate(self.signatures) if s.stop - s.first != 1)
 
     @cached_property
     def effects(self) -> dict[str, Signature]:

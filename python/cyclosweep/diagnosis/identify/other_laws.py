@@ -93,13 +93,14 @@ def _misses_less(other: FittedStructure, own: FittedStructure) -> bool:
     Returns
     -------
     bool
-        False unless it may be named.
+        False unless all laws of the other structure may be named, and it has as many as this one.
     """
-    check, accepted = (
-        next(each for each in check_laws(fitted) if each.name == fitted.names[-1])
-        for fitted in (other, own)
-    )
-    return check.holds and check.missed_share < FAR_LESS * accepted.missed_share
+    if len(other.terms) != len(own.terms):
+        return False
+    checks = {check.name: check for check in check_laws(other)}
+    accepted = next(check for check in check_laws(own) if check.name == own.names[-1])
+    missed = checks[other.names[-1]].missed_share
+    return all(each.holds for each in checks.values()) and missed < FAR_LESS * accepted.missed_share
 
 
 def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:

@@ -124,10 +124,10 @@ class Scan:
     library : Library
     score : ndarray, shape (k,)
         Product of each projected whitened column with the white residual.
-    gram : ndarray, shape (k, k)
-        Inner products of the projected columns.
-    energy : ndarray, shape (k,)
+    whole_gram : ndarray, shape (k, k)
         Inner products of the columns before the projection.
+    shadow : ndarray, shape (q, k)
+        What the projection takes off them, in its own orthonormal basis.
     freedom : float
         Degrees of freedom with which the noise is known.
     excess : float
@@ -136,25 +136,69 @@ class Scan:
 
     library: Library
     score: Floats
-    gram: Floats
-    energy: Floats
+    whole_gram: Floats
+    shadow: Floats
     freedom: float
     excess: float = 0.0
 
     @cached_property
-    def transforms(self) -> list[Floats]:
-        """Orthonormal coordinates of each signature, shape (columns, rank)."""
-        out = []
-        for signature in self.library.signatures:
-            part = slice(signature.first, signature.stop)
-            inner = self.gram[part, part]
-            out.append(_whitener(inner, self.energy[part]))
-        return out
+    def energy(self) -> Floats:
+        """Sum of squares of each column before the projection, shape (k,)."""
+        return np.diag(self.whole_gram).copy()
+
+    @cached_property
+    def left(self) -> Floats:
+        """Sum of squares of each projected column, shape (k,)."""
+        return np.asarray(self.energy - np.sum(self.shadow**2, axis=0))
+
+    @cached_property
+    def gram(self) -> Floats:
+        """Inner products of the projected columns, shape (k, k)."""
+        return np.asarray(self.whole_gram - self.shadow.T @ self.shadow)
+
+    @cached_property
+    def alone(self) -> Floats:
+        """Scale that makes each column one of unit length, zero where it is lost, shape (k,)."""
+        seen = (self.energy > 0) & (self.left >= SEEN * self.energy)
+        return np.where(seen, 1.0 / np.sqrt(np.where(seen, self.left, 1.0)), 0.0)
+
+    @cached_property
+    def _together(self) -> dict[int, Floats]:
+        """Orthonormal coordinates of the signatures of several columns, by index."""
+        found = {}
+        for k in self.library.several:
+            part = slice(self.library.signatures[k].first, self.library.signatures[k].stop)
+            shadow = self.shadow[:, part]
+            inner = self.whole_gram[part, part] - shadow.T @ shadow
+            found[k] = _whitener(inner, self.energy[part])
+        return found
+
+    def transform(self, index: int) -> Floats:
+        """Orthonormal coordinates of a signature.
+
+        Parameters
+        ----------
+        index : int
+            Which of the library's signatures.
+
+        Returns
+        -------
+        ndarray, shape (columns, rank)
+        """
+        if index in self._together:
+            return self._together[index]
+        factor = self.alone[self.library.signatures[index].first]
+        return np.full((1, 1), factor) if factor > 0 else np.zeros((1, 0))
 
     @cached_property
     def ranks(self) -> Floats:
         """Projected rank of each signature."""
-        return np.array([t.shape[1] for t in self.transforms], dtype=np.float64)
+        out = np.zeros(len(self.library.signatures))
+        index, column, _ = self.library.single
+        out[index] = self.alone[column] > 0
+        for k, transform in self._together.items():
+            out[k] = transform.shape[1]
+        return out
 
     def gains(self, score: Floats) -> Floats:
         """Chi-squared that each signature takes away.
@@ -169,36 +213,22 @@ class Scan:
         ndarray, shape (signatures,) or (signatures, draws)
         """
         out = np.zeros((len(self.library.signatures), *score.shape[1:]))
-        alone = self._single
-        if len(alone[0]):
-            index, column, factor, sign = alone
-            z = score[column] * factor.reshape((-1,) + (1,) * (score.ndim - 1))
-            wrong = sign.reshape((-1,) + (1,) * (score.ndim - 1)) * z < 0
-            out[index] = np.where(wrong, 0.0, z**2)
-        for k, signature in enumerate(self.library.signatures):
-            transform = self.transforms[k]
-            if transform.shape[1] == 0 or signature.stop - signature.first == 1:
+        along = (-1,) + (1,) * (score.ndim - 1)
+        index, column, sign = self.library.single
+        z = score[column] * self.alone[column].reshape(along)
+        out[index] = np.where(sign.reshape(along) * z < 0, 0.0, z**2)
+        for k, transform in self._together.items():
+            if transform.shape[1] == 0:
                 continue
+            signature = self.library.signatures[k]
             part = score[signature.first : signature.stop]
             gain = np.sum((transform.T @ part) ** 2, axis=0)
             if np.any(signature.signs):
                 amplitude = transform @ (transform.T @ part)
-                signs = signature.signs.reshape((-1,) + (1,) * (score.ndim - 1))
-                gain = np.where(np.any(signs * amplitude < 0, axis=0), 0.0, gain)
+                wrong = signature.signs.reshape(along) * amplitude < 0
+                gain = np.where(np.any(wrong, axis=0), 0.0, gain)
             out[k] = gain
         return out
-
-    @cached_property
-    def _single(self) -> tuple[np.ndarray, np.ndarray, Floats, Floats]:
-        """Index, column, scale and sign of the signatures with one column."""
-        index, column, factor, sign = [], [], [], []
-        for k, signature in enumerate(self.library.signatures):
-            if signature.stop - signature.first == 1 and self.transforms[k].shape[1] == 1:
-                index.append(k)
-                column.append(signature.first)
-                factor.append(self.transforms[k][0, 0])
-                sign.append(signature.signs[0])
-        return np.array(index, int), np.array(column, int), np.array(factor), np.array(sign)
 
     @cached_property
     def groups(self) -> dict[str, np.ndarray]:
@@ -318,10 +348,6 @@ def _whitener(inner: Floats, energy: Floats) -> Floats:
     -------
     ndarray, shape (k, rank)
     """
-    if len(energy) == 1:
-        if energy[0] <= 0 or inner[0, 0] < SEEN * energy[0]:
-            return np.zeros((1, 0))
-        return np.array([[1.0 / np.sqrt(inner[0, 0])]])
     scale = np.where(energy > 0, 1.0 / np.sqrt(np.maximum(energy, 1e-300)), 0.0)
     values, vectors = np.linalg.eigh(inner * np.outer(scale, scale))
     keep = values > SEEN
@@ -360,7 +386,7 @@ def scan(
     -------
     Scan
     """
-    shadow = tangent.T @ whitened
-    projected = gram - shadow.T @ shadow
-    score = whitened.T @ residual - shadow.T @ (tangent.T @ residual)
-    return Scan(library, score, projected, np.diag(gram).copy(), freedom, excess)
+    # In one product, because reading the columns takes longest.
+    products = np.column_stack([tangent, residual]).T @ whitened
+    shadow, score = products[:-1], products[-1] - products[:-1].T @ (tangent.T @ residual)
+    return Scan(library, score, gram, shadow, freedom, excess)

@@ -118,8 +118,7 @@ def _amplitude(found: Scan, signature: Signature) -> float:
         In N m, or a share of the torque.
     """
     column = signature.first
-    inner = found.gram[column, column]
-    return float(max(found.score[column] / inner / signature.scale[0], 1e-6))
+    return float(max(found.score[column] / found.left[column] / signature.scale[0], 1e-6))
 
 
 def _far_apart(signature: Signature, other: Signature) -> bool:

@@ -97,7 +97,7 @@ def testability(
         for index in members:
             signature = scan.library.signatures[index]
             part = slice(signature.first, signature.stop)
-            transform = scan.transforms[index]
+            transform = scan.transform(index)
             z = transform.T @ scan.score[part]
             rows = raw[:, part] @ transform
             spreads = np.sqrt(np.sum(rows**2, axis=1))
@@ -112,7 +112,7 @@ def testability(
             need = np.sqrt(2.0 * search.threshold) + 1.28
             detect = min(detect, float(spreads.max()) * need / np.sqrt(transform.shape[1]))
             before = float(np.sum(scan.energy[part]))
-            after = float(np.trace(scan.gram[part, part]))
+            after = float(np.sum(scan.left[part]))
             absorbed = min(absorbed, 1.0 - after / max(before, 1e-300))
         out.append(
             Testability(
