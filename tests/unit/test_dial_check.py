@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cyclosweep.diagnosis.identify.class_check import check_laws
+from cyclosweep.diagnosis.identify.dial_check import LEAST_ODDS, direction_odds
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects import find
@@ -16,8 +17,14 @@ LOPSIDED = np.array([1.0, 1.0, 0.5, 0.0])
 
 @pytest.mark.parametrize(
     ("cos_deg", "sin_deg", "is_dial"),
-    [(1.5, 1.0, True), (6.0, 0.6, True), (6.0, 0.0, False), (0.0, 6.0, False), (9, 13, False)],
-    ids=["oblique", "nearly even", "even", "odd", "off by more than a quarter of its radius"],
+    [
+        *((1.5, 1.0, True), (6.0, 0.6, True), (6.0, 0.0, False), (0.0, 6.0, False), (9, 13, False)),
+        *((0.3, 0.0, False), (0.3, 0.2, True)),
+    ],
+    ids=[
+        *("oblique", "nearly even", "even", "odd", "off by more than a quarter of its radius"),
+        *("even within its error", "small and oblique"),
+    ],
 )
 def test_a_dial_errs_by_a_curve_neither_even_nor_odd_and_of_its_size(
     cos_deg: float, sin_deg: float, *, is_dial: bool
@@ -27,6 +34,16 @@ def test_a_dial_errs_by_a_curve_neither_even_nor_odd_and_of_its_size(
     term = Term(find("dial_eccentricity"), ONCE)
     (check,) = check_laws(fit(search.problem, search.noise, (term,), search.baseline.fit))
     assert check.holds == is_dial
+
+
+def test_an_open_direction_counts_for_the_dial() -> None:
+    """Its odds are those of all directions against an exactly even curve."""
+    assert direction_odds(0.03, 0.4, 0.1) < LEAST_ODDS
+    assert direction_odds(0.03, 0.4, 0.5) > LEAST_ODDS
+    assert direction_odds(0.3, 0.4, 0.1) > 0.0
+    # One that is known to be zero is no dial's, one that is not known at all says nothing.
+    assert direction_odds(0.0, 0.4, 1e-4) < -6.0
+    assert direction_odds(0.0, 0.4, 1e4) == pytest.approx(0.0, abs=1e-3)
 
 
 @pytest.mark.parametrize(("size_deg", "is_dial"), [(3.0, True), (8.0, False)])

@@ -27,6 +27,9 @@ SLOW = 0.3
 HEAVY = 5.0
 """and the degrees of freedom of its tails up to which it is, too: a law of friction that the
 flexible model misses leaves a few large errors after each reversal, which pass for outliers."""
+VERY_SLOW = 0.9
+"""Autocorrelation from which what is left beside friction is error of the model, if its tails are
+heavy, too: slow noise is even, and outliers are not slow."""
 LOUD = 4.0
 """Error of the calibrated model, over what rows differ by, from which it is."""
 FAR_LIKELIER = 100.0
@@ -73,6 +76,8 @@ def without_hidden_friction(
     slow = noise_left(problem, beyond, all_noise=True)
     if is_far_likelier(slow, noise):
         left = noise_left(problem, beyond)
+        if left.best_correlation >= VERY_SLOW and left.tail <= HEAVY:
+            left = model_error_noise(problem, left, beyond)
         return Search(problem, left, library, search.seed), beyond, known
     # Noise of a long memory costs next to nothing where it is drift; white noise is no drift.
     little_left = noise.best_correlation >= SLOW

@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     ONE_CAUSE,
     OPENING_LOOP,
     RATE_LOOP,
+    RELAXATION,
     RUN,
 )
 from cyclosweep.diagnosis.hypotheses.library import Library
@@ -75,6 +76,9 @@ WITHIN = 0.25
 the datum to stand: what changes within the runs is no zero that moves from run to run."""
 CLEAR = 6.0
 """Log evidence from which a residual shows a class [nat]."""
+LOOPS = frozenset({LOOP, OPENING_LOOP, RATE_LOOP, RELAXATION})
+"""Classes that part the ways to and fro. A law of one of them is not named where another explains
+more than its own, and the law no more than that."""
 MOST_CLASSES = 4
 """Classes that are looked for in a residual."""
 LEAST_SIZE = 0.1
@@ -285,11 +289,16 @@ def _check(
     # A class that the recording does not show replaces no law.
     if rival is not None and every[rival].evidence > max(beaten + close, CLEAR):
         replaced |= LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
+    room = close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
+    if rival in LOOPS and family and set(family) <= LOOPS:
+        # A law with enough parameters may make a loop of another kind; its class does not.
+        ahead = every[rival].evidence - max(every[name].evidence for name in family)
+        replaced |= ahead > CLEAR and by_law <= every[rival].evidence + room
     # A law is judged by its class no closer than to the error that much larger ones leave there.
     error = ERROR_OF_OTHERS * size_of_others
     little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))
     most = float(np.clip(np.hypot(MOST_MISSED, error), 0.0, MOST_MISSED_LOOP))
-    stands = deficit <= close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
+    stands = deficit <= room
     stands |= follows or ((beyond > 0.0 or error > LITTLE_MISSED) and share <= little)
     if set(own) == {RUN} and RUN in every and _within_runs(every[RUN], residual, classes) <= WITHIN:
         stands, loose = True, True

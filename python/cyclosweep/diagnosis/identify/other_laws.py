@@ -75,12 +75,12 @@ def with_better_laws(search: Search) -> FittedStructure:
         leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
         clearly = max(CLEARLY, ERROR_OF_LAWS * _score(own))
         better = ahead > clearly or (leaves_less and ahead > -CLEARLY)
-        if better or (own is not None and ahead > CLEARLY and _misses_less(best.fit, own.fit)):
+        if better or (own is not None and ahead > CLEARLY and misses_far_less(best.fit, own.fit)):
             fitted = best.fit
     return fitted
 
 
-def _misses_less(other: FittedStructure, own: FittedStructure) -> bool:
+def misses_far_less(other: FittedStructure, own: FittedStructure) -> bool:
     """Whether the last law of a structure misses far less of its class than that of another.
 
     Parameters

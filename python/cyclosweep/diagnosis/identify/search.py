@@ -103,9 +103,10 @@ class Search:
         self.gram = self.whitened.T @ self.whitened
         first = base
         if accepted is not None and accepted.terms:
-            again = fit(problem, noise, accepted.terms, accepted)
-            # Under other noise an amplitude may change its sign: such an effect is left out.
-            first = with_right_signs(again, whole_effects=True) or again
+            first = fit(problem, noise, accepted.terms, accepted)
+            if not first.valid:
+                # Under other noise an amplitude may change its sign: such an effect is left out.
+                first = with_right_signs(first, whole_effects=True) or base
         self.alarm = Alarm.calibrate(self._scan(first), np.random.default_rng([seed, 1]))
         self.threshold = self.alarm.threshold
         self.baseline = self.start = self.judged(base, 0.0, 0.0)

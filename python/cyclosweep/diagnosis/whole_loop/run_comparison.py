@@ -56,7 +56,7 @@ def steadiness(known: Forecast) -> list[Steadiness]:
     parts = _by_run(problem, problem.whole_fitted)
     found = []
     for rows in parts[:MOST_RUNS]:
-        replicates = [p for p in parts if p is not rows and _replicates(problem.history, p, rows)]
+        replicates = [p for p in parts if p is not rows and are_replicates(problem.history, p, rows)]
         if not replicates:
             continue
         alone = refit(known, rows=rows, most=4)
@@ -85,7 +85,7 @@ def _by_run(problem: Problem, rows: Flags) -> list[Flags]:
     return [part for part in parts if np.count_nonzero(part) > FEWEST_ROWS]
 
 
-def _replicates(history: History, first: Flags, second: Flags) -> bool:
+def are_replicates(history: History, first: Flags, second: Flags) -> bool:
     """Whether two runs are of the same positions of the mesh, and of about the same torques.
 
     Parameters
