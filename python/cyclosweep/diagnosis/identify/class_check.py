@@ -41,6 +41,7 @@ from cyclosweep.diagnosis.identify.run_offsets_check import (
     without_any_offsets,
     without_leftovers,
 )
+from cyclosweep.diagnosis.identify.scatter_check import without_widest_scatter
 from cyclosweep.diagnosis.identify.starting_terms import TIED_DIGITS
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
@@ -61,6 +62,9 @@ CLEARLY = 300.0
 """Log evidence of a law from which it is the law's own error that counts [nat]."""
 CLOSE_SHARE, CLOSE_LOOP_SHARE = 0.005, 0.02
 """Share of the evidence beyond that by which the class may be ahead of curves, and of others."""
+MANY_AMPLITUDES = 3
+"""Amplitudes from which a curve has as much freedom as its class, and no error of its own that
+would have to be allowed for."""
 LITTLE_MISSED = 0.05
 """What a law of more evidence may miss inside its class in any case, as root mean squares: where
 the noise is small no law is exact, and flexible groups are."""
@@ -145,7 +149,7 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
     ]
     checks = [check for group in found for check in group]
     judged = without_any_offsets(fitted, without_leftovers(fitted, classes, checks))
-    return without_other_dials(fitted, judged)
+    return without_widest_scatter(fitted, without_other_dials(fitted, judged))
 
 
 def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:
@@ -280,7 +284,8 @@ def _check(
     loose = _is_loose(own)
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
     close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
-    beyond = max(by_law - CLEARLY, 0.0)
+    many = not loose and any(amplitude_count(fitted, k) >= MANY_AMPLITUDES for k in indices)
+    beyond = 0.0 if many else max(by_law - CLEARLY, 0.0)
     rival = max(rivals, key=lambda name: every[name].evidence, default=None)
     follows = bool(own) and set(own) <= set(ONE_CAUSE)
     # Where the class itself says what the twist follows, it is the class that has to be beaten.

@@ -56,7 +56,9 @@ def steadiness(known: Forecast) -> list[Steadiness]:
     parts = _by_run(problem, problem.whole_fitted)
     found = []
     for rows in parts[:MOST_RUNS]:
-        replicates = [p for p in parts if p is not rows and are_replicates(problem.history, p, rows)]
+        replicates = [
+            p for p in parts if p is not rows and are_replicates(problem.history, p, rows)
+        ]
         if not replicates:
             continue
         alone = refit(known, rows=rows, most=4)
