@@ -22,6 +22,7 @@ from cyclosweep.diagnosis.whole_loop.usual_loop import freer_where_it_pays
 from cyclosweep.simulation.effects import effects
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep_challenge.scoreboard.made import Recipe, make
+from tests.support.long_recording import friction
 from tests.support.searches import search_of as calibrated_search
 
 DRIVE = cs.Drive.reference_87()
@@ -136,6 +137,27 @@ def test_friction_is_looked_for_in_noise_that_is_slow_or_has_heavy_tails(
     found = friction_in_noise.without_hidden_friction(search, flexible)
     assert found == (search, flexible, None)
     assert (len(tried) > 0) == looked_for
+
+
+@pytest.mark.parametrize(
+    ("correlation", "tail", "is_model_error"),
+    [(0.95, 4.0, True), (0.95, np.inf, False), (0.5, 4.0, False)],
+)
+def test_slow_noise_with_heavy_tails_beside_friction_is_error_of_the_model(
+    *, correlation: float, tail: float, is_model_error: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A drift of 1.1 deg was within noise of 1 deg; rows differ by 0.02 deg."""
+    search = calibrated_search(friction(1.0))
+    flexible = flexible_basis(search.problem, search.library)
+    fitted = fit(search.problem, search.noise, (friction_term(0.0),), search.baseline.fit)
+    left = replace(search.noise, best_correlation=correlation, tail=tail)
+    search.noise = replace(search.noise, best_correlation=0.96, tail=2.6)
+    monkeypatch.setattr(friction_in_noise, "friction_first", lambda *_: fitted)
+    monkeypatch.setattr(friction_in_noise, "noise_left", lambda *_, **__: left)
+    monkeypatch.setattr(friction_in_noise, "is_far_likelier", lambda *_: True)
+    found, _, known = friction_in_noise.without_hidden_friction(search, flexible)
+    assert known is not None
+    assert found.noise.structured == is_model_error
 
 
 @pytest.mark.parametrize("freedom", [2.6, 3.2, 4.0, 7.0])
