@@ -206,12 +206,8 @@ def _with_structure(decision: Decision, accepted: Candidate, other: Candidate) -
     Decision
     """
     best = other if decision.best is accepted else decision.best
-    probable = dict[Candidate, float]()
-    for each, probability in decision.explanations:
-        same = each is accepted or each.names == other.names
-        found = other if same else each
-        probable[found] = probable.get(found, 0.0) + probability
-    return replace(decision, best=best, explanations=list(probable.items()))
+    listed = [(other if each is accepted else each, p) for each, p in decision.explanations]
+    return replace(decision, best=best, explanations=listed)
 
 
 def _with_other_law(
@@ -244,10 +240,14 @@ def _with_other_law(
     other = with_law_that_holds(search, accepted, naming)
     if other is None:
         return None
-    enough = _is_enough(search, other.part)
-    verdict: Verdict = "IDENTIFIED" if enough else "MOSTLY_EXPLAINED"
-    decision = _with_structure(decision, accepted, other.part)
-    return replace(decision, verdict=verdict, unexplained=not enough), other
+    # Where both were listed, the one that fits better stays possible.
+    places = {accepted: other.part}
+    places |= {c: accepted for c, _ in decision.explanations if c.names == other.part.names}
+    listed = [(places.get(each, each), p) for each, p in decision.explanations]
+    verdict: Verdict = "MOSTLY_EXPLAINED"
+    if enough := _is_enough(search, other.part):
+        verdict = "AMBIGUOUS" if decision.verdict == "AMBIGUOUS" else "IDENTIFIED"
+    return Decision(verdict, other.part, listed, not enough), other
 
 
 def _with_names_that_hold(

@@ -20,9 +20,9 @@ LEAST_PART = 0.03
 an even one: of dials of any direction one in twenty-five has so little of one of them."""
 ERRORS = 2.0
 """Standard errors within which a part has to be so small, or so large."""
-LEAST_ODDS = -1.0
+LEAST_ODDS = -0.5
 """Log odds of a dial of any direction over an even or an odd curve below which it is no dial [nat].
-A recording that does not determine the smaller part well is never as decided as that."""
+A recording that does not determine the smaller part at all is never as decided as that."""
 
 
 def direction_odds(smaller: float, larger: float, error: float) -> float:
