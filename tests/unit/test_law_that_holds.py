@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import cyclosweep as cs
@@ -17,6 +18,7 @@ from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
 from cyclosweep.diagnosis.whole_loop.run_comparison import are_replicates
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
+from tests.support.arrays import present
 from tests.support.long_recording import long_recording
 from tests.support.searches import search_of, search_of_recording
 
@@ -102,3 +104,6 @@ def test_runs_at_other_positions_are_no_replicates() -> None:
     assert not are_replicates(history, first, smaller)
     assert not are_replicates(history, first, elsewhere)
     assert are_replicates(history.with_state(crank_deg=None), first, elsewhere)
+    # A position that was measured is never the same to the last digit.
+    crank = present(history.crank_deg) + np.where(at_the_same, 0.3, 0.0) - 45.1
+    assert are_replicates(history.with_state(crank_deg=crank % 360.0), first, at_the_same)

@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, testability
 from cyclosweep.diagnosis.identify.verdict import (
     MOSTLY,
+    SURE,
     Decision,
     accepted_in_stages,
     decide,
@@ -241,12 +242,15 @@ def _with_other_law(
     if other is None:
         return None
     # Where both were listed, the one that fits better stays possible.
-    places = {accepted: other.part}
-    places |= {c: accepted for c, _ in decision.explanations if c.names == other.part.names}
-    listed = [(places.get(each, each), p) for each, p in decision.explanations]
+    two = [p for c, p in decision.explanations if c is accepted or c.names == other.part.names]
+    others = [(c, p) for c, p in decision.explanations if c is not accepted]
+    listed = [(c, p) for c, p in others if c.names != other.part.names]
+    listed += [(other.part, max(two, default=1.0))]
+    listed += [(accepted, min(two))] if len(two) > 1 else []
+    listed.sort(key=lambda each: -each[1])
     verdict: Verdict = "MOSTLY_EXPLAINED"
     if enough := _is_enough(search, other.part):
-        verdict = "AMBIGUOUS" if decision.verdict == "AMBIGUOUS" else "IDENTIFIED"
+        verdict = "IDENTIFIED" if max(two, default=1.0) >= SURE else "AMBIGUOUS"
     return Decision(verdict, other.part, listed, not enough), other
 
 

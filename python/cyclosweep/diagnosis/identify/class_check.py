@@ -80,7 +80,7 @@ WITHIN = 0.25
 the datum to stand: what changes within the runs is no zero that moves from run to run."""
 CLEAR = 6.0
 """Log evidence from which a residual shows a class [nat]."""
-LOOPS = frozenset({LOOP, OPENING_LOOP, RATE_LOOP, RELAXATION})
+WAYS_APART = frozenset({LOOP, OPENING_LOOP, RATE_LOOP, RELAXATION})
 """Classes that part the ways to and fro. A law of one of them is not named where another explains
 more than its own, and the law no more than that."""
 MOST_CLASSES = 4
@@ -284,7 +284,9 @@ def _check(
     loose = _is_loose(own)
     close = CLOSE_BESIDE * (len(indices) < len(fitted.terms))
     close += CLOSE if {ODD_CURVE, EVEN_CURVE} & set(own) else CLOSE_OTHER
-    many = not loose and any(amplitude_count(fitted, k) >= MANY_AMPLITUDES for k in indices)
+    many = set(own) <= BOTH_CURVES and any(
+        amplitude_count(fitted, k) >= MANY_AMPLITUDES for k in indices
+    )
     beyond = 0.0 if many else max(by_law - CLEARLY, 0.0)
     rival = max(rivals, key=lambda name: every[name].evidence, default=None)
     follows = bool(own) and set(own) <= set(ONE_CAUSE)
@@ -295,10 +297,12 @@ def _check(
     if rival is not None and every[rival].evidence > max(beaten + close, CLEAR):
         replaced |= LawBeside(known, law, residual, charged, by_law).is_replaced(classes, rival)
     room = close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
-    if rival in LOOPS and family and set(family) <= LOOPS:
+    loops = [every[name].evidence for name in rivals if name in WAYS_APART]
+    if loops and family and set(family) <= WAYS_APART:
         # A law with enough parameters may make a loop of another kind; its class does not.
-        ahead = every[rival].evidence - max(every[name].evidence for name in family)
-        replaced |= ahead > CLEAR and by_law <= every[rival].evidence + room
+        ahead = max(loops) - max(every[name].evidence for name in family)
+        clear = max(CLEAR, CLOSE_LOOP_SHARE * beyond)
+        replaced |= ahead > clear and by_law <= max(loops) + room
     # A law is judged by its class no closer than to the error that much larger ones leave there.
     error = ERROR_OF_OTHERS * size_of_others
     little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))

@@ -22,7 +22,9 @@ ERRORS = 2.0
 """Standard errors within which a part has to be so small, or so large."""
 LEAST_ODDS = -0.5
 """Log odds of a dial of any direction over an even or an odd curve below which it is no dial [nat].
-A recording that does not determine the smaller part at all is never as decided as that."""
+Of true dials a sixth fall below it where the smaller part is known to a tenth of the size, two
+fifths where it is known to half of it. Measured, two side loads that were called a dial do so for
+each dial."""
 
 
 def direction_odds(smaller: float, larger: float, error: float) -> float:
@@ -41,8 +43,11 @@ def direction_odds(smaller: float, larger: float, error: float) -> float:
     Returns
     -------
     float
-        Negative where the smaller one is zero within an error that is less than the larger one.
+        Negative where the smaller one is zero within its error; zero where it has none, because the
+        recording does not determine it.
     """
+    if error <= 0.0:
+        return 0.0
     any_direction = float(np.log(voigt_profile(smaller, error, larger)))
     return any_direction - float(norm.logpdf(smaller, scale=error))
 
@@ -52,8 +57,8 @@ def without_other_dials(
 ) -> tuple[LawCheck, ...]:
     """Withdraw dials whose error is an even curve or an odd one, or steeper than any dial's.
 
-    Such a curve is a side load's or a contact's. Where the recording leaves the smaller part open,
-    that counts for the dial.
+    Such a curve is a side load's or a contact's. A dial of an error once and twice a turn is not
+    judged here.
 
     Parameters
     ----------

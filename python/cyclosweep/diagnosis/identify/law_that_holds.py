@@ -6,14 +6,15 @@ class that does stand for the class is named.
 """
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.law_in_class import own_classes
 from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
 from cyclosweep.diagnosis.identify.other_laws import rivals_of
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE
 
-MOST_WORSE = 1.25
-"""Root mean square error with the other law over that with the withdrawn ones, up to which it takes
-their place: the withdrawn ones fit better, else they would not have been found."""
+MOST_LOST = 0.25
+"""Share of the log evidence of the withdrawn laws that may be lost with the other one in their
+place: they fit better, else they would not have been found."""
 
 
 def with_law_that_holds(search: Search, accepted: Candidate, naming: Naming) -> Naming | None:
@@ -31,26 +32,26 @@ def with_law_that_holds(search: Search, accepted: Candidate, naming: Naming) -> 
     Returns
     -------
     Naming or None
-        The likeliest structure in which all laws hold; None where there is none, or where the
-        withdrawn laws fit far better.
+        The likeliest structure in which all laws hold and which leaves nothing in the classes of
+        the withdrawn ones; None where there is none, or where the withdrawn laws are far likelier.
     """
-    part, worst = naming.part, MOST_WORSE * accepted.fit.rmse_deg
-    gone = {check.name for check in naming.withdrawn}
-    rivals = {
-        name
-        for term in accepted.fit.terms
-        if term.name in gone and term.effect is not None and not term.slips
-        for name in rivals_of(search, accepted.fit, term)
-        if name in part.scan.groups
-    }
+    part = naming.part
+    most_lost = MOST_LOST * search.gain(part.fit, accepted.fit)
+    names = {check.name for check in naming.withdrawn}
+    gone = [t for t in accepted.fit.terms if t.name in names and t.effect and not t.slips]
+    classes = {behaviour for term in gone for behaviour in own_classes(term)}
+    rivals = {name for term in gone for name in rivals_of(search, accepted.fit, term)}
     best: Naming | None = None
-    for name in sorted(rivals):
+    for name in sorted(rivals & set(part.scan.groups)):
         child = search.extend(part, name)
-        if child is None or not child.all_recognised or child.fit.rmse_deg > worst:
+        if child is None or not child.all_recognised:
+            continue
+        if search.gain(child.fit, accepted.fit) > most_lost:
             continue
         if child.score < max(part.score + INDISPENSABLE, best.part.score if best else -1e300):
             continue
         found = names_that_hold(search, child, child)
-        if not found.withdrawn and name in found.names:
+        left = {shown.behaviour for shown in found.shown} & classes
+        if not (found.withdrawn or left) and name in found.names:
             best = found
     return best

@@ -189,12 +189,14 @@ def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
         if not gone:
             break
         withdrawn += gone
-    checks = without_small_laws(accepted.fit, checks)
-    checks = without_waves_of_a_curve(search.baseline.fit, accepted.fit, checks)
-    withdrawn += [check for check in checks if not check.holds]
-    checks = tuple(check for check in checks if check.holds)
-    part = accepted
-    if withdrawn:
-        alone = accepted.fit.only({check.name for check in checks}) if checks else None
-        part = search.baseline if alone is None else search.judged(alone, 0.0, 0.0)
+    checks, part = without_small_laws(accepted.fit, checks), accepted
+    while True:
+        withdrawn += [check for check in checks if not check.holds]
+        checks = tuple(check for check in checks if check.holds)
+        if withdrawn:
+            alone = accepted.fit.only({check.name for check in checks}) if checks else None
+            part = search.baseline if alone is None else search.judged(alone, 0.0, 0.0)
+        checks = without_waves_of_a_curve(search.baseline.fit, part.fit, checks)
+        if all(check.holds for check in checks):
+            break
     return Naming(part, (*checks, *withdrawn), shown_classes(part.fit))

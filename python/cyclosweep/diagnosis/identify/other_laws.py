@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.class_check import check_laws
+from cyclosweep.diagnosis.identify.class_check import LITTLE_MISSED, check_laws
 from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -93,14 +93,17 @@ def misses_far_less(other: FittedStructure, own: FittedStructure) -> bool:
     Returns
     -------
     bool
-        False unless all laws of the other structure may be named, and it has as many as this one.
+        False unless all laws of the other structure may be named, it has as many as this one, and
+        the accepted law misses more than any law may.
     """
     if len(other.terms) != len(own.terms):
         return False
     checks = {check.name: check for check in check_laws(other)}
     accepted = next(check for check in check_laws(own) if check.name == own.names[-1])
     missed = checks[other.names[-1]].missed_share
-    return all(each.holds for each in checks.values()) and missed < FAR_LESS * accepted.missed_share
+    if accepted.missed_share < LITTLE_MISSED or missed >= FAR_LESS * accepted.missed_share:
+        return False
+    return all(each.holds for each in checks.values())
 
 
 def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:

@@ -41,6 +41,7 @@ def without_widest_scatter(
             continue
         term = fitted.terms[parameter.term]
         room = np.log(parameter.quantity.upper / term.shape[SCATTER])
-        if room <= AT_THE_BOUND and error <= KNOWN:
+        # Without an error the recording does not determine it.
+        if room <= AT_THE_BOUND and 0.0 < error <= KNOWN:
             widest.add(term.name)
     return withdrawn_where(widest.__contains__, checks)

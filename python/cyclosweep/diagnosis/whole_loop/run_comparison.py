@@ -11,6 +11,7 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
 from cyclosweep.diagnosis.whole_loop.step_order import step_order
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.mesh_range import short_way_deg
 
 DRIFT_RATIO = 1.8
 """Error on another run over that on its own beyond which the two are not the same drive."""
@@ -18,6 +19,8 @@ DRIFT_OF_SPAN = 0.05
 """The same as a share of the whole range of the angle."""
 SAME_RANGE = 0.2
 """Share of the range of torque within which the ends of two replicates agree."""
+SAME_PLACE = 2.0
+"""Distance of two positions of the mesh that count as one [deg]."""
 FEWEST_ROWS = 40
 """Least rows of a run that is compared with another."""
 MOST_RUNS = 6
@@ -106,7 +109,9 @@ def are_replicates(history: History, first: Flags, second: Flags) -> bool:
         return False
     if history.crank_deg is None:
         return True
-    return set(positions(history.crank_deg[first])) == set(positions(history.crank_deg[second]))
+    places = [positions(history.crank_deg[rows]) for rows in (first, second)]
+    away = np.abs(short_way_deg(np.subtract.outer(*map(np.unique, places))))
+    return bool(np.all(away.min(axis=0) <= SAME_PLACE) and np.all(away.min(axis=1) <= SAME_PLACE))
 
 
 def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
