@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.diagnosis.decide import with_other_law
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.fit import fit
@@ -15,6 +16,7 @@ from cyclosweep.diagnosis.identify.other_laws import misses_far_less
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
+from cyclosweep.diagnosis.identify.verdict import Decision
 from cyclosweep.diagnosis.whole_loop.run_comparison import are_replicates
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
@@ -45,6 +47,28 @@ def test_a_side_load_takes_the_place_of_an_even_dial() -> None:
     found = with_law_that_holds(search, dial, naming)
     assert found is not None
     assert found.names == {"load_asymmetry"} == set(found.part.fit.names)
+
+
+@pytest.mark.parametrize(
+    ("dial_share", "side_share", "verdict"),
+    [(0.6, 0.3, "IDENTIFIED"), (0.3, 0.6, "IDENTIFIED"), (0.4, 0.3, "AMBIGUOUS")],
+)
+def test_the_law_that_fits_better_stays_possible(
+    dial_share: float, side_share: float, verdict: str
+) -> None:
+    search = search_of(SIDE_LOAD)
+    dial = structure(search, DIAL)
+    side = structure(search, Term(find("load_asymmetry"), {"power": 2.0}))
+    listed = [(dial, dial_share), (side, side_share)]
+    decision = Decision("UNKNOWN_PHYSICS", dial, listed, unexplained=True)
+    found = with_other_law(search, decision, dial, names_that_hold(search, dial, dial))
+    assert found is not None
+    decided, naming = found
+    assert decided.verdict == verdict
+    assert not decided.unexplained
+    assert decided.best is naming.part
+    larger, smaller = max(dial_share, side_share), min(dial_share, side_share)
+    assert decided.explanations == [(naming.part, larger), (dial, smaller)]
 
 
 def test_no_law_takes_the_place_of_one_that_fits_far_better() -> None:

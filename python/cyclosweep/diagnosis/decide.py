@@ -137,7 +137,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
         decision = _with_structure(decision, accepted, naming.part)
         decision = replace(decision, verdict="IDENTIFIED", unexplained=False)
         accepted, naming = naming.part, naming.without_withdrawn()
-    other = _with_other_law(search, decision, accepted, naming)
+    other = with_other_law(search, decision, accepted, naming)
     if other is not None:
         decision, naming = other
         accepted = naming.part
@@ -211,7 +211,7 @@ def _with_structure(decision: Decision, accepted: Candidate, other: Candidate) -
     return replace(decision, best=best, explanations=listed)
 
 
-def _with_other_law(
+def with_other_law(
     search: Search, decision: Decision, accepted: Candidate, naming: Naming
 ) -> tuple[Decision, Naming] | None:
     """Put a law that stands for its class in the place of those that do not.
