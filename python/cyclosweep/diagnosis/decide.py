@@ -242,15 +242,14 @@ def with_other_law(
     if other is None:
         return None
     # Where both were listed, the one that fits better stays possible.
-    two = [p for c, p in decision.explanations if c is accepted or c.names == other.part.names]
-    others = [(c, p) for c, p in decision.explanations if c is not accepted]
-    listed = [(c, p) for c, p in others if c.names != other.part.names]
-    listed += [(other.part, max(two, default=1.0))]
-    listed += [(accepted, min(two))] if len(two) > 1 else []
+    both = {accepted.names, other.part.names}
+    shares = sorted((p for c, p in decision.explanations if c.names in both), reverse=True) or [1.0]
+    listed = [each for each in decision.explanations if each[0].names not in both]
+    listed += zip((other.part, accepted), shares, strict=False)
     listed.sort(key=lambda each: -each[1])
     verdict: Verdict = "MOSTLY_EXPLAINED"
     if enough := _is_enough(search, other.part):
-        verdict = "IDENTIFIED" if max(two, default=1.0) >= SURE else "AMBIGUOUS"
+        verdict = "IDENTIFIED" if shares[0] >= SURE else "AMBIGUOUS"
     return Decision(verdict, other.part, listed, not enough), other
 
 

@@ -168,7 +168,7 @@ def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParam
     """
     term = fitted.terms[index]
     assert term.effect is not None
-    errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    errors = fitted.standard_errors
     amplitudes = term.effect.amplitudes(term.shape)
     found: dict[str, EffectParameter] = {}
     if not term.slips:

@@ -44,6 +44,10 @@ CLASSES_OF_EFFECT = {
     "thermal_drift": (TEMPERATURE,),
 }
 """The same for effects of a family whose members differ in what they follow."""
+LOOPS = frozenset({LOOP, OPENING_LOOP, RATE_LOOP})
+"""Classes of what tells loading from unloading."""
+WAYS_APART = LOOPS | {RELAXATION}
+"""Classes of what parts the ways to and fro."""
 ONE_CAUSE = (POSITION, POSITION_COMPLIANCE, TEMPERATURE)
 """Classes that say what the twist follows. Any law that follows the same has the same name, however
 its waves or its delays differ."""

@@ -12,13 +12,11 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     EVEN_CURVE,
-    LOOP,
+    LOOPS,
     ODD_CURVE,
     ONE_CAUSE,
-    OPENING_LOOP,
-    RATE_LOOP,
-    RELAXATION,
     RUN,
+    WAYS_APART,
 )
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.candidate import FURTHER
@@ -80,9 +78,6 @@ WITHIN = 0.25
 the datum to stand: what changes within the runs is no zero that moves from run to run."""
 CLEAR = 6.0
 """Log evidence from which a residual shows a class [nat]."""
-WAYS_APART = frozenset({LOOP, OPENING_LOOP, RATE_LOOP, RELAXATION})
-"""Classes that part the ways to and fro. A law of one of them is not named where another explains
-more than its own, and the law no more than that."""
 MOST_CLASSES = 4
 """Classes that are looked for in a residual."""
 LEAST_SIZE = 0.1
@@ -214,7 +209,7 @@ def candidates_of(behaviour: str, library: Library) -> tuple[str, ...]:
 
 def _is_loose(classes: Collection[str]) -> bool:
     """Whether laws of some classes may differ as loops do, or what follows one known cause."""
-    return bool({LOOP, OPENING_LOOP, RATE_LOOP, *ONE_CAUSE} & set(classes))
+    return bool(LOOPS.union(ONE_CAUSE) & set(classes))
 
 
 def _check(
@@ -299,7 +294,8 @@ def _check(
     room = close + (CLOSE_LOOP_SHARE if loose else CLOSE_SHARE) * beyond
     loops = [every[name].evidence for name in rivals if name in WAYS_APART]
     if loops and family and set(family) <= WAYS_APART:
-        # A law with enough parameters may make a loop of another kind; its class does not.
+        # A law with enough parameters may make a loop of another kind; its class does not. So it
+        # is not named where another class explains more than its own, and the law no more.
         ahead = max(loops) - max(every[name].evidence for name in family)
         clear = max(CLEAR, CLOSE_LOOP_SHARE * beyond)
         replaced |= ahead > clear and by_law <= max(loops) + room

@@ -13,11 +13,8 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     own_classes,
     withdrawn_where,
 )
-from cyclosweep.simulation.effects.dial_eccentricity import MOST_STEEP
+from cyclosweep.simulation.effects.dial_eccentricity import LEAST_PART, MOST_STEEP
 
-LEAST_PART = 0.03
-"""Cosine over sine of an error once a turn, or sine over cosine, below which it is an odd curve or
-an even one: of dials of any direction one in twenty-five has so little of one of them."""
 ERRORS = 2.0
 """Standard errors within which a part has to be so small, or so large."""
 LEAST_ODDS = -0.5
@@ -71,7 +68,7 @@ def without_other_dials(
     -------
     tuple of LawCheck
     """
-    errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    errors = fitted.standard_errors
     withdrawn = set[str]()
     for k, term in enumerate(fitted.terms):
         if term.effect is None or term.slips or not term.effect.vector:

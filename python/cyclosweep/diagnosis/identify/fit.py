@@ -54,7 +54,7 @@ class ContactFit(FittedStructure):
     @property
     def line_errors(self) -> Floats:
         """Standard errors of datum [deg], compliance [deg/(N m)] and free play [deg]."""
-        spread = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        spread = self.standard_errors
         if self.noise.structured:
             spread = spread * np.sqrt(max(self.problem.count / INDEPENDENT_PIECES, 1.0))
         return np.asarray(spread[: self.problem.line_columns])

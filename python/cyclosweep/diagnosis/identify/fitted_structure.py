@@ -194,6 +194,11 @@ class FittedStructure(ABC):
         )
 
     @property
+    def standard_errors(self) -> Floats:
+        """Standard errors of all parameters, linear ones first, each in the fit's own scale."""
+        return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance), 0.0)))
+
+    @property
     def rmse_deg(self) -> float:
         """Root mean square of the angle residual on the fitted rows in contact [deg]."""
         return self.problem.rms_error(self.mean_deg, self.problem.fitted)

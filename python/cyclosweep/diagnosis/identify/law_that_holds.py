@@ -41,17 +41,15 @@ def with_law_that_holds(search: Search, accepted: Candidate, naming: Naming) -> 
     gone = [t for t in accepted.fit.terms if t.name in names and t.effect and not t.slips]
     classes = {behaviour for term in gone for behaviour in own_classes(term)}
     rivals = {name for term in gone for name in rivals_of(search, accepted.fit, term)}
-    best: Naming | None = None
+    best, least = None, part.score + INDISPENSABLE
     for name in sorted(rivals & set(part.scan.groups)):
         child = search.extend(part, name)
-        if child is None or not child.all_recognised:
+        if child is None or not child.all_recognised or child.score < least:
             continue
         if search.gain(child.fit, accepted.fit) > most_lost:
-            continue
-        if child.score < max(part.score + INDISPENSABLE, best.part.score if best else -1e300):
             continue
         found = names_that_hold(search, child, child)
         left = {shown.behaviour for shown in found.shown} & classes
         if not (found.withdrawn or left) and name in found.names:
-            best = found
+            best, least = found, child.score
     return best

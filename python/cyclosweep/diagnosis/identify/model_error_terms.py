@@ -6,15 +6,13 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_EFFECT,
-    LOOP,
+    LOOPS,
     MOST_POSITIONS,
-    OPENING_LOOP,
     POSITION,
     POSITION_COMPLIANCE,
-    RATE_LOOP,
-    RELAXATION,
     RUN,
     TEMPERATURE,
+    WAYS_APART,
 )
 from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
@@ -42,9 +40,6 @@ LEAST_OF_RECORDED = 0.02
 the temperature. What a law of the torque misses does not."""
 RECORDED = frozenset({RUN, POSITION, POSITION_COMPLIANCE, TEMPERATURE})
 """Classes of such effects."""
-LOOPS = frozenset({LOOP, OPENING_LOOP, RATE_LOOP})
-"""Classes of effects that tell loading from unloading; what a law misses that does not, neither
-does. The share is then the same."""
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
@@ -118,9 +113,8 @@ def _least_share(term: Term, beside: Sequence[Term]) -> float:
     """
     own = _classes(term)
     if own and own <= LOOPS:
-        remembers = any(
-            other.effect is None or _classes(other) & (LOOPS | {RELAXATION}) for other in beside
-        )
+        # What a law misses that does not part the ways, does not part them either.
+        remembers = any(other.effect is None or _classes(other) & WAYS_APART for other in beside)
         return LEAST_OF_MISMATCH if remembers else LEAST_OF_RECORDED
     if not own or not own <= RECORDED:
         return LEAST_OF_MISMATCH

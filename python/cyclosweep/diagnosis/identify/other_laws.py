@@ -98,12 +98,12 @@ def misses_far_less(other: FittedStructure, own: FittedStructure) -> bool:
     """
     if len(other.terms) != len(own.terms):
         return False
-    checks = {check.name: check for check in check_laws(other)}
     accepted = next(check for check in check_laws(own) if check.name == own.names[-1])
-    missed = checks[other.names[-1]].missed_share
-    if accepted.missed_share < LITTLE_MISSED or missed >= FAR_LESS * accepted.missed_share:
+    if accepted.missed_share < LITTLE_MISSED:
         return False
-    return all(each.holds for each in checks.values())
+    checks = {check.name: check for check in check_laws(other)}
+    missed = checks[other.names[-1]].missed_share
+    return all(each.holds for each in checks.values()) and missed < FAR_LESS * accepted.missed_share
 
 
 def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:

@@ -34,7 +34,7 @@ def without_widest_scatter(
     -------
     tuple of LawCheck
     """
-    errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))[len(fitted.beta) :]
+    errors = fitted.standard_errors[len(fitted.beta) :]
     widest = set[str]()
     for parameter, error in zip(fitted.fit_parameters, errors, strict=True):
         if parameter.name != SCATTER:

@@ -107,8 +107,9 @@ class Search:
             if not first.valid:
                 # Under other noise an amplitude may change its sign: such an effect is left out.
                 right = [t for k, t in enumerate(first.terms) if not first.wrong_signs(k).any()]
-                again = fit(problem, noise, right, first) if right else base
-                first = with_right_signs(first, whole_effects=True) or again
+                first = with_right_signs(first, whole_effects=True) or (
+                    fit(problem, noise, right, first) if right else base
+                )
         self.alarm = Alarm.calibrate(self._scan(first), np.random.default_rng([seed, 1]))
         self.threshold = self.alarm.threshold
         self.baseline = self.start = self.judged(base, 0.0, 0.0)

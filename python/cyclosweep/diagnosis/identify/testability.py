@@ -192,7 +192,7 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
 
     here = twist(fitted)
     place = int(np.argmax(np.abs(here)))
-    spread = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    spread = fitted.standard_errors
     chosen = [*fitted.amplitude_places(index), *fitted.nonlinear_places(index)]
     slope = np.zeros(len(chosen))
     for j, k in enumerate(chosen):

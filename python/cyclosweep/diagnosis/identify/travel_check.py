@@ -10,12 +10,8 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CU
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
+from cyclosweep.diagnosis.identify.verdict import MOSTLY
 from cyclosweep.simulation.effects.order_names import travels
-
-MOST_LEFT = 0.1
-"""Share of the mismatch, as mean squares, that a structure may leave for such a wave to be named:
-a wave leaves little of what is one, and of any other curve what the order and the phase do not
-fit."""
 
 
 def without_waves_of_a_curve(
@@ -36,7 +32,8 @@ def without_waves_of_a_curve(
     -------
     tuple of LawCheck
     """
-    if beyond_noise_deg(fitted) ** 2 <= MOST_LEFT * beyond_noise_deg(calibrated) ** 2:
+    # A wave leaves little of what is one, and of another curve what order and phase do not fit.
+    if beyond_noise_deg(fitted) ** 2 <= (1.0 - MOSTLY) * beyond_noise_deg(calibrated) ** 2:
         return tuple(checks)
     curves = {check.name for check in checks if check.behaviour in (ODD_CURVE, EVEN_CURVE)}
     waves = {

@@ -67,8 +67,7 @@ class WholeLoopFit(FittedStructure):
     @property
     def line_errors(self) -> Floats:
         """Standard errors of datum [deg], compliance [deg/(N m)] and free play [deg]."""
-        spread = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
-        return np.asarray(spread[: self.problem.line_columns])
+        return self.standard_errors[: self.problem.line_columns]
 
     @property
     def torque_zero(self) -> TorqueZero | None:
