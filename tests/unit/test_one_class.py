@@ -83,6 +83,34 @@ def test_two_effects_at_work_keep_their_names() -> None:
     assert names_that_hold(search, both, both).names == names
 
 
+@pytest.mark.parametrize("rubs", [True, False])
+def test_beside_friction_a_withdrawn_law_stays_while_the_others_are_judged(
+    rubs: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    side = EffectValue("load_asymmetry", {"power": 1.0}, (ASYMMETRY,))
+    search = search_of(CREEP, side, *([friction(0.3)] if rubs else []))
+    terms = [Term(find("creep"), dict(CREEP.shape)), Term(find("load_asymmetry"), side.shape)]
+    if rubs:
+        terms.append(Term(find("friction_hysteresis"), friction().shape, None, 0.1))
+    whole = fitted(search, terms)
+    judged: list[tuple[tuple[str, ...], list[str]]] = []
+
+    def without_side_load(
+        each: FittedStructure, stand_ins: Sequence[LawCheck] = ()
+    ) -> tuple[LawCheck, ...]:
+        judged.append((each.names, [check.name for check in stand_ins]))
+        checks = check_laws(each, stand_ins)
+        return tuple(replace(c, holds=c.holds and c.name != side.name) for c in checks)
+
+    monkeypatch.setattr(naming, "check_laws", without_side_load)
+    found = names_that_hold(search, whole, whole)
+    others = tuple(name for name in whole.fit.names if name != side.name)
+    again = (whole.fit.names, [side.name]) if rubs else (others, [])
+    assert judged == [(whole.fit.names, []), again]
+    assert found.names == set(others)
+    assert found.part.fit.names == others
+
+
 @pytest.mark.parametrize(("friction_deg", "named"), [(0.3, False), (0.03, True)])
 def test_a_law_smaller_than_what_has_no_name_is_not_named(friction_deg: float, named: bool) -> None:
     # Friction stands here for something without a name, beside a small difference of the sides.
@@ -148,8 +176,10 @@ def test_friction_is_judged_without_a_curve_that_has_taken_the_place_of_the_line
     moved = both.moved(1, 0.02 * slope - float(both.beta[1]))
     assert not moved.keeps_line
 
-    def without_friction(fitted: FittedStructure) -> tuple[LawCheck, ...]:
-        checks = check_laws(fitted)
+    def without_friction(
+        fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()
+    ) -> tuple[LawCheck, ...]:
+        checks = check_laws(fitted, stand_ins)
         return (
             checks
             if fitted is not moved

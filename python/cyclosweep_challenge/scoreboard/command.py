@@ -19,6 +19,7 @@ from cyclosweep_challenge.scoreboard.lines import (
     shared_recordings,
 )
 from cyclosweep_challenge.scoreboard.page import markdown, page, terminal
+from cyclosweep_challenge.scoreboard.printed_drive import all_forecasts, exchanged_lines
 from cyclosweep_challenge.scoreboard.run import Board, run
 
 
@@ -35,7 +36,14 @@ def _parser() -> argparse.ArgumentParser:
     add("--quick", action="store_true", help="without held-out proof and self-check")
     add("--fresh", action="store_true", help="diagnose again what is there")
     add("--list", action="store_true", help="show the lines and do nothing else")
-    add("--page", type=Path, metavar="FILE", help="write the page of the documentation there")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--page", type=Path, metavar="FILE", help="write the page of the documentation there"
+    )
+    what.add_argument(
+        "--exchanged", action="store_true",
+        help="instead of all that, the printed drive with fitted and forecast ramp exchanged",
+    )  # fmt: skip
     return parser
 
 
@@ -55,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _run(given: argparse.Namespace) -> None:
     """Run what the command line asks for."""
     recordings = given.shared / "recordings" if given.shared else shared_recordings()
-    lines = all_lines(recordings)
+    lines = exchanged_lines() if given.exchanged else all_lines(recordings)
     wanted = chosen(lines, given.only)
     if given.list:
         for line in wanted:
@@ -64,7 +72,8 @@ def _run(given: argparse.Namespace) -> None:
     # What is piped or stored is not cut to the 80 columns of no terminal.
     width = None if sys.stdout.isatty() else 250
     console, progress = Console(width=width), Console(stderr=True, soft_wrap=True)
-    file = given.out / ("quick.json" if given.quick else "scoreboard.json")
+    stem = "exchanged-" if given.exchanged else ""
+    file = given.out / (stem + ("quick.json" if given.quick else "scoreboard.json"))
     board = Board.open(file)
     if given.fresh:
         for line in wanted:
@@ -76,7 +85,7 @@ def _run(given: argparse.Namespace) -> None:
         lambda text: progress.print(text, markup=False, highlight=False),
         full=not given.quick,
     )
-    summaries = all_summaries()
+    summaries = [all_forecasts(lines)] if given.exchanged else all_summaries()
     for table in terminal(wanted, [] if given.only else summaries, board):
         console.print(table)
     given.out.mkdir(parents=True, exist_ok=True)

@@ -38,7 +38,8 @@ where it stopped: a line that was diagnosed with the code as it is is not diagno
 checks that have changed since are applied to what is kept. `CYCLOSWEEP_SHARED` names the folder
 that holds `recordings/` (default: `shared` beside the project); measured recordings are read there
 and never copied, and their lines are left out where they are absent. `--page docs/scoreboard.md`
-writes this page from what is kept.
+writes this page from what is kept. `--exchanged` asks of the printed drive the same with the ramps
+in each other's place: the one that is kept back here is fitted, and the other one forecast.
 """
 EVERY = """\
 Every answer, whatever the recording, must also agree with itself: no stiffness at or below zero;

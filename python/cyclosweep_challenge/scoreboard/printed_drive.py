@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,8 @@ PRELOADS = {
 }
 """Clock in the names of the preload series, by step; positions 1, 5 and 6 in this order."""
 POSITIONS = (1, 5, 6)
+EXCHANGED = "-exchanged"
+"""End of the name of a line whose ramps are in each other's place."""
 LARGEST_RATIO = 1.6
 """Largest error of a forecast over that of the other ramp as template [-]."""
 MEDIAN_RATIO = 1.1
@@ -84,13 +87,15 @@ def loops_of(recording: Recording) -> Loops:
     )
 
 
-def forecast(found: Diagnosis) -> Mapping[str, float]:
-    """Forecast ramp 102 by the model of ramp 101 and compare with ramp 101 itself.
+def forecast(found: Diagnosis, fitted: int = FIRST, ahead: int = SECOND) -> Mapping[str, float]:
+    """Forecast one ramp by the model of the other and compare with that other ramp itself.
 
     Parameters
     ----------
     found : Diagnosis
-        Diagnosis of the three ramps, of which 102 was kept back.
+        Diagnosis of the three ramps, of which one was kept back.
+    fitted, ahead : int
+        Numbers of the ramp that was fitted and of the one that was kept back.
 
     Returns
     -------
@@ -101,18 +106,18 @@ def forecast(found: Diagnosis) -> Mapping[str, float]:
     """
     loops = loops_of(found.recording)
     template = np.full(loops.angle_deg.size, np.nan)
-    template[loops.run == SECOND] = as_template(loops.only(FIRST), loops.only(SECOND))
-    floor = loaded_rms(template - loops.angle_deg, loops, SECOND, free_datum=False)
+    template[loops.run == ahead] = as_template(loops.only(fitted), loops.only(ahead))
+    floor = loaded_rms(template - loops.angle_deg, loops, ahead, free_datum=False)
     if found.model is None:
         return {"floor_deg": floor}
-    ahead = loaded_rms(_error(found.model, found, loops), loops, SECOND, free_datum=False)
+    error = loaded_rms(_error(found.model, found, loops), loops, ahead, free_datum=False)
     # A table of what the effects miss is no name: what repeats beside the names is asked.
     named = replace(found.model, model_error=None)
     correlation, size = _repeating(loops, _error(named, found, loops))
     return {
-        "forecast_deg": ahead,
+        "forecast_deg": error,
         "floor_deg": floor,
-        "over_floor": ahead / floor if floor > 0.0 else math.nan,
+        "over_floor": error / floor if floor > 0.0 else math.nan,
         "repeats": correlation,
         "repeating_deg": size,
     }
@@ -236,6 +241,27 @@ def printed_drive_lines() -> list[Line]:
     return lines
 
 
+def exchanged_lines() -> list[Line]:
+    """Lines of the same files with the ramps in each other's place: 102 is fitted, 101 forecast."""
+    return [_exchanged(line) for line in printed_drive_lines()]
+
+
+def _exchanged(line: Line) -> Line:
+    """Line with the ramps in each other's place."""
+
+    def read(recordings: Path) -> Recording:
+        return replace(line.recording(recordings), holdout_runs=(FIRST,))
+
+    return replace(
+        line,
+        name=line.name + EXCHANGED,
+        group=f"{GROUP}, ramps exchanged",
+        asks=f"{line.asks} Here ramp {SECOND} is fitted, ramp {FIRST} forecast.",
+        recording=read,
+        figures=partial(forecast, fitted=SECOND, ahead=FIRST),
+    )
+
+
 def _forecasts(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
     """Judge the forecasts of all files together."""
     ratios = [o.figures.get("over_floor", math.inf) for o in outcomes.values()]
@@ -264,20 +290,24 @@ def friction_nm(outcome: Outcome) -> float:
     return outcome.parameters.get("friction_hysteresis.friction_torque_nm", 0.0)
 
 
+def all_forecasts(lines: list[Line]) -> Summary:
+    """Check over the forecasts of all files, as they are recorded or with the ramps exchanged."""
+    return Summary(
+        "all-forecasts",
+        lines[0].group,
+        f"Forecast over the floor, all {len(lines)} files: median at most {MEDIAN_RATIO:g}, "
+        f"none above {LARGEST_RATIO:g}.",
+        SOURCE,
+        tuple(line.name for line in lines),
+        _forecasts,
+    )
+
+
 def printed_drive_summaries() -> list[Summary]:
     """Checks over several files of the printed drive."""
-    every = tuple(line.name for line in printed_drive_lines())
     series = tuple(f"conic_{s}pre{p}" for s in PRELOADS for p in POSITIONS)
     return [
-        Summary(
-            "all-forecasts",
-            GROUP,
-            f"Forecast over the floor, all {len(every)} files: median at most {MEDIAN_RATIO:g}, "
-            f"none above {LARGEST_RATIO:g}.",
-            SOURCE,
-            every,
-            _forecasts,
-        ),
+        all_forecasts(printed_drive_lines()),
         Summary(
             "preload-order",
             GROUP,

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
+import cyclosweep as cs
+from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep_challenge.scoreboard import printed_drive
 from cyclosweep_challenge.scoreboard import run as running
 from cyclosweep_challenge.scoreboard.checks import (
     CONSISTENT,
@@ -24,6 +29,11 @@ from cyclosweep_challenge.scoreboard.made_effects import SHAPES
 from cyclosweep_challenge.scoreboard.made_rig import Course, Friction, balance
 from cyclosweep_challenge.scoreboard.outcome import FAILURE, Outcome
 from cyclosweep_challenge.scoreboard.page import page
+from cyclosweep_challenge.scoreboard.printed_drive import (
+    all_forecasts,
+    exchanged_lines,
+    printed_drive_lines,
+)
 
 GOOD = Outcome(
     "IDENTIFIED",
@@ -189,6 +199,30 @@ def test_checks_over_several_lines_can_fail() -> None:
     answers = dict.fromkeys(same.of, GOOD)
     assert same.judged(answers)[0]
     assert not same.judged({**answers, same.of[0]: replace(GOOD, named=())})[0]
+
+
+def test_exchanged_lines_keep_the_other_ramp_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    ramps = cs.Recording.from_arrays(
+        [0.0, 5.0, 0.0, 5.0], [0.0, 20.0, 0.0, 20.0], run=[101, 101, 102, 102], holdout_runs=(102,)
+    )
+    plain = replace(printed_drive_lines()[0], recording=lambda _: ramps)
+    monkeypatch.setattr(printed_drive, "printed_drive_lines", lambda: [plain])
+    (line,) = exchanged_lines()
+    assert line.name == f"{plain.name}-exchanged"
+    assert line.recording(Path()).holdout_runs == (101,)
+    assert all_forecasts([line]).of == (line.name,)
+
+
+def test_what_is_forecast_is_the_ramp_that_was_kept_back() -> None:
+    torque = np.tile([0.0, 8.0, 16.0, 8.0, -8.0, -16.0, 0.0], 2)
+    run = np.repeat([101, 102], 7)
+    angle = np.where(run == 101, 1.0, 1.2) * torque
+    recording = cs.Recording.from_arrays(torque, angle, run=run, time_s=np.arange(14.0))
+    model = cs.Model(1.2, 0.0, 0.0, side=recording.side)
+    found = cast(Diagnosis, SimpleNamespace(recording=recording, model=model))
+    assert printed_drive.forecast(found)["forecast_deg"] == pytest.approx(0.0, abs=1e-9)
+    other_way = printed_drive.forecast(found, fitted=102, ahead=101)
+    assert other_way["forecast_deg"] > 1.0
 
 
 def test_the_preload_series_is_judged_by_its_order() -> None:

@@ -56,8 +56,8 @@ class Naming:
 def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Naming:
     """Withdraw laws that do not stand for their class, until those that are left do.
 
-    Fitted to rows in contact, the laws that are left are fitted again alone. A simulation of whole
-    loops keeps the others as stand-ins: without them friction would take their place.
+    The laws that are left are fitted again alone. Beside friction, and in a simulation of whole
+    loops, the others stay as stand-ins while these are judged: friction would take their place.
 
     Parameters
     ----------
@@ -87,9 +87,9 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
         beside_unnamed = same_noise and name in best.names and not best.all_recognised
         return beside_unnamed and worth(search, name, best) < INDISPENSABLE
 
-    part, withdrawn = accepted, list[LawCheck]()
+    part, withdrawn, beside = accepted, list[LawCheck](), list[LawCheck]()
     while True:
-        checks = _beside_the_line(part.fit, check_laws(part.fit))
+        checks = _beside_the_line(part.fit, check_laws(part.fit, beside))
         judged = all(check.holds for check in checks)
         if judged:
             # Those that are left stood for their class together with the small ones.
@@ -100,14 +100,17 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             checks = withdrawn_where(is_needless, checks)
             judged = checks == larger
         gone = [check for check in checks if not check.holds]
-        names = {check.name for check in checks if check.holds}
-        if gone:
-            terms = tuple(term for term in part.fit.terms if term.name in names)
-            part = search.refit(terms, part.fit) if terms else search.baseline
         withdrawn += gone
+        held = {check.name for check in checks if check.holds}
+        kept = tuple(term for term in part.fit.terms if term.name in held)
+        if gone and part.fit.keeps_line and any(term.slips for term in kept):
+            beside += gone
+        elif gone:
+            part, beside = search.refit(kept, part.fit) if kept else search.baseline, []
         if judged:
-            held = (check for check in checks if check.holds)
-            return Naming(part, (*held, *withdrawn), shown_classes(part.fit))
+            part = search.refit(kept, part.fit) if beside else part
+            holding = (check for check in checks if check.holds)
+            return Naming(part, (*holding, *withdrawn), shown_classes(part.fit))
 
 
 def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tuple[LawCheck, ...]:
