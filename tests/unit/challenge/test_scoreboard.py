@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep_challenge.scoreboard import printed_drive
 from cyclosweep_challenge.scoreboard import run as running
 from cyclosweep_challenge.scoreboard.checks import (
@@ -219,7 +218,7 @@ def test_what_is_forecast_is_the_ramp_that_was_kept_back() -> None:
     angle = np.where(run == 101, 1.0, 1.2) * torque
     recording = cs.Recording.from_arrays(torque, angle, run=run, time_s=np.arange(14.0))
     model = cs.Model(1.2, 0.0, 0.0, side=recording.side)
-    found = cast(Diagnosis, SimpleNamespace(recording=recording, model=model))
+    found = cast(cs.Diagnosis, SimpleNamespace(recording=recording, model=model))
     assert printed_drive.forecast(found)["forecast_deg"] == pytest.approx(0.0, abs=1e-9)
     other_way = printed_drive.forecast(found, fitted=102, ahead=101)
     assert other_way["forecast_deg"] > 1.0
