@@ -57,7 +57,8 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
     """Withdraw laws that do not stand for their class, until those that are left do.
 
     The laws that are left are fitted again alone. Beside friction, and in a simulation of whole
-    loops, the others stay as stand-ins while these are judged: friction would take their place.
+    loops, the others stay as stand-ins while these are judged: without them friction would take
+    their place.
 
     Parameters
     ----------
