@@ -178,6 +178,24 @@ def test_whitening_of_correlated_and_white_noise_is_that_of_its_covariance() -> 
     np.testing.assert_allclose(noise.whiten(one), filtered @ one, atol=1e-12)
 
 
+@pytest.mark.parametrize("white_share", [0.0, 0.2])
+@pytest.mark.parametrize("correlation", [0.0, 0.6])
+@pytest.mark.parametrize("width", [1, 5])
+def test_columns_are_whitened_together_as_each_alone(
+    width: int, correlation: float, white_share: float
+) -> None:
+    rng = np.random.default_rng(3)
+    gap = np.r_[0.0, rng.choice([0.0, 1.0, 2.5], 299)]
+    noise = Noise(0.1, correlation, correlation, np.inf, 0.0, 290.0, gap, white_share=white_share)
+    columns, weight = rng.normal(size=(width, 300)).T, rng.uniform(5.0, 9.0, 300)
+    given = columns.copy()
+    together = noise.design(columns, weight)
+    assert together.shape == columns.shape
+    np.testing.assert_array_equal(columns, given)
+    for k in range(width):
+        np.testing.assert_array_equal(together[:, k], noise.design(columns[:, k], weight))
+
+
 def test_interval_score_is_unbiased_with_its_information() -> None:
     rng = np.random.default_rng(2)
     mean = rng.uniform(0, 10, 40000)

@@ -1,6 +1,6 @@
 """An effect with values: an entry of a model, and the twist that it adds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -11,7 +11,7 @@ from cyclosweep.simulation.effects import Effect, find
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.json_fields import flag_of, number_of, object_of, text_of
 
-__all__ = ["EffectValue", "linear_twist"]
+__all__ = ["EffectValue", "linear_twist", "twist_with_and_without"]
 
 
 @dataclass(frozen=True)
@@ -187,11 +187,36 @@ def linear_twist(effects: Sequence[EffectValue], history: History) -> Floats:
     ndarray, shape (n,)
         Twist [deg].
     """
-    total = np.zeros(len(history))
+    return twist_with_and_without((), effects, history)[0]
+
+
+def twist_with_and_without(
+    left_out: Collection[EffectValue], effects: Sequence[EffectValue], history: History
+) -> tuple[Floats, Floats]:
+    """Twist that effects other than friction add, and the same without some of them.
+
+    Parameters
+    ----------
+    left_out : collection of EffectValue
+        Effects that do not count in the second sum.
+    effects : sequence of EffectValue
+        As of `linear_twist`.
+    history : History
+        As there.
+
+    Returns
+    -------
+    ndarray, ndarray, shape (n,)
+        Twist [deg].
+    """
+    total, without = np.zeros(len(history)), np.zeros(len(history))
     for value in effects:
         if not value.effect.slips:
             seen = history.under_applied_torque if value.in_series else history
             columns = value.effect.columns(seen, value.shape)
             width = min(columns.shape[1], len(value.amplitudes))
-            total += columns[:, :width] @ np.array(value.amplitudes[:width])
-    return total
+            twist = columns[:, :width] @ np.array(value.amplitudes[:width])
+            total += twist
+            if value not in left_out:
+                without += twist
+    return total, without

@@ -11,6 +11,7 @@ from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
 from cyclosweep.simulation.drag_compliance import under_drag_of
+from cyclosweep.simulation.effect_value import twist_with_and_without
 from cyclosweep.simulation.effects.history import Flags, Floats, History, runs_and_restarts
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
@@ -239,13 +240,12 @@ def settle(
     if moving:
         rounds += MESH_ROUNDS
         history = on_the_mesh(moving, history, history.angle_deg)
-    beyond = [value for value in others if value not in moving]
     for _ in range(rounds):
         history = under_drag_of(model, history)
-        added = linear_twist(others, history)
+        added, beyond_deg = twist_with_and_without(moving, others, history)
         before = history.angle_deg
         if sliding:
-            history = history.with_state(beyond_deg=linear_twist(beyond, history))
+            history = history.with_state(beyond_deg=beyond_deg)
             history = _slide(model, history, sliding, added, known_side)
         else:
             base = model.datum_deg + history.side * model.free_play_deg
@@ -350,7 +350,6 @@ def _torque(model: Model, programme: Recording) -> Floats:
     ]
     behind = held_back is not None and lies_behind_play(held_back.shape)
     moving = travelling(others)
-    beyond = [value for value in others if value not in moving]
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     least, stalled = np.inf, 0
@@ -361,7 +360,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
         history = under_drag_of(model, history)
-        added = linear_twist(others, history)
+        added, beyond_deg = twist_with_and_without(moving, others, history)
         twist = angle - model.datum_deg - added
         held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = held / model.compliance_deg_per_nm
@@ -370,7 +369,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         moved = float(np.max(np.abs(settled - elastic)))
         elastic = settled
         if held_back is not None:
-            state = {"elastic_nm": elastic, "beyond_deg": linear_twist(beyond, history)}
+            state = {"elastic_nm": elastic, "beyond_deg": beyond_deg}
             if behind:
                 # It stands while the play is crossed, where the shaft carries nothing.
                 crossed = side * model.free_play_deg + added

@@ -15,6 +15,7 @@ pub mod pin_force;
 mod published_map;
 pub(crate) mod rounding;
 pub mod shaft;
+pub mod whitening;
 
 pub(crate) use arrangement::{
     Arrangement, Counts, MAX_PINS, first_hole, fold, reduced_clocking, statics_apply,

@@ -7,6 +7,7 @@ mod formulas;
 mod hysteresis;
 mod parquet;
 mod study;
+mod whitening;
 
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -68,6 +69,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     components::register(module)?;
     curve::register(module)?;
     dynamics::register(module)?;
+    whitening::register(module)?;
     module.add("DEBUG_BUILD", cfg!(debug_assertions))?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SEGMENT_FIELDS", SEGMENT_FIELDS)?;

@@ -8,6 +8,7 @@ from scipy.linalg import cholesky_banded
 from scipy.linalg.lapack import dtbtrs
 from scipy.special import digamma, ndtr
 
+import cyclosweep._core as _core
 from cyclosweep.simulation.effects.history import Floats
 
 INDEPENDENT_PIECES = 40.0
@@ -218,7 +219,12 @@ class Noise:
         ndarray, shape (n,) or (n, k)
             Of unit variance where the noise alone is.
         """
-        return self._whitened(columns * (weight if columns.ndim == 1 else weight[:, None]))
+        if columns.ndim == 1:
+            return self._whitened(columns * weight)
+        if self.correlation == 0.0 or self.white_share > 0.0:
+            return self._whitened(columns * weight[:, None])
+        rows = np.ascontiguousarray(columns)
+        return _core.whiten_weighted(rows, weight, self._pair, self._new)
 
     def with_sigma(self, sigma_deg: float) -> "Noise":
         """Return the same noise with another size."""
