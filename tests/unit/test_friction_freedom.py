@@ -160,6 +160,39 @@ def test_slow_noise_with_heavy_tails_beside_friction_is_error_of_the_model(
     assert found.noise.structured == is_model_error
 
 
+@pytest.mark.parametrize(
+    ("correlation", "left_share", "gain", "believed"),
+    [
+        (0.96, 0.2, 30.0, True),
+        (0.96, 0.2, 10.0, False),
+        (0.96, 0.4, 30.0, False),
+        (0.96, 0.4, 200.0, True),
+        (0.6, 0.2, 30.0, False),
+    ],
+)
+def test_friction_in_place_of_a_drift_is_believed_where_it_leaves_little(
+    *,
+    correlation: float,
+    left_share: float,
+    gain: float,
+    believed: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search = calibrated_search(friction(1.0))
+    flexible = flexible_basis(search.problem, search.library)
+    fitted = fit(search.problem, search.noise, (friction_term(0.0),), search.baseline.fit)
+    search.noise = replace(search.noise, best_correlation=correlation, tail=np.inf)
+    sigma = search.noise.sigma_deg * np.exp(-gain / len(search.noise.gap))
+    smaller = replace(search.noise, sigma_deg=sigma)
+    error = property(lambda each: left_share if each.terms else 1.0)
+    monkeypatch.setattr(friction_in_noise, "friction_first", lambda *_: fitted)
+    monkeypatch.setattr(friction_in_noise, "noise_left", lambda *_, **__: smaller)
+    monkeypatch.setattr(FittedStructure, "rmse_deg", error)
+    found, _, known = friction_in_noise.without_hidden_friction(search, flexible)
+    assert (known is not None) == believed
+    assert (found is not search) == believed
+
+
 @pytest.mark.parametrize("freedom", [2.6, 3.2, 4.0, 7.0])
 def test_the_likelihood_of_noise_is_that_of_its_rows(freedom: float) -> None:
     # By the standard deviation alone, which belongs to the tails, rows of lighter tails are far

@@ -1,6 +1,6 @@
 """The accepted effects with size, interval, parameters and evidence."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,9 @@ from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import (
+    NORMAL_95,
     Testability,
+    covariance_within_bounds,
     recalibration,
     spread_of_size,
     strength_of,
@@ -32,9 +34,6 @@ from cyclosweep.result import (
 )
 from cyclosweep.result.effects import Outcome
 from cyclosweep.result.part import finite
-
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 
 
 def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, ...]:
@@ -53,13 +52,15 @@ def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, .
     """
     names = concluded.naming.names
     return tuple(
-        _effect(concluded.search, concluded.accepted, index, e_value)
+        _effect(concluded.search, concluded.accepted, index, names, e_value)
         for index, term in enumerate(concluded.accepted.fit.terms)
         if term.name in names
     )
 
 
-def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> FoundEffect:
+def _effect(
+    search: Search, accepted: Candidate, index: int, names: Collection[str], e_value: float
+) -> FoundEffect:
     """Describe one term of the accepted structure.
 
     Parameters
@@ -70,6 +71,8 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
         Structure that was accepted.
     index : int
         Which of the structure's terms.
+    names : collection of str
+        Names of the terms that may be named.
     e_value : float
         Evidence for the structure on held-out data.
 
@@ -83,10 +86,15 @@ def _effect(search: Search, accepted: Candidate, index: int, e_value: float) -> 
     twist = recalibration(fitted)(added_twist(fitted, index)[fitted.problem.fitted])
     size = float(np.max(np.abs(twist), initial=0.0))
     strength = strength_of(search, fitted, index)
+    if strength < NORMAL_95:  # beside stand-ins that it could take the place of
+        every = range(len(fitted.terms))
+        strength = strength_of(
+            search, fitted, index, [k for k in every if fitted.terms[k].name not in names]
+        )
     if fitted.follows_path(index):
         spread = size / max(strength, 1e-9)
     else:
-        spread = spread_of_size(fitted, index)
+        spread = spread_of_size(fitted, index, covariance_within_bounds(fitted))
     half = NORMAL_95 * spread
     p_value = _p_value(search, accepted, effect.name)
     if half >= size:  # the interval holds nothing at all: the same spread judges the probability

@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
 from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
+from cyclosweep.diagnosis.identify.testability import of_any_size
 from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, worth
 from cyclosweep.diagnosis.prepare.noise import orthonormal
@@ -99,6 +100,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             checks = without_waves_of_a_curve(search.baseline.fit, part.fit, checks)
             checks = _without_lesser_laws(part.fit, checks, best.fit)
             checks = withdrawn_where(is_needless, checks)
+            checks = _of_known_size(search, part.fit, checks)
             judged = checks == larger
         gone = [check for check in checks if not check.holds]
         withdrawn += gone
@@ -137,6 +139,31 @@ def _beside_the_line(fitted: FittedStructure, checks: Sequence[LawCheck]) -> tup
         return tuple(checks)
     # The others were fitted beside a wrong line: they are judged when they are fitted without it.
     return tuple(replace(check, holds=check.name not in elastic) for check in checks)
+
+
+def _of_known_size(
+    search: Search, fitted: FittedStructure, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw laws that fit as well at any size down to none, or let friction do so.
+
+    A stiffening that ends at next to no torque is free play by another name, a creep that never
+    ends within the recording is a drift, and a take-up at next to no torque tells the compliance
+    before the friction from that behind it: other parameters can make up for the whole of it.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    fitted : FittedStructure
+        Structure of effects.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    return withdrawn_where(of_any_size(search, fitted).__contains__, checks)
 
 
 def _without_lesser_laws(
@@ -201,6 +228,7 @@ def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
             alone = accepted.fit.only({check.name for check in checks}) if checks else None
             part = search.baseline if alone is None else search.judged(alone, 0.0, 0.0)
         checks = without_waves_of_a_curve(search.baseline.fit, part.fit, checks)
+        checks = _of_known_size(search, part.fit, checks)
         if all(check.holds for check in checks):
             break
     return Naming(part, (*checks, *withdrawn), shown_classes(part.fit))

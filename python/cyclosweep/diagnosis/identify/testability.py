@@ -1,6 +1,6 @@
 """What a recording can show: absorbed share, smallest detectable size, and upper bounds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,6 +64,9 @@ ALWAYS_HIDDEN = (
     ),
 )
 """What the calibration hides exactly: name, reason, what would show it."""
+
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval in standard errors."""
 
 
 def testability(
@@ -170,7 +173,7 @@ def size_left(fitted: FittedStructure, term: Term) -> float:
     return seen * float(np.max(np.abs(whole)))
 
 
-def spread_of_size(fitted: FittedStructure, index: int) -> float:
+def spread_of_size(fitted: FittedStructure, index: int, covariance: Floats) -> float:
     """Standard error of the largest twist of a term, by its amplitudes and its shape [deg].
 
     Parameters
@@ -178,6 +181,8 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
     fitted : FittedStructure
     index : int
         Index of a linear term.
+    covariance : ndarray, shape (k, k)
+        Of all parameters, linear ones first.
 
     Returns
     -------
@@ -192,15 +197,75 @@ def spread_of_size(fitted: FittedStructure, index: int) -> float:
 
     here = twist(fitted)
     place = int(np.argmax(np.abs(here)))
-    spread = fitted.standard_errors
+    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     chosen = [*fitted.amplitude_places(index), *fitted.nonlinear_places(index)]
     slope = np.zeros(len(chosen))
     for j, k in enumerate(chosen):
         step = 0.1 * spread[k]
         if step > 0 and np.isfinite(step):
             slope[j] = (twist(fitted.moved(k, step))[place] - here[place]) / step
-    variance = float(slope @ fitted.covariance[np.ix_(chosen, chosen)] @ slope)
+    variance = float(slope @ covariance[np.ix_(chosen, chosen)] @ slope)
     return float(np.sqrt(max(variance, 0.0)))
+
+
+def covariance_within_bounds(fitted: FittedStructure) -> Floats:
+    """Covariance of all parameters, those of shapes known to lie within their bounds.
+
+    A shape that the recording does not tell would else be unknown beyond all bounds, and the size
+    with it, though the twist of every shape within them is known.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+
+    Returns
+    -------
+    ndarray, shape (k, k)
+    """
+    known = np.zeros(fitted.sensitivity.shape[1])
+    for k, each in enumerate(fitted.fit_parameters, len(fitted.beta)):
+        room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
+        # Of an even distribution, the variance is a twelfth of the square of its width.
+        known[k] = 12.0 / room**2 if room > 0.0 else 0.0
+    scale = np.sqrt(np.sum(fitted.sensitivity**2, axis=0) + known)
+    scale = np.where(scale > 0.0, scale, 1.0)
+    scaled = fitted.sensitivity / scale
+    gram = scaled.T @ scaled + np.diag(known / scale**2)
+    return np.asarray(np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale))
+
+
+def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
+    """Names of terms beside friction that fit as well at any size, or let friction do so.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    fitted : FittedStructure
+        Structure fitted jointly with the calibration.
+
+    Returns
+    -------
+    frozenset of str
+        Terms whose 95 % interval of size holds zero, if nothing were known of their shapes, and
+        those beside which that of a friction does, as it does not without them. None where nothing
+        slips: what alone explains a mismatch is at work, whatever its shape.
+    """
+    every = range(len(fitted.terms))
+    sliding = [k for k in every if fitted.terms[k].slips]
+    hidden = [k for k in sliding if strength_of(search, fitted, k) < NORMAL_95]
+
+    def hides(index: int) -> bool:
+        return any(strength_of(search, fitted, k, (index,)) >= NORMAL_95 for k in hidden)
+
+    def is_open(index: int) -> bool:
+        if fitted.follows_path(index):
+            return False
+        size = float(np.max(np.abs(size_of(fitted, index)), initial=0.0))
+        return NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) >= size
+
+    others = (k for k in every if sliding and k not in sliding)
+    return frozenset(fitted.terms[k].name for k in others if hides(k) or is_open(k))
 
 
 def recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
@@ -228,7 +293,9 @@ def hidden_effects(search: Search) -> list[Untestable]:
     ]
 
 
-def strength_of(search: Search, fitted: FittedStructure, index: int) -> float:
+def strength_of(
+    search: Search, fitted: FittedStructure, index: int, left_out: Collection[int] = ()
+) -> float:
     """Projected signal-to-noise of a term, the other terms and the calibration taken out.
 
     Parameters
@@ -239,6 +306,8 @@ def strength_of(search: Search, fitted: FittedStructure, index: int) -> float:
         Structure fitted jointly with the calibration.
     index : int
         Which of the structure's terms.
+    left_out : collection of int
+        Others of them, which are not taken out.
 
     Returns
     -------
@@ -248,10 +317,10 @@ def strength_of(search: Search, fitted: FittedStructure, index: int) -> float:
     signal = fitted.whitened_contribution(index, search.noise)
     known = list(range(search.problem.line_columns))
     for k, term in enumerate(fitted.terms):
-        if k != index and not term.slips:
+        if k != index and k not in left_out and not term.slips:
             known += fitted.amplitude_places(k)
     for k, nonlinear in enumerate(fitted.fit_parameters):
-        if nonlinear.term != index:
+        if nonlinear.term != index and nonlinear.term not in left_out:
             known.append(len(fitted.beta) + k)
     basis = orthonormal(fitted.sensitivity[:, known], 1e-8)
     left = signal - basis @ (basis.T @ signal)

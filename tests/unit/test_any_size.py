@@ -1,0 +1,100 @@
+"""Laws that fit as well at any size, or that let friction have any, keep no name."""
+
+from collections.abc import Mapping, Sequence
+
+import pytest
+
+from cyclosweep.diagnosis.identify import naming
+from cyclosweep.diagnosis.identify import testability as sizes
+from cyclosweep.diagnosis.identify.naming import names_that_hold
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import (
+    covariance_within_bounds,
+    of_any_size,
+    strength_of,
+)
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import friction
+from tests.support.searches import search_of
+from tests.unit.test_one_class import CREEP, fitted
+
+AT_ONCE = {"onset_nm": 0.01, "power": 1.0}
+"""A softening that begins at no torque is compliance."""
+
+
+def rubbing() -> Term:
+    """Friction as the recordings here have it."""
+    return Term(find("friction_hysteresis"), friction().shape, None, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "shape"),
+    [("contact_stiffening", {"turn_nm": 0.3}), ("creep", {"lag_s": 20.0})],
+)
+@pytest.mark.parametrize("at_work", [False, True])
+def test_a_law_is_of_any_size_only_where_it_is_not_at_work(
+    name: str, shape: Mapping[str, float], at_work: bool
+) -> None:
+    law = EffectValue(name, shape, (0.1,))
+    search = search_of(friction(0.3), *([law] if at_work else []))
+    found = fitted(search, [rubbing(), Term(find(name), dict(shape))])
+    assert of_any_size(search, found.fit) == (frozenset() if at_work else {name})
+
+
+@pytest.mark.parametrize("in_series", [False, True])
+def test_compliance_before_the_friction_hides_it(
+    in_series: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Behind the friction it is the compliance of the line, and hides nothing.
+    search = search_of(friction(0.3))
+    soft = Term(find("overload_softening"), AT_ONCE, in_series=in_series)
+    found = fitted(search, [rubbing(), soft]).fit
+    monkeypatch.setattr(sizes, "spread_of_size", lambda *_: 0.0)
+    assert (strength_of(search, found, 0) < sizes.NORMAL_95) is in_series
+    assert strength_of(search, found, 0, [1]) > 100.0
+    assert of_any_size(search, found) == ({"overload_softening"} if in_series else set())
+
+
+def test_what_has_any_size_is_withdrawn_and_the_rest_fitted_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search = search_of(friction(0.3), CREEP)
+    both = fitted(search, [rubbing(), Term(find("creep"), dict(CREEP.shape))])
+    asked: list[Sequence[str]] = []
+
+    def creep(_: object, each: object) -> frozenset[str]:
+        asked.append(each.names)  # type: ignore[attr-defined]
+        return frozenset({"creep"})
+
+    assert names_that_hold(search, both, both).names == {"friction_hysteresis", "creep"}
+    monkeypatch.setattr(naming, "of_any_size", creep)
+    found = names_that_hold(search, both, both)
+    assert found.names == set(found.part.fit.names) == {"friction_hysteresis"}
+    assert [check.name for check in found.withdrawn] == ["creep"]
+    assert both.fit.names in asked
+
+
+@pytest.mark.parametrize("rubs", [True, False])
+def test_what_alone_explains_a_recording_is_at_work_whatever_its_shape(rubs: bool) -> None:
+    search = search_of(*([friction(0.3)] if rubs else []))
+    others = [rubbing()] if rubs else []
+    found = fitted(search, [*others, Term(find("creep"), {"lag_s": 20.0})])
+    assert of_any_size(search, found.fit) == ({"creep"} if rubs else set())
+
+
+def test_a_shape_that_is_not_told_is_known_to_lie_within_its_bounds() -> None:
+    search = search_of(friction(0.3))
+    shape = {"onset_nm": 30.9, "power": 1.0}
+    found = fitted(search, [Term(find("overload_softening"), shape)]).fit
+    free, bounded = found.covariance, covariance_within_bounds(found)
+    line = search.problem.line_columns
+    for place in range(line):
+        assert bounded[place, place] == pytest.approx(free[place, place], rel=0.1)
+    untold = set()
+    for place, each in enumerate(found.fit_parameters, len(found.beta)):
+        evenly = (each.quantity.upper - each.quantity.lower) ** 2 / 12.0
+        assert bounded[place, place] <= 1.001 * evenly
+        if free[place, place] > evenly:
+            untold.add(each.name)
+    assert untold == {"power"}
