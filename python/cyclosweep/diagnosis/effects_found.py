@@ -176,7 +176,7 @@ def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParam
     """
     term = fitted.terms[index]
     assert term.effect is not None
-    errors = fitted.standard_errors
+    errors = np.sqrt(np.maximum(np.diag(covariance_within_bounds(fitted)), 0.0))
     amplitudes = term.effect.amplitudes(term.shape)
     found: dict[str, EffectParameter] = {}
     if not term.slips:
