@@ -1,11 +1,12 @@
-"""Laws that fit as well at any size, or that let friction have any, keep no name."""
+"""Laws that fit as well at any size, or let friction do so, and faint waves keep no name."""
 
 from collections.abc import Mapping, Sequence
 
 import pytest
 
-from cyclosweep.diagnosis.identify import naming
+from cyclosweep.diagnosis.identify import naming, travel_check
 from cyclosweep.diagnosis.identify import testability as sizes
+from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.naming import names_that_hold
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import (
@@ -13,6 +14,7 @@ from cyclosweep.diagnosis.identify.testability import (
     of_any_size,
     strength_of,
 )
+from cyclosweep.diagnosis.identify.travel_check import without_faint_waves
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
@@ -98,3 +100,20 @@ def test_a_shape_that_is_not_told_is_known_to_lie_within_its_bounds() -> None:
         if free[place, place] > evenly:
             untold.add(each.name)
     assert untold == {"power"}
+
+
+@pytest.mark.parametrize(
+    ("loud", "faint", "held"), [(120.0, 8.0, False), (120.0, 12.0, True), (80.0, 8.0, True)]
+)
+def test_a_faint_wave_beside_a_loud_effect_is_withdrawn(
+    *, loud: float, faint: float, held: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search = search_of(friction(0.3), CREEP)
+    wave = Term(find("transmission_error"), {"order_1": 1.0})
+    found = fitted(search, [rubbing(), Term(find("creep"), dict(CREEP.shape)), wave])
+    checks = tuple(LawCheck(name, "", 0.0, 0.0, holds=True) for name in found.fit.names)
+    strength = {"friction_hysteresis": loud, "creep": faint, "transmission_error": faint}
+    names = found.fit.names
+    monkeypatch.setattr(travel_check, "strength_of", lambda _, __, k: strength[names[k]])
+    left = {c.name for c in without_faint_waves(search, found.fit, checks) if c.holds}
+    assert left == (set(names) if held else {"friction_hysteresis", "creep"})

@@ -16,7 +16,10 @@ from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_cl
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.small_laws_check import without_small_laws
 from cyclosweep.diagnosis.identify.testability import of_any_size
-from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
+from cyclosweep.diagnosis.identify.travel_check import (
+    without_faint_waves,
+    without_waves_of_a_curve,
+)
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, worth
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 
@@ -100,6 +103,7 @@ def names_that_hold(search: Search, accepted: Candidate, best: Candidate) -> Nam
             checks = without_waves_of_a_curve(search.baseline.fit, part.fit, checks)
             checks = _without_lesser_laws(part.fit, checks, best.fit)
             checks = withdrawn_where(is_needless, checks)
+            checks = without_faint_waves(search, part.fit, checks)
             checks = _of_known_size(search, part.fit, checks)
             judged = checks == larger
         gone = [check for check in checks if not check.holds]
@@ -228,6 +232,7 @@ def _beside_stand_ins(search: Search, accepted: Candidate) -> Naming:
             alone = accepted.fit.only({check.name for check in checks}) if checks else None
             part = search.baseline if alone is None else search.judged(alone, 0.0, 0.0)
         checks = without_waves_of_a_curve(search.baseline.fit, part.fit, checks)
+        checks = without_faint_waves(search, part.fit, checks)
         checks = _of_known_size(search, part.fit, checks)
         if all(check.holds for check in checks):
             break

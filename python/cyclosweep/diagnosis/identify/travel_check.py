@@ -1,7 +1,8 @@
-"""Waves along the travel of the mesh that are no more than a curve of the torque.
+"""Waves of the position of the mesh that are no more than a curve, or the error of a large law.
 
 Where the position of the mesh was not recorded, or too few of them, a wave follows the twist itself
-and is one more curve of the torque, with an order and a phase that fit.
+and is one more curve of the torque, with an order and a phase that fit. And of the many waves that
+are tried one fits best what the law of a large effect misses.
 """
 
 from collections.abc import Sequence
@@ -10,8 +11,42 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CU
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.testability import strength_of
 from cyclosweep.diagnosis.identify.verdict import MOSTLY
 from cyclosweep.simulation.effects.order_names import travels
+from cyclosweep.simulation.effects.orders import MeshPeriodic
+
+LOUD = 100.0
+"""Signal-to-noise ratio of the largest effect from which the error of its law counts."""
+LEAST_WAVE = 10.0
+"""Signal-to-noise ratio that a wave then needs, all that is fitted beside it taken out."""
+
+
+def without_faint_waves(
+    search: Search, fitted: FittedStructure, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw waves of the position of the mesh that are faint beside a loud effect.
+
+    Parameters
+    ----------
+    search : Search
+        Search of the recording.
+    fitted : FittedStructure
+        The structure.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    every = range(len(fitted.terms))
+    strength = {fitted.terms[k].name: strength_of(search, fitted, k) for k in every}
+    if max(strength.values(), default=0.0) < LOUD:
+        return tuple(checks)
+    waves = {t.name for t in fitted.terms if isinstance(t.effect, MeshPeriodic)}
+    return withdrawn_where(lambda name: name in waves and strength[name] < LEAST_WAVE, checks)
 
 
 def without_waves_of_a_curve(
