@@ -173,3 +173,12 @@ def test_thinning_of_a_long_recording_is_said_with_every_verdict() -> None:
         assert "about 50 neighbours averaged in each, one in 2 taken" in text
     unmixed = replace(thinning, averaged=1)
     assert "averaged" not in statement_of(replace(IDENTIFIED, thinning=unmixed))
+
+
+def test_what_is_left_is_said_to_be_above_the_noise_only_where_it_is() -> None:
+    mostly = replace(IDENTIFIED, verdict="MOSTLY_EXPLAINED")
+    loud = replace(mostly, repaired=replace(mostly.repaired, rmse_deg=0.21))
+    assert "what is left is above the noise and has no name" in statement_of(loud)
+    within = statement_of(mostly)
+    assert "above the noise" not in within
+    assert "is no larger than the noise of 0.2 deg (12 arcmin), but has a shape, and has" in within

@@ -136,7 +136,7 @@ def _mostly_explained(answer: Answer) -> str:
         remains += f", {answer.unknown.place}"
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
-        f"mismatch; what is left is above the noise and has no name of its own: {remains}."
+        f"mismatch; what is left {_beside_noise(answer)} and has no name of its own: {remains}."
         f"{_missed(answer)}{_classes(answer)} Size after re-calibration: {_sizes(answer)}. "
         f"It shows most at {place_of(answer.mismatch.regions)}.{_improvement(answer)} "
         f"{_calibration(answer)}"
@@ -262,6 +262,14 @@ def _sizes(answer: Answer) -> str:
             f"(95 %: {low:.{digits}g} to {high:.{digits}g})"
         )
     return "; ".join(words)
+
+
+def _beside_noise(answer: Answer) -> str:
+    """How what is left stands to the noise: its size may be no larger, though it has a shape."""
+    noise, left = answer.noise.sigma_deg, answer.repaired.rmse_deg
+    if noise is not None and left is not None and left <= noise:
+        return f"is no larger than the noise of {degrees(noise)}, but has a shape,"
+    return "is above the noise"
 
 
 def _improvement(answer: Answer) -> str:
