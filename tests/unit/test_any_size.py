@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.testability import (
     strength_of,
 )
 from cyclosweep.diagnosis.identify.travel_check import without_faint_waves
+from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
@@ -53,7 +54,7 @@ def test_compliance_before_the_friction_hides_it(
     soft = Term(find("overload_softening"), AT_ONCE, in_series=in_series)
     found = fitted(search, [rubbing(), soft]).fit
     monkeypatch.setattr(sizes, "spread_of_size", lambda *_: 0.0)
-    assert (strength_of(search, found, 0) < sizes.NORMAL_95) is in_series
+    assert (strength_of(search, found, 0) < NORMAL_95) is in_series
     assert strength_of(search, found, 0, [1]) > 100.0
     assert of_any_size(search, found) == ({"overload_softening"} if in_series else set())
 

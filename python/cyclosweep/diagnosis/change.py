@@ -9,6 +9,7 @@ from cyclosweep.diagnosis.growth import growth
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.sweeps import FEWEST_ROWS, Sweep, equal_sweeps
 from cyclosweep.result import DriveChange
+from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects.history import Floats, History
 
 BY_RUN = "compliance by run"
@@ -30,8 +31,6 @@ LEAST_CHANGE = 0.03
 LEAST_RATIO = 4.0
 """Trend over its standard error from the scatter of equal sweeps, as a second guard: neighbouring
 sweeps share slow noise, which the random orders do not."""
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 
 
 @dataclass(frozen=True)

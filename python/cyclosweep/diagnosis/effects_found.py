@@ -17,7 +17,6 @@ from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import (
-    NORMAL_95,
     Testability,
     covariance_within_bounds,
     recalibration,
@@ -33,7 +32,7 @@ from cyclosweep.result import (
     Size,
 )
 from cyclosweep.result.effects import Outcome
-from cyclosweep.result.part import finite
+from cyclosweep.result.part import NORMAL_95, finite
 
 
 def found_effects(concluded: Conclusion, e_value: float) -> tuple[FoundEffect, ...]:

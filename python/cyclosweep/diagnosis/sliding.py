@@ -22,6 +22,7 @@ from cyclosweep.result import (
     Size,
     Untestable,
 )
+from cyclosweep.result.part import NORMAL_95
 from cyclosweep.result.words import degrees, telling_digits
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects.history import Flags, Floats
@@ -45,8 +46,6 @@ PLATEAU_SHARE = 0.5
 WHOLE_RANGE = 0.02
 """Share of the readings cut from either end of the torque before its range is taken, against
 single peaks at break-away."""
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 FRICTION = "friction_hysteresis"
 """Effect that is named."""
 

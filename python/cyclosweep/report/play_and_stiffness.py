@@ -9,11 +9,10 @@ from cyclosweep.recording import Recording
 from cyclosweep.report.straight_lines import LINE_SHARES, straight_lines
 from cyclosweep.report.wording import ARCMIN
 from cyclosweep.result import CalibratedParameter, PlayAndStiffness, Reading
+from cyclosweep.result.part import NORMAL_95
 
 CONFIDENCE = 0.95
 """Confidence of the intervals."""
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 BY_LINES = (
     "straight lines through the middle of the loop between "
     f"{100 * LINE_SHARES[0]:.0f} and {100 * LINE_SHARES[1]:.0f} % of the largest torque, means of "

@@ -4,12 +4,11 @@ import re
 from collections.abc import Sequence
 
 from cyclosweep.result import Answer, Verdict
+from cyclosweep.result.part import NORMAL_95
 
 NOTHING = "–"
 """What is printed where there is no number."""
 
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 
 ARCMIN = 60.0
 """Minutes of arc in a degree."""

@@ -13,6 +13,9 @@ LEFT_OUT: Metadata = {"when_none": "left out"}
 EMPTY: Metadata = {"when_none": "empty"}
 """A field that becomes an empty object where it is None."""
 
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval in standard errors, of a normal distribution."""
+
 
 class Part:
     """Base of the frozen dataclasses of a result; the strings below fields go into the schema."""

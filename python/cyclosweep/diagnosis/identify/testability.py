@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.diagnosis.prepare.problem import line_design
 from cyclosweep.result import Untestable
+from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 
@@ -64,9 +65,6 @@ ALWAYS_HIDDEN = (
     ),
 )
 """What the calibration hides exactly: name, reason, what would show it."""
-
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 
 
 def testability(

@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.whole_loop.staircase_found import (
 )
 from cyclosweep.result import Finding
 from cyclosweep.result.calibration_words import HIDDEN
+from cyclosweep.result.part import NORMAL_95
 from cyclosweep.result.words import telling_digits
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.elastic_law import elastic_law
@@ -21,8 +22,6 @@ LEAST_MOVEMENT = 0.6
 """Share of the nominal dead zone below which friction has held the shaft inside its play."""
 MOST_FRICTION = 0.35
 """Share of the largest torque from which Coulomb friction decides what the loop looks like."""
-NORMAL_95 = 1.96
-"""Half width of a 95 % interval in standard errors."""
 
 
 def findings(
