@@ -35,6 +35,7 @@ __all__ = [
     "solve_slip",
     "status_labels",
     "torque_twist",
+    "whiten_weighted",
     "write_parquet",
 ]
 
