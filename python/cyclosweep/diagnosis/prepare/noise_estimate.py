@@ -1,5 +1,6 @@
 """Estimate of a recording's noise from what a flexible basis of twist leaves."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -285,7 +286,7 @@ def _size(
     if np.isinf(best_tail):
         return best_sigma, best_tail, (1.0, 1.0), 0.0
     score, slope = student_score(white * inflate / best_sigma, best_tail)
-    gaussian = -float(np.log(best_sigma / inflate)) - 0.5 * float(np.log(2 * np.pi * np.e))
+    gaussian = -float(np.log(best_sigma / inflate)) - 0.5 * float(np.log(2 * np.pi * math.e))
     gain = best_value / count - gaussian
     return best_sigma, best_tail, (float(np.mean(slope)), float(np.mean(score**2))), gain
 
