@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import pytest
 
 import cyclosweep as cs
@@ -14,6 +15,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import covariance_within_bounds
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, whole_loop_fit
@@ -77,3 +79,15 @@ def test_friction_keeps_its_name_where_the_curve_beside_it_loses_its_own(
     # What is named alone is fitted to whole loops, too.
     assert isinstance(found.part.fit, WholeLoopFit)
     assert found.part.fit.names == ("friction_hysteresis",)
+
+
+def test_bounds_of_shapes_add_to_what_whole_loops_tell(whole: WholeLoopFit) -> None:
+    """Errors were once those of the flanks alone, a fifth to two thirds of these."""
+    scale = np.sqrt(np.diag(whole.covariance))
+    told = np.linalg.inv(whole.covariance / np.outer(scale, scale))
+    for place, each in enumerate(whole.fit_parameters, len(whole.beta)):
+        room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
+        told[place, place] += 12.0 * (scale[place] / room) ** 2
+    bounded = covariance_within_bounds(whole) / np.outer(scale, scale)
+    np.testing.assert_allclose(bounded, np.linalg.inv(told), rtol=1e-5, atol=1e-7)
+    assert np.all(np.diag(bounded) < 1.0 + 1e-9)

@@ -85,11 +85,10 @@ def _effect(
     twist = recalibration(fitted)(added_twist(fitted, index)[fitted.problem.fitted])
     size = float(np.max(np.abs(twist), initial=0.0))
     strength = strength_of(search, fitted, index)
-    if strength < NORMAL_95:  # beside stand-ins that it could take the place of
-        every = range(len(fitted.terms))
-        strength = strength_of(
-            search, fitted, index, [k for k in every if fitted.terms[k].name not in names]
-        )
+    stand_ins = [k for k, term in enumerate(fitted.terms) if term.name not in names]
+    if strength < NORMAL_95 and effect.slips and stand_ins:
+        # Together with the line they could take its place.
+        strength = strength_of(search, fitted, index, stand_ins)
     if fitted.follows_path(index):
         spread = size / max(strength, 1e-9)
     else:

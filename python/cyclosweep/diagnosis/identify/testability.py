@@ -220,16 +220,19 @@ def covariance_within_bounds(fitted: FittedStructure) -> Floats:
     -------
     ndarray, shape (k, k)
     """
-    known = np.zeros(fitted.sensitivity.shape[1])
-    for k, each in enumerate(fitted.fit_parameters, len(fitted.beta)):
+    covariance = fitted.covariance
+    places, variances = list[int](), list[float]()
+    for place, each in enumerate(fitted.fit_parameters, len(fitted.beta)):
         room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
-        # Of an even distribution, the variance is a twelfth of the square of its width.
-        known[k] = 12.0 / room**2 if room > 0.0 else 0.0
-    scale = np.sqrt(np.sum(fitted.sensitivity**2, axis=0) + known)
-    scale = np.where(scale > 0.0, scale, 1.0)
-    scaled = fitted.sensitivity / scale
-    gram = scaled.T @ scaled + np.diag(known / scale**2)
-    return np.asarray(np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale))
+        if 0.0 < room < np.inf:
+            # Of an even distribution, the variance is a twelfth of the square of its width.
+            places.append(place)
+            variances.append(room**2 / 12.0)
+    if not places:
+        return covariance
+    across = covariance[:, places]
+    together = across[places] + np.diag(variances)
+    return np.asarray(covariance - across @ np.linalg.solve(together, across.T))
 
 
 def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
@@ -260,7 +263,8 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
         if fitted.follows_path(index):
             return False
         size = float(np.max(np.abs(size_of(fitted, index)), initial=0.0))
-        return NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) >= size
+        # A spread beyond all numbers is no number.
+        return not NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) < size
 
     others = (k for k in every if sliding and k not in sliding)
     return frozenset(fitted.terms[k].name for k in others if hides(k) or is_open(k))

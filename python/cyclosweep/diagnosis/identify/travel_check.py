@@ -41,11 +41,13 @@ def without_faint_waves(
     -------
     tuple of LawCheck
     """
+    waves = {term.name for term in fitted.terms if isinstance(term.effect, MeshPeriodic)}
+    if not waves:
+        return tuple(checks)
     every = range(len(fitted.terms))
     strength = {fitted.terms[k].name: strength_of(search, fitted, k) for k in every}
-    if max(strength.values(), default=0.0) < LOUD:
+    if max(strength.values()) < LOUD:
         return tuple(checks)
-    waves = {t.name for t in fitted.terms if isinstance(t.effect, MeshPeriodic)}
     return withdrawn_where(lambda name: name in waves and strength[name] < LEAST_WAVE, checks)
 
 
