@@ -1,7 +1,9 @@
 """Laws that fit as well at any size, or let friction do so, and faint waves keep no name."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from cyclosweep.diagnosis.identify import naming, travel_check
@@ -33,7 +35,7 @@ def rubbing() -> Term:
 
 @pytest.mark.parametrize(
     ("name", "shape"),
-    [("contact_stiffening", {"turn_nm": 0.3}), ("creep", {"lag_s": 20.0})],
+    [("contact_stiffening", {"turn_nm": 0.3}), ("creep", {"time_constant_s": 20.0})],
 )
 @pytest.mark.parametrize("at_work", [False, True])
 def test_a_law_is_of_any_size_only_where_it_is_not_at_work(
@@ -49,14 +51,14 @@ def test_a_law_is_of_any_size_only_where_it_is_not_at_work(
 def test_compliance_before_the_friction_hides_it(
     in_series: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Behind the friction it is the compliance of the line, and hides nothing.
+    # Behind the friction it is the compliance of the line: it hides nothing, but has any size.
     search = search_of(friction(0.3))
     soft = Term(find("overload_softening"), AT_ONCE, in_series=in_series)
     found = fitted(search, [rubbing(), soft]).fit
-    monkeypatch.setattr(sizes, "spread_of_size", lambda *_: 0.0)
+    monkeypatch.setattr(sizes, "spread_of_size", lambda *_: -1.0)
     assert (strength_of(search, found, 0) < NORMAL_95) is in_series
     assert strength_of(search, found, 0, [1]) > 100.0
-    assert of_any_size(search, found) == ({"overload_softening"} if in_series else set())
+    assert of_any_size(search, found) == {"overload_softening"}
 
 
 def test_what_has_any_size_is_withdrawn_and_the_rest_fitted_alone(
@@ -78,12 +80,35 @@ def test_what_has_any_size_is_withdrawn_and_the_rest_fitted_alone(
     assert both.fit.names in asked
 
 
-@pytest.mark.parametrize("rubs", [True, False])
-def test_what_alone_explains_a_recording_is_at_work_whatever_its_shape(rubs: bool) -> None:
-    search = search_of(*([friction(0.3)] if rubs else []))
-    others = [rubbing()] if rubs else []
-    found = fitted(search, [*others, Term(find("creep"), {"lag_s": 20.0})])
-    assert of_any_size(search, found.fit) == ({"creep"} if rubs else set())
+def test_what_alone_explains_a_recording_is_at_work_whatever_its_shape() -> None:
+    search = search_of()
+    found = fitted(search, [Term(find("creep"), {"time_constant_s": 20.0})])
+    assert of_any_size(search, found.fit) == set()
+
+
+def test_a_law_that_the_others_can_replace_whole_has_any_size() -> None:
+    # The covariance of least squares knows nothing of a direction in which nothing changes.
+    search = search_of(friction(0.3), CREEP)
+    both = fitted(search, [rubbing(), Term(find("creep"), dict(CREEP.shape))]).fit
+    twice = both.sensitivity.copy()
+    place = both.amplitude_places(1)[0]
+    twice[:, len(both.beta)] = twice[:, place]
+    found = replace(both, sensitivity=twice)
+    assert of_any_size(search, both) == set()
+    assert of_any_size(search, found) == {"creep"}
+
+
+def test_parameters_that_make_up_for_each_other_are_known_within_their_bounds() -> None:
+    """With a variance of 1e19 before the bounds, what they tell was lost."""
+    both = fitted(search_of(friction(0.3)), [rubbing()]).fit
+    shapes = range(len(both.beta), both.sensitivity.shape[1])
+    twins = both.sensitivity.copy()
+    twins[:, shapes[1]] = twins[:, shapes[0]] * (1.0 + 1e-9)
+    found = replace(both, sensitivity=twins)
+    bounded = np.diag(covariance_within_bounds(found))
+    for place, each in enumerate(found.fit_parameters, len(found.beta)):
+        room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
+        assert 0.0 < bounded[place] <= 1.001 * room**2 / 12.0
 
 
 def test_a_shape_that_is_not_told_is_known_to_lie_within_its_bounds() -> None:

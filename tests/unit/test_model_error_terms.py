@@ -20,7 +20,7 @@ from tests.support.long_recording import friction
 from tests.support.searches import search_of
 
 WARM = EffectValue("thermal_drift", {"datum": 1.0}, (1.8,))
-CREEP = EffectValue("creep", {"lag_s": 20.0}, (0.67,))
+CREEP = EffectValue("creep", {"time_constant_s": 20.0}, (0.67,))
 SMALL_DEG = 0.1
 
 

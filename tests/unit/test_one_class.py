@@ -33,7 +33,7 @@ LOADED = {"slip_deg": 0.8, "scatter": 0.6, "skew": 0.0, "slack": 0.0}
 ASYMMETRY = 0.1
 """Amplitude of a difference of the sides at 10 N m [deg]."""
 KINKS = {"kink_1_nm": 4.0, "kink_2_nm": 8.0}
-CREEP = EffectValue("creep", {"lag_s": 20.0}, (0.1,))
+CREEP = EffectValue("creep", {"time_constant_s": 20.0}, (0.1,))
 
 
 def fitted(search: Search, terms: Sequence[Term]) -> Candidate:

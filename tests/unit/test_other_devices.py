@@ -75,7 +75,7 @@ def test_a_side_load_asks_for_load_in_both_directions(share: float, shown: bool)
 
 
 def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_model() -> None:
-    search = search_of(EffectValue("creep", {"lag_s": 20.0}, (6.0,)))
+    search = search_of(EffectValue("creep", {"time_constant_s": 20.0}, (6.0,)))
     flexible = flexible_basis(search.problem, search.library)
     rows = len(search.noise.gap)
     one_run = np.where(np.arange(rows) > 0, 1.0, 0.0)
@@ -99,7 +99,7 @@ def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_mode
 
 
 def test_what_is_left_is_no_larger_than_the_largest_residual() -> None:
-    fitted = search_of(EffectValue("creep", {"lag_s": 20.0}, (2.0,))).baseline.fit
+    fitted = search_of(EffectValue("creep", {"time_constant_s": 20.0}, (2.0,))).baseline.fit
     left = (fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted]
     largest = float(np.abs(left).max())
     huge = Remainder(shape="slow drift", place="over the recording", size_deg=9.0 * largest)

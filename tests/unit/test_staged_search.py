@@ -34,7 +34,7 @@ from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
 from tests.support.searches import search_of
 
-CREEP = EffectValue("creep", {"lag_s": 20.0}, (2.0,))
+CREEP = EffectValue("creep", {"time_constant_s": 20.0}, (2.0,))
 WARM = EffectValue("thermal_drift", {"datum": 1.0}, (0.6,))
 SHIFTED = EffectValue("transmission_error", {"order_1": 2.0}, (0.15, 0.1))
 LOADED = {

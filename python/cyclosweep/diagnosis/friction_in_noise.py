@@ -7,7 +7,8 @@ which pass for outliers. A friction of a few parameters that explains most of th
 noise. It is looked for with noise as small as what rows differ by, and believed where the recording
 is far likelier with it and the noise that is then left, or where it leaves hardly anything. The
 likelihood does not see the latter: a drift of a recording of a few independent pieces costs next to
-nothing as noise, however large it is.
+nothing as noise, however large it is. Beside noise that is nearly a drift both count a little: a
+friction that takes away most of it is believed at a smaller gain of likelihood.
 """
 
 import numpy as np
@@ -28,8 +29,8 @@ HEAVY = 5.0
 """and the degrees of freedom of its tails up to which it is, too: a law of friction that the
 flexible model misses leaves a few large errors after each reversal, which pass for outliers."""
 VERY_SLOW = 0.9
-"""Autocorrelation from which what is left beside friction is error of the model, if its tails are
-heavy, too: slow noise is even, and outliers are not slow."""
+"""Autocorrelation from which noise is nearly a drift. What is left beside friction is then error of
+the model, if its tails are heavy, too: slow noise is even, and outliers are not slow."""
 LOUD = 4.0
 """Error of the calibrated model, over what rows differ by, from which it is."""
 FAR_LIKELIER = 100.0
@@ -38,7 +39,7 @@ few nats from each parameter that is fitted to it."""
 LIKELIER = 20.0
 """The same where friction takes away most of what looked like a drift: of 378 recordings of slow
 noise and nothing missing, friction took away a third of the error in one, and gained nothing."""
-LITTLE = 0.3
+LEFT_OF_DRIFT = 0.3
 """Share of the calibrated model's error that it then leaves at most."""
 HARDLY_ANYTHING = 0.1
 """Share of the calibrated model's error that noise never leaves of itself when friction is fitted
@@ -80,12 +81,12 @@ def without_hidden_friction(
     beyond = flexible_beyond(problem, library, known)
     slow = noise_left(problem, beyond, all_noise=True)
     left_share = known.rmse_deg / search.baseline.fit.rmse_deg
-    far = is_far_likelier(slow, noise)
+    far = is_likelier(slow, noise)
     # Noise of a long memory costs next to nothing where it is drift; white noise is no drift.
     if not far and noise.best_correlation >= SLOW and left_share < HARDLY_ANYTHING:
         return Search(problem, little, library, search.seed), flexible, known
-    drift = noise.best_correlation >= VERY_SLOW and left_share < LITTLE
-    if not (far or (drift and is_far_likelier(slow, noise, LIKELIER))):
+    drift = noise.best_correlation >= VERY_SLOW and left_share < LEFT_OF_DRIFT
+    if not (far or (drift and is_likelier(slow, noise, LIKELIER))):
         return search, flexible, None
     left = noise_left(problem, beyond)
     if left.best_correlation >= VERY_SLOW and left.tail <= HEAVY:
@@ -114,8 +115,8 @@ def model_error_noise(problem: Problem, noise: Noise, flexible: Floats) -> Noise
     return as_model_error(noise, left, problem.resolution_deg, float(np.ptp(angle)))
 
 
-def is_far_likelier(noise: Noise, other: Noise, least: float = FAR_LIKELIER) -> bool:
-    """Whether a recording is far likelier with one description of its noise than with another.
+def is_likelier(noise: Noise, other: Noise, least: float = FAR_LIKELIER) -> bool:
+    """Whether a recording is likelier with one description of its noise than with another.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.calibrate import noise_beyond
 from cyclosweep.diagnosis.friction_in_noise import (
-    is_far_likelier,
+    is_likelier,
     model_error_noise,
     without_hidden_friction,
 )
@@ -83,7 +83,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         if best is None:
             break
         noise = noise_beyond(search.problem, search.library, best.fit)
-        if _is_same(noise, search.noise) or is_far_likelier(search.noise, noise):
+        if _is_same(noise, search.noise) or is_likelier(search.noise, noise):
             break
         given_up = mismatch > CLEAR and _leaves_something(search)
         say("starting over with better-known noise")

@@ -206,8 +206,10 @@ def twist_with_and_without(
 
     Returns
     -------
-    ndarray, ndarray, shape (n,)
-        Twist [deg].
+    ndarray, shape (n,)
+        Twist by all of them [deg].
+    ndarray, shape (n,)
+        Twist without those left out [deg].
     """
     total, without = np.zeros(len(history)), np.zeros(len(history))
     for value in effects:

@@ -186,9 +186,25 @@ class FittedStructure(ABC):
     @cached_property
     def covariance(self) -> Floats:
         """Covariance of all parameters, linear ones first."""
-        scale = np.linalg.norm(self.sensitivity, axis=0)
+        return self.covariance_given(np.zeros(len(self.beta) + len(self.fit_parameters)))
+
+    def covariance_given(self, information: Floats) -> Floats:
+        """Covariance of all parameters, where something is known of each besides.
+
+        Parameters
+        ----------
+        information : ndarray, shape (k,)
+            One over the variance of each as far as it is known, linear ones first; zero where
+            nothing is.
+
+        Returns
+        -------
+        ndarray, shape (k, k)
+        """
+        scale = np.sqrt(np.sum(self.sensitivity**2, axis=0) + information)
         scale = np.where(scale > 0, scale, 1.0)
         gram = (self.sensitivity / scale).T @ (self.sensitivity / scale)
+        gram += np.diag(information / scale**2)
         return np.asarray(
             np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale)
         )

@@ -36,6 +36,8 @@ BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
 MOST_GROWN = 1.5
 """Size of an accepted effect with a new one in the fit, over its size without, above which the new
 one is refused: the two compensate each other in the odd or in the even part."""
+LOUD = 100.0
+"""Signal-to-noise ratio of an effect from which the error of its law counts."""
 COMPLIANCE_PLACE = 1
 """Place of the line's compliance among all parameters."""
 SHAPE_CHARGE = 1.0

@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
     LEAST_LEFT,
     LEAST_OF_CLASS,
+    LOUD,
     LawBeside,
     LawCheck,
     own_classes,
@@ -26,8 +27,6 @@ from cyclosweep.diagnosis.identify.law_in_class import (
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Floats
 
-LOUD = 100.0
-"""Signal-to-noise ratio of the larger one from which its law's error counts."""
 HALF = 0.5
 """Share of the evidence of a law of little evidence that has to be left beside a class."""
 ALIKE = 0.8

@@ -16,6 +16,8 @@ from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 
+PLAIN = 5.0
+"""Signal-to-noise ratio of a friction that is there for certain."""
 LEAST_BESIDE = 1e-6
 """Share of a column that everything fitted has to leave of it, so that it has an amplitude."""
 
@@ -207,7 +209,7 @@ def spread_of_size(fitted: FittedStructure, index: int, covariance: Floats) -> f
 
 
 def covariance_within_bounds(fitted: FittedStructure) -> Floats:
-    """Covariance of all parameters, those of shapes known to lie within their bounds.
+    """Covariance of all parameters, those of shapes and limits known to lie within their bounds.
 
     A shape that the recording does not tell would else be unknown beyond all bounds, and the size
     with it, though the twist of every shape within them is known.
@@ -220,19 +222,13 @@ def covariance_within_bounds(fitted: FittedStructure) -> Floats:
     -------
     ndarray, shape (k, k)
     """
-    covariance = fitted.covariance
-    places, variances = list[int](), list[float]()
+    information = np.zeros(len(fitted.beta) + len(fitted.fit_parameters))
     for place, each in enumerate(fitted.fit_parameters, len(fitted.beta)):
         room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
         if 0.0 < room < np.inf:
             # Of an even distribution, the variance is a twelfth of the square of its width.
-            places.append(place)
-            variances.append(room**2 / 12.0)
-    if not places:
-        return covariance
-    across = covariance[:, places]
-    together = across[places] + np.diag(variances)
-    return np.asarray(covariance - across @ np.linalg.solve(together, across.T))
+            information[place] = 12.0 / room**2
+    return fitted.covariance_given(information)
 
 
 def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
@@ -249,24 +245,27 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
     -------
     frozenset of str
         Terms whose 95 % interval of size holds zero, if nothing were known of their shapes, and
-        those beside which that of a friction does, as it does not without them. None where nothing
-        slips: what alone explains a mismatch is at work, whatever its shape.
+        those beside which that of a friction does, though it is plain without them. None where
+        nothing slips: one of the laws is then all that explains the mismatch.
     """
     every = range(len(fitted.terms))
     sliding = [k for k in every if fitted.terms[k].slips]
     hidden = [k for k in sliding if strength_of(search, fitted, k) < NORMAL_95]
 
     def hides(index: int) -> bool:
-        return any(strength_of(search, fitted, k, (index,)) >= NORMAL_95 for k in hidden)
+        return any(strength_of(search, fitted, k, (index,)) >= PLAIN for k in hidden)
 
     def is_open(index: int) -> bool:
         if fitted.follows_path(index):
             return False
         size = float(np.max(np.abs(size_of(fitted, index)), initial=0.0))
-        # A spread beyond all numbers is no number.
-        return not NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) < size
+        # A spread beyond all numbers is no number; where the others can be all of a law, the
+        # covariance holds none of what it shares with them.
+        known = NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) < size
+        return not known or strength_of(search, fitted, index) < NORMAL_95
 
-    others = (k for k in every if sliding and k not in sliding)
+    effects = (k for k in every if fitted.terms[k].effect is not None)
+    others = (k for k in effects if sliding and k not in sliding)
     return frozenset(fitted.terms[k].name for k in others if hides(k) or is_open(k))
 
 

@@ -10,17 +10,16 @@ from collections.abc import Sequence
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
+from cyclosweep.diagnosis.identify.law_in_class import LOUD, LawCheck, withdrawn_where
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import strength_of
 from cyclosweep.diagnosis.identify.verdict import MOSTLY
 from cyclosweep.simulation.effects.order_names import travels
 from cyclosweep.simulation.effects.orders import MeshPeriodic
 
-LOUD = 100.0
-"""Signal-to-noise ratio of the largest effect from which the error of its law counts."""
 LEAST_WAVE = 10.0
-"""Signal-to-noise ratio that a wave then needs, all that is fitted beside it taken out."""
+"""Signal-to-noise ratio that a wave beside a loud effect needs, all that is fitted beside it taken
+out."""
 
 
 def without_faint_waves(
@@ -44,8 +43,8 @@ def without_faint_waves(
     waves = {term.name for term in fitted.terms if isinstance(term.effect, MeshPeriodic)}
     if not waves:
         return tuple(checks)
-    every = range(len(fitted.terms))
-    strength = {fitted.terms[k].name: strength_of(search, fitted, k) for k in every}
+    effects = [k for k, term in enumerate(fitted.terms) if term.effect is not None]
+    strength = {fitted.terms[k].name: strength_of(search, fitted, k) for k in effects}
     if max(strength.values()) < LOUD:
         return tuple(checks)
     return withdrawn_where(lambda name: name in waves and strength[name] < LEAST_WAVE, checks)

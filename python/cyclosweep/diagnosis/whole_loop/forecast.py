@@ -85,12 +85,29 @@ class Forecast:
 
         The residual repeats itself along the loop, so it tells far less than its rows.
         """
-        scale = np.linalg.norm(self.jacobian, axis=0)
+        return self.covariance_given(np.zeros(len(self.parameters)))
+
+    def covariance_given(self, information: Floats) -> Floats:
+        """Covariance of the parameters, where something is known of each besides.
+
+        Parameters
+        ----------
+        information : ndarray, shape (k,)
+            One over the variance of each as far as it is known, in the fit's own scale; zero
+            where nothing is.
+
+        Returns
+        -------
+        ndarray, shape (k, k)
+        """
+        repeated = max(len(self.jacobian) / INDEPENDENT_PIECES, 1.0)
+        variance = self.error_deg**2 * repeated
+        scale = np.sqrt(np.sum(self.jacobian**2, axis=0) + information * variance)
         scale = np.where(scale > 0, scale, 1.0)
         gram = (self.jacobian / scale).T @ (self.jacobian / scale)
+        gram += np.diag(information * variance / scale**2)
         inner = np.linalg.pinv(gram, rcond=1e-8, hermitian=True) / np.outer(scale, scale)
-        repeated = max(len(self.jacobian) / INDEPENDENT_PIECES, 1.0)
-        return np.asarray(inner * self.error_deg**2 * repeated)
+        return np.asarray(inner * variance)
 
     def slope(self, parameter: int, path: Callable[[Problem, Model], History]) -> Floats:
         """Derivative of the twist by a parameter, in the fit's own scale.

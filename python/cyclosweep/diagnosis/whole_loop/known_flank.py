@@ -176,10 +176,9 @@ class WholeLoopFit(FittedStructure):
         return findings(self.forecast, repeats, unsteady=unsteady)
 
     @cached_property
-    def covariance(self) -> Floats:
-        """Covariance of all parameters, from the whole loop; few pieces of it are independent."""
+    def _in_order(self) -> tuple[list[int], Floats]:
+        """Place of each parameter of the structure in the simulation, and its scale there."""
         parameters = self.forecast.parameters
-        spread = self.forecast.covariance
         order: list[int] = []
         kinds = ["datum", "compliance", "play"]
         for kind in kinds[: self.problem.line_columns]:
@@ -190,6 +189,25 @@ class WholeLoopFit(FittedStructure):
         for place, k in enumerate(order):
             if parameters[k].logarithmic and parameters[k].kind != "nonlinear":
                 scale[place] = np.exp(self.forecast.values[k])
+        return order, scale
+
+    def covariance_given(self, information: Floats) -> Floats:
+        """Covariance of all parameters, from the whole loop; few pieces of it are independent.
+
+        Parameters
+        ----------
+        information : ndarray, shape (k,)
+            One over the variance of each as far as it is known besides, linear ones first; zero
+            where nothing is.
+
+        Returns
+        -------
+        ndarray, shape (k, k)
+        """
+        order, scale = self._in_order
+        known = np.zeros(len(self.forecast.parameters))
+        known[order] = information * scale**2
+        spread = self.forecast.covariance_given(known)
         return np.asarray(spread[np.ix_(order, order)] * np.outer(scale, scale))
 
     def contribution(self, index: int) -> Floats:
