@@ -48,17 +48,49 @@ def test_a_law_is_of_any_size_only_where_it_is_not_at_work(
 
 
 @pytest.mark.parametrize("in_series", [False, True])
-def test_compliance_before_the_friction_hides_it(
-    in_series: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_compliance_before_the_friction_hides_it(in_series: bool) -> None:
     # Behind the friction it is the compliance of the line: it hides nothing, but has any size.
     search = search_of(friction(0.3))
     soft = Term(find("overload_softening"), AT_ONCE, in_series=in_series)
     found = fitted(search, [rubbing(), soft]).fit
-    monkeypatch.setattr(sizes, "spread_of_size", lambda *_: -1.0)
     assert (strength_of(search, found, 0) < NORMAL_95) is in_series
     assert strength_of(search, found, 0, [1]) > 100.0
     assert of_any_size(search, found) == {"overload_softening"}
+
+
+@pytest.mark.parametrize(
+    ("beside", "alone", "hides"), [(1.0, 6.0, True), (1.0, 4.0, False), (3.0, 6.0, False)]
+)
+def test_a_law_of_known_size_is_withdrawn_where_it_hides_a_plain_friction(
+    *, beside: float, alone: float, hides: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search = search_of(friction(0.3), CREEP)
+    both = fitted(search, [rubbing(), Term(find("creep"), dict(CREEP.shape))]).fit
+
+    def strength(_: object, __: object, index: int, left_out: Sequence[int] = ()) -> float:
+        return 10.0 if index else alone if 1 in left_out else beside
+
+    monkeypatch.setattr(sizes, "strength_of", strength)
+    assert of_any_size(search, both) == ({"creep"} if hides else set())
+
+
+@pytest.mark.parametrize(("spread", "withdrawn"), [(0.4, False), (0.6, True), (np.nan, True)])
+def test_an_interval_that_holds_zero_withdraws_a_law_whatever_its_strength(
+    *, spread: float, withdrawn: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search = search_of(friction(0.3), CREEP)
+    both = fitted(search, [rubbing(), Term(find("creep"), dict(CREEP.shape))]).fit
+    size = float(np.max(np.abs(sizes.size_of(both, 1))))
+    asked: list[np.ndarray] = []
+
+    def of_size(_: object, __: object, covariance: np.ndarray) -> float:
+        asked.append(covariance)
+        return spread * size
+
+    monkeypatch.setattr(sizes, "spread_of_size", of_size)
+    assert of_any_size(search, both) == ({"creep"} if withdrawn else set())
+    # Nothing is known of the shape besides.
+    np.testing.assert_array_equal(asked[0], both.covariance)
 
 
 def test_what_has_any_size_is_withdrawn_and_the_rest_fitted_alone(
@@ -98,17 +130,25 @@ def test_a_law_that_the_others_can_replace_whole_has_any_size() -> None:
     assert of_any_size(search, found) == {"creep"}
 
 
-def test_parameters_that_make_up_for_each_other_are_known_within_their_bounds() -> None:
-    """With a variance of 1e19 before the bounds, what they tell was lost."""
+@pytest.mark.parametrize("louder", [1.0, 10.0, 1000.0])
+def test_parameters_that_make_up_for_each_other_are_known_within_their_bounds(
+    louder: float,
+) -> None:
+    """With a variance of 1e19 before the bounds, or noise a tenth as large, theirs was lost."""
     both = fitted(search_of(friction(0.3)), [rubbing()]).fit
-    shapes = range(len(both.beta), both.sensitivity.shape[1])
-    twins = both.sensitivity.copy()
-    twins[:, shapes[1]] = twins[:, shapes[0]] * (1.0 + 1e-9)
+    first, second = len(both.beta), len(both.beta) + 1
+    twins = louder * both.sensitivity
+    twins[:, second] = twins[:, first]
     found = replace(both, sensitivity=twins)
-    bounded = np.diag(covariance_within_bounds(found))
-    for place, each in enumerate(found.fit_parameters, len(found.beta)):
-        room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
-        assert 0.0 < bounded[place] <= 1.001 * room**2 / 12.0
+    bounded = covariance_within_bounds(found)
+    one, other = (
+        (each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)) ** 2 / 12.0
+        for each in found.fit_parameters[:2]
+    )
+    # What they add to each other is known, so that each is as well known as by both bounds.
+    known = 1.0 / (1.0 / one + 1.0 / other)
+    assert bounded[first, first] == pytest.approx(known, rel=1e-3)
+    assert bounded[second, second] == pytest.approx(known, rel=1e-3)
 
 
 def test_a_shape_that_is_not_told_is_known_to_lie_within_its_bounds() -> None:

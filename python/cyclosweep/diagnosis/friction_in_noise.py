@@ -32,7 +32,8 @@ VERY_SLOW = 0.9
 """Autocorrelation from which noise is nearly a drift. What is left beside friction is then error of
 the model, if its tails are heavy, too: slow noise is even, and outliers are not slow."""
 LOUD = 4.0
-"""Error of the calibrated model, over what rows differ by, from which it is."""
+"""Error of the calibrated model, over what rows differ by, from which friction is looked for in the
+noise."""
 FAR_LIKELIER = 100.0
 """Log likelihood that the recording must gain [nat]. Noise of an autocorrelation of 0.99 gains a
 few nats from each parameter that is fitted to it."""

@@ -11,6 +11,7 @@ from cyclosweep.diagnosis.friction_in_noise import (
     without_hidden_friction,
 )
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
+from cyclosweep.diagnosis.identify.far_behind import far_behind
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
@@ -42,6 +43,8 @@ LARGER_THAN_LEFT = 2.0
 the slow errors of a model as noise of any size."""
 SAME_NOISE = 0.04
 """Change of correlation, and of the logarithm of the size, up to which noise is the same."""
+NEARLY_SAME_NOISE = 0.15
+"""The same, up to which structures that are far apart by one noise are so by the other."""
 
 
 def identify(search: Search, say: Callable[[str], None]) -> Search:
@@ -84,7 +87,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
             break
         given_up = mismatch > CLEAR and _leaves_something(search)
         say("starting over with better-known noise")
+        known = far_behind(search) if _is_same(noise, search.noise, NEARLY_SAME_NOISE) else None
         search = Search(search.problem, noise, search.library, search.seed)
+        search.not_extended = known or frozenset()
         if given_up:
             break
     else:
@@ -188,7 +193,7 @@ def _by_size(
     return staged
 
 
-def _is_same(first: Noise, second: Noise) -> bool:
+def _is_same(first: Noise, second: Noise, room: float = SAME_NOISE) -> bool:
     """Whether two estimates of the noise agree.
 
     Parameters
@@ -197,6 +202,8 @@ def _is_same(first: Noise, second: Noise) -> bool:
         One estimate.
     second : Noise
         The other.
+    room : float
+        Change of the correlation, and of the logarithm of the size, up to which they do.
 
     Returns
     -------
@@ -204,4 +211,4 @@ def _is_same(first: Noise, second: Noise) -> bool:
     """
     correlation = abs(first.correlation - second.correlation)
     size = abs(np.log(first.sigma_deg / second.sigma_deg))
-    return bool(correlation < SAME_NOISE and size < SAME_NOISE)
+    return bool(correlation < room and size < room)

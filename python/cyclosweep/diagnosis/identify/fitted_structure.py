@@ -14,6 +14,7 @@ from typing import Self
 
 import numpy as np
 
+from cyclosweep.diagnosis.identify.covariance import covariance_of
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
 from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction, Prediction, TorqueZero
 from cyclosweep.diagnosis.identify.repetition import Repetition
@@ -26,6 +27,8 @@ from cyclosweep.simulation.simulate import Model
 
 LEAST_OF_SLOPE = 0.1
 """Least compliance of the line over that of the flanks, with which it is still the drive's."""
+LEAST_TOLD = 1e-5
+"""Singular value over the largest one below which the rows tell nothing of a direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,13 +204,7 @@ class FittedStructure(ABC):
         -------
         ndarray, shape (k, k)
         """
-        scale = np.sqrt(np.sum(self.sensitivity**2, axis=0) + information)
-        scale = np.where(scale > 0, scale, 1.0)
-        gram = (self.sensitivity / scale).T @ (self.sensitivity / scale)
-        gram += np.diag(information / scale**2)
-        return np.asarray(
-            np.linalg.pinv(gram, rcond=1e-10, hermitian=True) / np.outer(scale, scale)
-        )
+        return covariance_of(self.sensitivity, information, LEAST_TOLD)
 
     @property
     def standard_errors(self) -> Floats:

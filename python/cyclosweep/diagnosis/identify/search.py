@@ -17,7 +17,6 @@ from cyclosweep.diagnosis.identify.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.freer_part import freer_part
-from cyclosweep.diagnosis.identify.front import front
 from cyclosweep.diagnosis.identify.placement import best_placed
 from cyclosweep.diagnosis.identify.scan import (
     Scan,
@@ -81,6 +80,8 @@ class Search:
         The best fit of each structure, by the names of its terms.
     tried : set of (Candidate, str)
         Structures, each with a hypothesis by which it was extended.
+    not_extended : frozenset of frozenset of str
+        Structures, by the names of their terms, that are not worth to be extended.
     chosen : Candidate or None
         The structure chosen on whole loops; None where structures are compared by their evidence.
     rivals_of_start : list of (Candidate, probability)
@@ -117,6 +118,7 @@ class Search:
             self.start = self.judged(first, 0.0, 0.0)
             self.visited[self.start.names] = self.start
         self.tried: set[tuple[Candidate, str]] = set()
+        self.not_extended: frozenset[frozenset[str]] = frozenset()
         self.chosen: Candidate | None = None
         self.flexible: Floats | None = None
         self.rivals_of_start: list[tuple[Candidate, float]] = []
@@ -125,10 +127,10 @@ class Search:
         """Visit structures: in breadth up to three terms, then along the best; say which."""
         if self.start.largest_excess < self.threshold:
             return
-        parents = [self.start]
+        front = [self.start]
         for depth in range(MOST_TERMS):
             found: list[Candidate] = []
-            for parent in parents:
+            for parent in (n for n in front if n.names not in self.not_extended):
                 for name in parent.hypotheses_to_add(6 if depth == 0 else 3, 3 - depth):
                     if parent.names | {name} in self.visited and depth:
                         continue
@@ -142,7 +144,9 @@ class Search:
                 break
             found = list({n.names: n for n in sorted(found, key=lambda n: n.score)}.values())
             found.sort(key=lambda n: -n.score)
-            parents = front(found, 3 - (depth > 0), 3 - depth)
+            named = [n for n in found if n.all_recognised]
+            front = found[: 3 - (depth > 0)]
+            front += [n for n in named[: 3 - depth] if all(n is not f for f in front)]
         self._visit_parts()
         self._follow(progress)
 

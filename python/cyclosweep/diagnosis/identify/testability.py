@@ -244,9 +244,10 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
     Returns
     -------
     frozenset of str
-        Terms whose 95 % interval of size holds zero, if nothing were known of their shapes, and
-        those beside which that of a friction does, though it is plain without them. None where
-        nothing slips: one of the laws is then all that explains the mismatch.
+        Terms whose 95 % interval of size holds zero, if nothing were known of their shapes; those
+        that all other terms together can replace; and those of a fit on a known flank or to whole
+        loops beside each of which alone friction is not seen, though it is plain without. None
+        where nothing slips: a law that alone explains a mismatch is at work, whatever its shape.
     """
     every = range(len(fitted.terms))
     sliding = [k for k in every if fitted.terms[k].slips]

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import least_squares
 
+from cyclosweep.diagnosis.identify.covariance import covariance_of
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -34,6 +35,8 @@ STEP = 0.02
 by whole rows, so the step has to reach over several."""
 LEAST = 1e-6
 """Least distance of a starting value from its bounds, as a share of the room between them."""
+LEAST_TOLD = 1e-4
+"""Singular value over the largest one below which the loop tells nothing of a direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +105,7 @@ class Forecast:
         """
         repeated = max(len(self.jacobian) / INDEPENDENT_PIECES, 1.0)
         variance = self.error_deg**2 * repeated
-        scale = np.sqrt(np.sum(self.jacobian**2, axis=0) + information * variance)
-        scale = np.where(scale > 0, scale, 1.0)
-        gram = (self.jacobian / scale).T @ (self.jacobian / scale)
-        gram += np.diag(information * variance / scale**2)
-        inner = np.linalg.pinv(gram, rcond=1e-8, hermitian=True) / np.outer(scale, scale)
-        return np.asarray(inner * variance)
+        return variance * covariance_of(self.jacobian, information * variance, LEAST_TOLD)
 
     def slope(self, parameter: int, path: Callable[[Problem, Model], History]) -> Floats:
         """Derivative of the twist by a parameter, in the fit's own scale.
