@@ -12,7 +12,6 @@ from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.naming import names_that_hold
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import (
-    covariance_within_bounds,
     of_any_size,
     strength_of,
 )
@@ -140,7 +139,7 @@ def test_parameters_that_make_up_for_each_other_are_known_within_their_bounds(
     twins = louder * both.sensitivity
     twins[:, second] = twins[:, first]
     found = replace(both, sensitivity=twins)
-    bounded = covariance_within_bounds(found)
+    bounded = found.covariance_within_bounds
     one, other = (
         (each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)) ** 2 / 12.0
         for each in found.fit_parameters[:2]
@@ -155,7 +154,7 @@ def test_a_shape_that_is_not_told_is_known_to_lie_within_its_bounds() -> None:
     search = search_of(friction(0.3))
     shape = {"onset_nm": 30.9, "power": 1.0}
     found = fitted(search, [Term(find("overload_softening"), shape)]).fit
-    free, bounded = found.covariance, covariance_within_bounds(found)
+    free, bounded = found.covariance, found.covariance_within_bounds
     line = search.problem.line_columns
     for place in range(line):
         assert bounded[place, place] == pytest.approx(free[place, place], rel=0.1)

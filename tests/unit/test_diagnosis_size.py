@@ -12,7 +12,6 @@ from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.fit import ContactFit, fit
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import (
-    covariance_within_bounds,
     size_of,
     spread_of_size,
 )
@@ -64,7 +63,7 @@ def test_standard_error_of_a_size_is_its_spread(
         angle = plain + made(torque, plain) + 0.2 * rng.normal(size=len(torque))
         found = fitted(name, shape, angle, torque, run)
         sizes.append(np.max(np.abs(size_of(found, 0))))
-        errors.append(spread_of_size(found, 0, covariance_within_bounds(found)))
+        errors.append(spread_of_size(found, 0, found.covariance_within_bounds))
     # Forty draws tell a spread within a quarter, nineteen times in twenty.
     assert np.median(errors) == pytest.approx(np.std(sizes), rel=0.35)
 

@@ -15,7 +15,6 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import covariance_within_bounds
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, whole_loop_fit
@@ -88,7 +87,7 @@ def test_bounds_of_shapes_add_to_what_whole_loops_tell(whole: WholeLoopFit) -> N
     for place, each in enumerate(whole.fit_parameters, len(whole.beta)):
         room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
         told[place, place] += 12.0 * (scale[place] / room) ** 2
-    bounded = covariance_within_bounds(whole) / np.outer(scale, scale)
+    bounded = whole.covariance_within_bounds / np.outer(scale, scale)
     np.testing.assert_allclose(bounded, np.linalg.inv(told), rtol=1e-5, atol=1e-7)
     assert np.all(np.diag(bounded) < 1.0 + 1e-9)
 

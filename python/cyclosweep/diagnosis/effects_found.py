@@ -18,7 +18,6 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import (
     Testability,
-    covariance_within_bounds,
     recalibration,
     spread_of_size,
     strength_of,
@@ -92,7 +91,7 @@ def _effect(
     if fitted.follows_path(index):
         spread = size / max(strength, 1e-9)
     else:
-        spread = spread_of_size(fitted, index, covariance_within_bounds(fitted))
+        spread = spread_of_size(fitted, index, fitted.covariance_within_bounds)
     half = NORMAL_95 * spread
     p_value = _p_value(search, accepted, effect.name)
     if half >= size:  # the interval holds nothing at all: the same spread judges the probability
@@ -174,7 +173,7 @@ def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParam
     """
     term = fitted.terms[index]
     assert term.effect is not None
-    errors = np.sqrt(np.maximum(np.diag(covariance_within_bounds(fitted)), 0.0))
+    errors = np.sqrt(np.maximum(np.diag(fitted.covariance_within_bounds), 0.0))
     amplitudes = term.effect.amplitudes(term.shape)
     found: dict[str, EffectParameter] = {}
     if not term.slips:

@@ -191,6 +191,21 @@ class FittedStructure(ABC):
         """Covariance of all parameters, linear ones first."""
         return self.covariance_given(np.zeros(len(self.beta) + len(self.fit_parameters)))
 
+    @cached_property
+    def covariance_within_bounds(self) -> Floats:
+        """Covariance of all parameters, shapes and limits known to lie within their bounds.
+
+        A shape that the recording does not tell would else be unknown beyond all bounds, and the
+        size with it, though the twist of every shape within them is known.
+        """
+        information = np.zeros(len(self.beta) + len(self.fit_parameters))
+        for place, each in enumerate(self.fit_parameters, len(self.beta)):
+            room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
+            if 0.0 < room < np.inf:
+                # Of an even distribution, the variance is a twelfth of the square of its width.
+                information[place] = 12.0 / room**2
+        return self.covariance_given(information)
+
     def covariance_given(self, information: Floats) -> Floats:
         """Covariance of all parameters, where something is known of each besides.
 

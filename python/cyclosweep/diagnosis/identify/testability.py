@@ -208,29 +208,6 @@ def spread_of_size(fitted: FittedStructure, index: int, covariance: Floats) -> f
     return float(np.sqrt(max(variance, 0.0)))
 
 
-def covariance_within_bounds(fitted: FittedStructure) -> Floats:
-    """Covariance of all parameters, those of shapes and limits known to lie within their bounds.
-
-    A shape that the recording does not tell would else be unknown beyond all bounds, and the size
-    with it, though the twist of every shape within them is known.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-
-    Returns
-    -------
-    ndarray, shape (k, k)
-    """
-    information = np.zeros(len(fitted.beta) + len(fitted.fit_parameters))
-    for place, each in enumerate(fitted.fit_parameters, len(fitted.beta)):
-        room = each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)
-        if 0.0 < room < np.inf:
-            # Of an even distribution, the variance is a twelfth of the square of its width.
-            information[place] = 12.0 / room**2
-    return fitted.covariance_given(information)
-
-
 def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
     """Names of terms beside friction that fit as well at any size, or let friction do so.
 
@@ -244,13 +221,16 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
     Returns
     -------
     frozenset of str
-        Terms whose 95 % interval of size holds zero, if nothing were known of their shapes; those
-        that all other terms together can replace; and those of a fit on a known flank or to whole
-        loops beside each of which alone friction is not seen, though it is plain without. None
-        where nothing slips: a law that alone explains a mismatch is at work, whatever its shape.
+        On a known flank those whose 95 % interval of size holds zero, if nothing were known of
+        their shapes, and those that all other terms together can replace; anywhere those beside
+        which a friction is not seen that is plain without them. None where nothing slips: a law
+        that alone explains a mismatch is at work, whatever its shape.
     """
-    every = range(len(fitted.terms))
-    sliding = [k for k in every if fitted.terms[k].slips]
+    effects = [k for k, term in enumerate(fitted.terms) if term.effect is not None]
+    sliding = [k for k in effects if fitted.terms[k].slips]
+    others = [k for k in effects if k not in sliding]
+    if not (sliding and others):
+        return frozenset()
     hidden = [k for k in sliding if strength_of(search, fitted, k) < NORMAL_95]
 
     def hides(index: int) -> bool:
@@ -265,8 +245,6 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
         known = NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) < size
         return not known or strength_of(search, fitted, index) < NORMAL_95
 
-    effects = (k for k in every if fitted.terms[k].effect is not None)
-    others = (k for k in effects if sliding and k not in sliding)
     return frozenset(fitted.terms[k].name for k in others if hides(k) or is_open(k))
 
 
