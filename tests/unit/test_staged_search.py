@@ -76,6 +76,23 @@ def test_what_is_left_is_measured_against_the_noise_alone_however_it_was_fitted(
     assert visibility(by_both, search.noise, flexible) == pytest.approx(left, rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("name", "amplitudes"),
+    [("transmission_error", (12.0, -5.0)), ("phase_dependent_compliance", (0.5, -0.3))],
+)
+def test_a_large_wave_is_fitted_whole_where_rows_count_less_for_model_error(
+    name: str, amplitudes: tuple[float, float]
+) -> None:
+    # The size that a wave usually has outweighed the rows: of 13 deg a half was left, and free
+    # offsets of the positions took the place of the law.
+    search = search_of(EffectValue(name, {"order_1": 1.0}, amplitudes))
+    wave = Term(find(name), {"order_1": 1.0})
+    for factor in (1.0, 300.0):
+        noise = search.noise.with_model_error(factor)
+        found = fit(search.problem, noise, [wave], search.baseline.fit, rounds=20)
+        assert found.beta[found.amplitude_places(0)] == pytest.approx(amplitudes, rel=0.03)
+
+
 def test_a_small_law_of_run_offsets_that_leaves_nothing_is_no_error_of_a_larger_one() -> None:
     # Below a quarter of the drift with temperature, by size alone it was taken for its error.
     search = search_of(WARM, SHIFTED)

@@ -112,7 +112,10 @@ class JointFit:
             parts.append(columns)
             white.append(whitened)
             size = None if term.effect is None else term.effect.expected(history, term.shape)
-            hold.append(np.zeros(columns.shape[1]) if size is None else 1.0 / size**2)
+            # Where rows count less for model error, what is expected does so too: it is to settle
+            # what the rows leave open, and not to shrink what is large.
+            factor = self.noise.model_error_factor
+            hold.append(np.zeros(columns.shape[1]) if size is None else (factor * size) ** -2.0)
         return parts, np.concatenate(white, axis=1), np.concatenate(hold)
 
     def _columns(self, index: int, term: Term, history: History) -> tuple[Floats, Floats]:
