@@ -47,6 +47,11 @@ def held(checks: Sequence[LawCheck]) -> set[str]:
     return {check.name for check in checks if check.holds}
 
 
+def mean_square_explained(search: Search, candidate: Candidate) -> float:
+    """What a structure explains of the mean square that a search starts from [deg^2]."""
+    return search.start.fit.rmse_deg**2 - candidate.fit.rmse_deg**2
+
+
 def all_hold(candidate: Candidate) -> tuple[LawCheck, ...]:
     """Checks of all laws of a structure, as if each alone stood for its class."""
     return tuple(LawCheck(name, "", 0.0, 0.0, holds=True) for name in candidate.fit.names)
@@ -229,6 +234,11 @@ def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
     assert decision.best is other
     closer = named_if_close(search, decision)
     assert (closer.best is named) == taken
+    # Both leave the noise alone: the named one explains nearly all of the other's mean square.
+    share = mean_square_explained(search, named) / mean_square_explained(search, other)
+    assert 0.98 < share < 1.02
+    assert named_if_close(search, decision, share - 1e-6).best is named
+    assert (named_if_close(search, decision, share + 1e-6).best is named) == taken
     if taken:
         # What it may be else is weighed among the named structures, however unlikely beside.
         share = 1.0 / (1.0 + np.exp(-1.0))

@@ -38,7 +38,13 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.identify.variants import in_better_variant, with_refined_drag
-from cyclosweep.diagnosis.identify.verdict import decide, likely, named_if_close, probabilities
+from cyclosweep.diagnosis.identify.verdict import (
+    NEARLY_ALL,
+    decide,
+    likely,
+    named_if_close,
+    probabilities,
+)
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.simulation.effects.history import Floats
@@ -153,7 +159,7 @@ def search_in_stages(
             accepted = fitted.terms
         search = _stage(searched, flexible, fitted)
         search.run(say)
-        decision = named_if_close(search, decide(search, [], 0.0))
+        decision = named_if_close(search, decide(search, [], 0.0), NEARLY_ALL)
         if accepted:
             last = search
         best = decision.best

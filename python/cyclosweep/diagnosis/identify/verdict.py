@@ -25,6 +25,10 @@ COVERAGE = 0.95
 CLOSE_TO_UNNAMED = 5.0
 """Log evidence by which a structure with a shape without a name may be ahead of one of named
 effects that leaves no more: against the error of models such odds decide nothing."""
+NEARLY_ALL = 0.98
+"""Share of the mean square explained by a structure with shapes without a name, from which one of
+named effects is taken in its place, whatever the evidence: what is left, a seventh as a root mean
+square, may be the error of their laws, and the next stage looks at it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +89,7 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     return Decision(verdict, best, likely(probable), False)
 
 
-def named_if_close(search: Search, decision: Decision) -> Decision:
+def named_if_close(search: Search, decision: Decision, nearly_all: float = np.inf) -> Decision:
     """Take the best structure of named effects alone where it is hardly less likely.
 
     Parameters
@@ -94,6 +98,9 @@ def named_if_close(search: Search, decision: Decision) -> Decision:
         Search of a stage, judged against the error of its models.
     decision : Decision
         Which structure it is by the evidence.
+    nearly_all : float
+        Share of what that one explains, from which a named structure is taken however much less
+        likely it is.
 
     Returns
     -------
@@ -104,9 +111,32 @@ def named_if_close(search: Search, decision: Decision) -> Decision:
         return decision
     enough = [each for each in search.explanations() if search.suffices(each)]
     named = [each for each in enough if each.all_recognised]
-    if not named or named[0].score < decision.best.score - CLOSE_TO_UNNAMED:
+    if not named:
+        return decision
+    close = named[0].score >= decision.best.score - CLOSE_TO_UNNAMED
+    if not close and _explained_of(search, named[0], decision.best) < nearly_all:
         return decision
     return Decision("AMBIGUOUS", named[0], likely(probabilities(named)), False)
+
+
+def _explained_of(search: Search, named: Candidate, best: Candidate) -> float:
+    """Mean square that one structure explains over what another one does.
+
+    Parameters
+    ----------
+    search : Search
+        Search of a stage; what it starts from is explained already.
+    named, best : Candidate
+        The one and the other.
+
+    Returns
+    -------
+    float
+        Minus infinity where the other one explains nothing.
+    """
+    left = search.start.fit.rmse_deg**2
+    most = left - best.fit.rmse_deg**2
+    return float((left - named.fit.rmse_deg**2) / most) if most > 0.0 else -np.inf
 
 
 def probabilities(candidates: list[Candidate]) -> list[tuple[Candidate, float]]:
