@@ -83,6 +83,15 @@ def test_killed_in_the_middle(tmp_path: Path, engine: str, whole: pl.DataFrame) 
     assert {path.suffix for path in folder.iterdir()} == {".parquet", ".json"}
 
 
+def test_lock_of_a_writer_killed_after_its_part_goes(tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    go_on(folder)
+    part = min(folder.glob("part-*.parquet"))
+    (folder / f".{part.stem}.lock").touch()
+    go_on(folder)
+    assert {path.suffix for path in folder.iterdir()} == {".parquet", ".json"}
+
+
 def test_killed_again_and_again(tmp_path: Path, whole: pl.DataFrame) -> None:
     folder = tmp_path / "study"
     for _ in range(3):

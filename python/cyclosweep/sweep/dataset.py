@@ -41,6 +41,7 @@ _FORMAT = "cyclosweep.dataset/1"
 _MANIFEST = "_manifest.json"
 _FORMER_MANIFEST = "manifest.json"  # no underscore: read as a part by other programs
 _UNFINISHED = "*part-*.tmp"  # of today with a leading dot, of former versions without
+_LOCKS = ".part-*.lock"
 _PART_NAME = re.compile(r"part-(\d+)\.parquet")
 
 
@@ -278,7 +279,8 @@ class Dataset:
 
     def finish(self, summaries: list[PartSummary]) -> None:
         """Write the manifest of the parts that are there and delete what killed writers left."""
-        for path in self.folder.glob(_UNFINISHED):
+        # A writer killed just after a part was in place leaves its lock.
+        for path in [*self.folder.glob(_UNFINISHED), *self.folder.glob(_LOCKS)]:
             stem = path.name.lstrip(".").split(".")[0]
             with contextlib.suppress(Timeout), self.lock(stem, timeout=0):
                 path.unlink(missing_ok=True)
