@@ -90,7 +90,9 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
 
 
 def named_if_close(search: Search, decision: Decision, nearly_all: float = np.inf) -> Decision:
-    """Take the best structure of named effects alone where it is hardly less likely.
+    """Take the best structure of named effects where it is as good as one with unnamed shapes.
+
+    It is where it is hardly less likely, or explains nearly all that the other one does.
 
     Parameters
     ----------
