@@ -13,21 +13,29 @@ from cyclosweep.diagnosis.friction_in_noise import (
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.far_behind import far_behind
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.friction_first import friction_first
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
+    error_factor,
     search_in_stages,
     visibility,
 )
 from cyclosweep.diagnosis.identify.verdict import decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
+from cyclosweep.diagnosis.whole_loop.play_crossings import take_recorded_crossings
 from cyclosweep.simulation.effects.history import Floats
 
 RESTARTS = 2
 """Times the search starts over because the noise turned out to be another."""
 LOUD = 1000.0
 """Signal-to-noise ratio from which a mismatch is judged against the error of models from the start:
-no law of an effect is exact to a thousandth."""
+no law of an effect is exact to a thousandth,"""
+LOUD_FRICTION = 300.0
+"""and that of a mismatch which is mostly friction, whose laws err more than others: what they miss
+hides from the noise alone all that is smaller, and the search against it is in vain."""
+MOST_OF_MISMATCH = 0.75
+"""Share of the mean square mismatch from which it is mostly friction."""
 CLEAR = 100.0
 """Signal-to-noise ratio from which a mismatch that named effects do not explain is searched in
 stages at once: against the noise alone the error of a large effect's law hides what is smaller."""
@@ -72,10 +80,15 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         search = Search(search.problem, error, search.library, search.seed)
     calibrated = search.noise
     mismatch = visibility(search.baseline.fit, calibrated, flexible)
+    # Two frictions and their presliding have many optima: they are looked for once more.
+    one = friction is not None and sum(term.slips for term in friction.terms) == 1
+    begun = friction if one else None
     if calibrated.structured or mismatch > LOUD:
-        # Two frictions and their presliding have many optima: they are looked for once more.
-        one = friction is not None and sum(term.slips for term in friction.terms) == 1
-        return _by_size(search, flexible, say, friction if one else None)
+        return _by_size(search, flexible, say, begun)
+    if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
+        large = _mostly_friction(search, mismatch, begun)
+        if large is not None:
+            return _by_size(search, flexible, say, large)
     given_up = False
     for _ in range(RESTARTS):
         search.run(say)
@@ -101,6 +114,33 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
     return search_in_stages(search, flexible, say)
+
+
+def _mostly_friction(
+    search: Search, mismatch: float, known: FittedStructure | None
+) -> FittedStructure | None:
+    """Friction that explains most of a mismatch.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    mismatch : float
+        Signal-to-noise ratio of what it has to explain.
+    known : FittedStructure or None
+        Friction that was found before.
+
+    Returns
+    -------
+    FittedStructure or None
+        None where there is none, or another effect is as large.
+    """
+    noise = search.noise.with_model_error(error_factor(mismatch))
+    found = known or friction_first(search, noise)
+    if found is None:
+        return None
+    left = (found.rmse_deg / search.baseline.fit.rmse_deg) ** 2
+    return found if left <= 1.0 - MOST_OF_MISMATCH else None
 
 
 def _leaves_something(search: Search) -> bool:
@@ -188,6 +228,7 @@ def _by_size(
         return Search(searched.problem, noise, searched.library, searched.seed)
 
     staged = search_in_stages(search, flexible, say, begun, renewed)
+    take_recorded_crossings(staged)
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged

@@ -63,7 +63,7 @@ def history_of(recording: Recording, model: Model) -> History:
     run, restart = runs_and_restarts(
         recording.run, one_history=found or recording.history == "continuous"
     )
-    side = _flanks(torque, restart)
+    side = flanks_of(torque, restart)
     twist = model.elastic_twist(torque)
     return History(
         applied_nm=torque,
@@ -83,7 +83,7 @@ def history_of(recording: Recording, model: Model) -> History:
     )
 
 
-def _flanks(elastic: Floats, restart: Flags) -> Floats:
+def flanks_of(elastic: Floats, restart: Flags) -> Floats:
     """Flank in contact: the sign of the torque, and at zero torque the last one.
 
     Parameters
@@ -305,7 +305,7 @@ def _slide(
     behind = lies_behind_play(friction.shape)
     carried = history.applied_nm if behind else elastic
     small = 1e-9 * history.largest_torque_nm
-    side = _flanks(np.where(np.abs(carried) < small, 0.0, carried), history.restart)
+    side = flanks_of(np.where(np.abs(carried) < small, 0.0, carried), history.restart)
     if behind:
         state["angle_deg"] = path.angle_deg + beyond + side * model.free_play_deg
     return history.with_state(side=side, **state)
@@ -354,7 +354,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
     friction = np.zeros(len(angle))
     least, stalled = np.inf, 0
     for _ in range(TORQUE_ROUNDS):
-        side = _flanks(elastic, history.restart)
+        side = flanks_of(elastic, history.restart)
         applied = elastic + friction
         history = history.with_state(
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side

@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+from cyclosweep.simulation.effects.parameters import Shape
 from cyclosweep.simulation.effects.slip import FrictionEffect
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
@@ -289,15 +290,35 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
     for state in STATES:
         if state == own:
             continue
-        begun = [
-            replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
-            for term in best.terms
-        ]
-        other = _fitted(noise, begun, best, best)
+        other = in_state(noise, best, state)
         least = cost(best) - charge if turned is best else cost(turned)
         if other is not None and cost(other) < least:
             turned = other
     return turned
+
+
+def in_state(noise: Noise, before: FittedStructure, state: Shape) -> FittedStructure | None:
+    """The same structure with friction that meets the play in a given way.
+
+    Parameters
+    ----------
+    noise : Noise
+        Noise and model error together.
+    before : FittedStructure
+        With friction in any state.
+    state : mapping
+        One of `STATES`.
+
+    Returns
+    -------
+    FittedStructure or None
+        None where it explains far less.
+    """
+    begun = [
+        replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
+        for term in before.terms
+    ]
+    return _fitted(noise, begun, before, before)
 
 
 def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:

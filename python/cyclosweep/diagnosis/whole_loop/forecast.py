@@ -24,7 +24,7 @@ from cyclosweep.diagnosis.whole_loop.model_parameters import (
     with_values,
 )
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.simulate import Model, settle
+from cyclosweep.simulation.simulate import Model, flanks_of, settle
 
 ROUNDS = 4
 """Rounds of effects that depend on more than the elastic torque, while fitting."""
@@ -180,14 +180,15 @@ def at_start(history: History, model: Model, side: Floats | None = None) -> Hist
     history : History
     model : Model
     side : ndarray, shape (n,), optional
-        Flank in contact, where it is read off a recording; default: by the sign of the torque.
+        Flank in contact, where it is read off a recording; default: by the sign of the torque,
+        and without torque the last one.
 
     Returns
     -------
     History
     """
     applied = history.applied_nm - model.torque_zero_nm
-    side = np.where(applied >= 0, 1.0, -1.0) if side is None else side
+    side = flanks_of(applied, history.restart) if side is None else side
     return history.with_state(
         applied_nm=applied,
         elastic_nm=applied,

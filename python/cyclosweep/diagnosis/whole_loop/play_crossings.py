@@ -1,0 +1,74 @@
+"""How friction meets the play, as the crossings of the dead zone show it.
+
+Friction that slides through the play holds the shaft back until the torque has overcome it;
+friction behind the play lets it cross where the torque changes its sign. Of readings whose flank is
+known both leave nearly the same, and a simulation of the wrong one is off by the whole play in all
+rows between the two places.
+"""
+
+from collections.abc import Iterator
+
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.friction_first import in_state
+from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
+from cyclosweep.simulation.effects.slip_start import STATES, state_of
+
+FORECAST_WORSE = 1.3
+"""Error of the simulation of all rows over that on the flanks up to which crossings are right; and
+over that of the simulation of another state from which the other one is taken."""
+FLANKS_WORSE = 1.1
+"""Error on the flanks over that of the state before, up to which another state is possible."""
+
+
+def take_recorded_crossings(search: Search) -> None:
+    """Let friction meet the play in the way in which a simulation crosses it as recorded.
+
+    Parameters
+    ----------
+    search : Search
+        Of the last stage; its ``start``, the structure that was found, is replaced by the same with
+        friction in another state where that is clearly better.
+    """
+    found = search.start.fit
+    if search.problem.history.free_play_deg <= 0.0 or any(t.effect is None for t in found.terms):
+        return
+    best, error = found, _forecast_error(found)
+    if error <= FORECAST_WORSE * found.rmse_deg:
+        return
+    for other in _in_other_states(search, found):
+        crossed = _forecast_error(other)
+        if crossed < (error / FORECAST_WORSE if best is found else error):
+            best, error = other, crossed
+    if best is not found:
+        search.start = search.judged(best, search.start.gain, search.start.prior)
+        search.visited[search.start.names] = search.start
+
+
+def _in_other_states(search: Search, found: FittedStructure) -> Iterator[FittedStructure]:
+    """The same effects with friction in each other state that leaves no more on the flanks.
+
+    Parameters
+    ----------
+    search : Search
+    found : FittedStructure
+        Of named effects.
+
+    Yields
+    ------
+    FittedStructure
+    """
+    own = next((state_of(term.shape) for term in found.terms if term.slips), None)
+    if own is None:
+        return
+    for state in STATES:
+        other = None if state == own else in_state(search.noise, found, state)
+        if other is not None and other.rmse_deg <= FLANKS_WORSE * found.rmse_deg:
+            yield other
+
+
+def _forecast_error(fitted: FittedStructure) -> float:
+    """Root mean square of what a structure, simulated, leaves of all rows [deg]."""
+    problem = fitted.problem
+    simulated = predicted_path(problem, fitted.model("")).angle_deg
+    return problem.rms_error(simulated, problem.whole_fitted)
