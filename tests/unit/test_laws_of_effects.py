@@ -250,6 +250,61 @@ def test_creep_of_a_power_of_the_load_is_creep() -> None:
     assert effect["parameters"]["power"]["estimate"] == pytest.approx(2.0, rel=0.03)
 
 
+def test_creep_may_flow() -> None:
+    h = history()
+    creep = BY_NAME["creep"]
+    shape = {"time_constant_s": 30.0, "flow": 1.0}
+    assert creep.known_shape(shape) == shape
+    assert h.time_s is not None
+    flow = creep.columns(h, shape)[:, 1]
+    step = np.diff(h.time_s) * 0.5 * (h.elastic_nm[1:] + h.elastic_nm[:-1])
+    within = ~h.restart[1:]
+    np.testing.assert_allclose(np.diff(flow)[within], step[within], rtol=1e-9, atol=1e-9)
+    assert np.all(flow[h.restart] == 0.0)
+    spectrum = creep.combined(shape, {"time_constant_s": 9.0})
+    assert spectrum == {"flow": 1.0, "tau_1_s": 9.0, "tau_2_s": 30.0}
+    wrong = np.array([True, False])
+    assert creep.reduced(shape, ~wrong) == {"time_constant_s": 30.0}
+    assert creep.reduced(shape, wrong) is None
+    assert creep.reduced(spectrum, np.array([True, False, False])) == {"flow": 1.0, "tau_1_s": 30.0}
+    assert creep.reduced(spectrum, np.array([False, False, True])) == {
+        "tau_1_s": 9.0, "tau_2_s": 30.0
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("power", [1.0, 1.4])
+def test_creep_by_burgers_is_creep(power: float) -> None:
+    """It was a slow change with time that had no name before."""
+    shape = {"power": power, "time_constant_s": 40.0, "flow": 1.0}
+    value = EffectValue("creep", shape, (0.1, 4e-4))
+    recording = long_recording(3_000, (value,))
+    found = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
+    (effect,) = found.effects
+    assert (found.verdict, effect["name"]) == ("IDENTIFIED", "creep")
+    assert found.model is not None
+    (creep,) = found.model.effects
+    assert creep.amplitudes[-1] == pytest.approx(4e-4, rel=0.05)
+
+
+def test_the_orders_of_the_output_pins_pulsate_beside_the_low_ones() -> None:
+    """Four orders were the most, and of five nothing was named."""
+    place = np.linspace(0.0, 360.0, 22, endpoint=False)
+    torque = np.tile(20.0 * np.sin(np.linspace(0.0, 2.0 * np.pi, 120)), len(place))
+    load = cs.Recording.from_arrays(
+        torque, run=np.repeat(np.arange(22), 120), crank_deg=np.repeat(place, 120), side="input"
+    )
+    shape = {f"order_{k}": order for k, order in enumerate((1.0, 2.0, 3.0, 4.0, 16.0), 1)}
+    size = (0.05, 0.06, 0.04, 0.05, 0.01, 0.02, 0.03, -0.04, 0.04, 0.05)
+    pulsation = EffectValue("phase_dependent_compliance", shape, size)
+    model = cs.Model(2.7, 28.0, 0.5, side="input", output_pin_count=8, effects=(pulsation,))
+    angle = cs.simulate(model, load).angle_deg
+    assert angle is not None
+    noise = np.random.default_rng(5).normal(0.0, 0.04, len(angle))
+    found = cs.diagnose(load.with_angle(angle + noise), cs.Drive.reference_87(), full=False)
+    assert [effect["name"] for effect in found.effects] == ["phase_dependent_compliance"]
+    assert found.verdict == "IDENTIFIED"
+
+
 def test_a_side_load_is_no_tilted_dial(programme: tuple[Floats, Floats]) -> None:
     torque, run = programme
     found = made(2.0 * (np.abs(torque) / TOP) ** 2, torque, run)

@@ -14,13 +14,16 @@ LONGEST = 3.0
 """Longest time constant over the longest run."""
 REFERENCE_NM = 10.0
 """Load at which a delayed compliance holds that changes with the load [N m]."""
+FLOW = "flow"
+"""Shape parameter: a part that flows as long as it is loaded and does not recover, too."""
 
 
 class Creep(Effect):
     """Kelvin-Voigt elements in series: their twist follows the torque with time constants.
 
     One element with a free time constant, or a spectrum of fixed ones, as real materials show. With
-    `power` the delayed twist grows with that power of the load, as by Findley's law.
+    `power` the delayed twist grows with that power of the load, as by Findley's law. With `flow`
+    a damper is in series, too, as in Burgers' model.
     """
 
     name = "creep"
@@ -38,8 +41,8 @@ class Creep(Effect):
         Parameter("power", "", "power of the load with which the delayed twist grows", 0.3, 4.0),
     )
     forms = (
-        ShapeForm(("time_constant_s",), ("power",)),
-        ShapeForm(optional=("power",), numbered="tau_{}_s"),
+        ShapeForm(("time_constant_s",), ("power", FLOW)),
+        ShapeForm(optional=("power", FLOW), numbered="tau_{}_s"),
     )
 
     def shapes(self, history: History) -> Sequence[Shape]:
@@ -64,54 +67,94 @@ class Creep(Effect):
         return replace(bounded, upper=min(bounded.upper, most))
 
     def columns(self, history: History, shape: Shape) -> Floats:
-        """Delayed twist for a delayed compliance of 1 deg/(N m) [deg]."""
+        """Delayed twist for a delayed compliance of 1 deg/(N m), flow for 1 deg/(N m s) [deg]."""
         assert history.time_s is not None
         load = history.elastic_nm
         if "power" in shape:
             share = np.abs(load) / REFERENCE_NM
             load = REFERENCE_NM * np.sign(load) * share ** shape["power"]
-        return np.column_stack(
-            [
-                _core.creep_state(load, history.time_s, history.restart, tau)
-                for tau in _time_constants(shape)
-            ]
-        )
+        delayed = [
+            _core.creep_state(load, history.time_s, history.restart, tau)
+            for tau in _time_constants(shape)
+        ]
+        return np.column_stack([*delayed, *([_flowed(load, history)] if FLOW in shape else [])])
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Time constants of both."""
         taus = listed("tau_{}_s", [*_time_constants(shape), *_time_constants(found)], most=5)
-        return None if taus is None else {**_by_power(shape), **taus}
+        return None if taus is None else {**_kept(shape), **taus}
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
-        """Time constants of positive weight."""
-        right = [tau for tau, off in zip(_time_constants(shape), wrong, strict=True) if not off]
+        """Time constants of positive weight, and flow where it is."""
+        own = _time_constants(shape)
+        right = [tau for tau, off in zip(own, wrong[: len(own)], strict=True) if not off]
+        flows = FLOW in shape and not wrong[-1]
+        if "time_constant_s" in shape and right and not flows:
+            return {name: value for name, value in shape.items() if name != FLOW}
         taus = listed("tau_{}_s", right)
-        return None if taus is None else {**_by_power(shape), **taus}
+        kept = {name: v for name, v in _kept(shape).items() if name != FLOW or flows}
+        return None if taus is None else {**kept, **taus}
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Twist that grows with a power of the load; see `Effect.refinements`."""
-        return [] if "power" in shape else [{"power": 1.2, **shape}]
+        """Twist that grows with a power of the load, or flows; see `Effect.refinements`.
+
+        What a spectrum of time constants stood in for may be one of them and the flow.
+        """
+        freer: list[Shape] = [] if "power" in shape else [{"power": 1.2, **shape}]
+        if FLOW not in shape:
+            return [*freer, {**shape, FLOW: 1.0}]
+        if "time_constant_s" in shape:
+            return freer
+        middle = float(np.exp(np.mean(np.log(_time_constants(shape)))))
+        return [*freer, {"time_constant_s": middle, **_kept(shape)}]
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
-        """Delayed compliance, one a time constant."""
+        """Delayed compliance, one a time constant, and what flows."""
         if "time_constant_s" in shape:
-            return (
-                Parameter("delayed_compliance", "deg/(N m)", "compliance that comes late", 0.0),
-            )
-        return tuple(
-            Parameter(f"delayed_compliance_{k}", "deg/(N m)", f"compliance after {tau:.3g} s", 0.0)
-            for k, tau in enumerate(_time_constants(shape), 1)
-        )
+            delayed = [
+                Parameter("delayed_compliance", "deg/(N m)", "compliance that comes late", 0.0)
+            ]
+        else:
+            delayed = [
+                Parameter(
+                    f"delayed_compliance_{k}", "deg/(N m)", f"compliance after {tau:.3g} s", 0.0
+                )
+                for k, tau in enumerate(_time_constants(shape), 1)
+            ]
+        flow = Parameter("flow_compliance", "deg/(N m s)", "compliance that flows in a second", 0.0)
+        return (*delayed, flow) if FLOW in shape else tuple(delayed)
 
 
 def _time_constants(shape: Shape) -> list[float]:
     """Time constants of a shape [s]."""
-    return [float(value) for name, value in shape.items() if name != "power"]
+    return [float(value) for name, value in shape.items() if name not in ("power", FLOW)]
 
 
-def _by_power(shape: Shape) -> dict[str, float]:
-    """Power of the load of a shape, where it has one."""
-    return {"power": shape["power"]} if "power" in shape else {}
+def _kept(shape: Shape) -> dict[str, float]:
+    """What a shape has beside its time constants: power of the load, and flow."""
+    return {name: value for name, value in shape.items() if name in ("power", FLOW)}
+
+
+def _flowed(load_nm: Floats, history: History) -> Floats:
+    """Time integral of the load since the start of each run, shape (n,) [N m s].
+
+    Parameters
+    ----------
+    load_nm : ndarray, shape (n,)
+        Load of the part that flows [N m].
+    history : History
+        With a clock.
+
+    Returns
+    -------
+    ndarray
+    """
+    assert history.time_s is not None
+    step = np.maximum(np.diff(history.time_s, prepend=history.time_s[:1]), 0.0)
+    added = step * 0.5 * (load_nm + np.roll(load_nm, 1))
+    total = np.cumsum(np.where(history.restart, 0.0, added))
+    start = np.maximum.accumulate(np.where(history.restart, np.arange(len(total)), 0))
+    return np.asarray(total - total[start])
 
 
 def _longest_run_s(history: History) -> float:

@@ -38,6 +38,8 @@ from cyclosweep.simulation.effects.order_names import (
 
 DIAL_ORDERS = (1.0, 2.0)
 """Cycles a turn of the measured shaft that are an error of the dial's own."""
+MOST_WHOLE_ORDERS = 6
+"""Most orders of recorded positions together: 1 to 4, and the two of the output pins."""
 MOST_ORDERS = 2
 """Orders up to which those found along a travel are joined. More, free to move, make any curve."""
 HIGHEST_LOW_ORDER = 3
@@ -266,7 +268,7 @@ class MeshPeriodic(Effect):
         if travels(shape) != travels(found) or recorded != from_recorded_position(found):
             return None
         if recorded:
-            both = listed(WHOLE_ORDER, [*orders_of(shape), *orders_of(found)])
+            both = listed(WHOLE_ORDER, [*orders_of(shape), *orders_of(found)], MOST_WHOLE_ORDERS)
             return None if both is None else {**beside_orders(shape), **both}
         known, new = orders_of(shape), orders_of(found)[0]
         multiple = max(round(new / known[0]), 1) * known[0]
