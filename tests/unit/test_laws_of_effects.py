@@ -250,6 +250,27 @@ def test_creep_of_a_power_of_the_load_is_creep() -> None:
     assert effect["parameters"]["power"]["estimate"] == pytest.approx(2.0, rel=0.03)
 
 
+@pytest.mark.parametrize("tails", [np.inf, 3.0], ids=["normal", "heavy tails"])
+def test_a_drive_may_be_a_cubic_spring_as_a_whole(tails: float) -> None:
+    """It was a clearance that is taken up: nothing was left of the line beside such a spring.
+
+    Under noise of heavy tails the fit ended, too, before the weights of outliers had settled.
+    """
+    once = np.concatenate(
+        [np.linspace(0, 1, 125), np.linspace(1, -1, 250), np.linspace(-1, 0, 125)]
+    )
+    torque, rng = 25.0 * np.tile(once, 2), np.random.default_rng(4)
+    twist = np.linspace(-60.0, 60.0, 4_001)
+    angle = np.interp(torque, (twist + 0.25 * twist**3 / 60.0**2) / 2.4, twist)
+    side = np.where(np.roll(torque, 1) >= 0.0, 1.0, -1.0)
+    noise = rng.normal(size=1_000) if np.isinf(tails) else rng.standard_t(tails, 1_000)
+    load = cs.Recording.from_arrays(torque, run=np.repeat([1, 2], 500), side="input")
+    recording = load.with_angle(angle + 25.0 * side - 1.2 + 0.025 * noise)
+    found = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
+    assert found.verdict == "IDENTIFIED"
+    assert [effect["name"] for effect in found.effects] == ["contact_stiffening"]
+
+
 def test_creep_may_flow() -> None:
     h = history()
     creep = BY_NAME["creep"]

@@ -266,8 +266,18 @@ class FittedStructure(ABC):
 
     @property
     def keeps_line(self) -> bool:
-        """Whether the line, and not its effects, is the elasticity of the drive."""
-        return bool(self.beta[1] >= LEAST_OF_SLOPE * self.problem.history.compliance_deg_per_nm)
+        """Whether the line, and not its effects, is the elasticity of the drive.
+
+        A spring that is no line in the first place counts for it, see `Effect.line_share`.
+        """
+        line, history = float(self.beta[1]), self.problem.history
+        springs = sum(
+            term.effect.line_share(history, term.shape) * float(size[0])
+            for term, size in self.elastic_parts
+            if term.effect is not None
+        )
+        least = LEAST_OF_SLOPE * history.compliance_deg_per_nm
+        return line > 0.0 and line + springs >= least
 
     @property
     def valid(self) -> bool:

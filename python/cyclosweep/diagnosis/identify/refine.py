@@ -76,7 +76,8 @@ def refine(
         if best.misfit > HOPELESS * rival:
             break
         gained_little = abs(before.chi2 - here.chi2) < _least_change(here.chi2)
-        if moved < SETTLED or (count and gained_little):
+        # Weights of outliers may go on settling where the parameters have.
+        if gained_little and (count or moved < SETTLED):
             break
     if best is not here:
         work.return_to(best)

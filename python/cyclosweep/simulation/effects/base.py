@@ -252,6 +252,23 @@ class Effect(FormerNames):
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""
         return 0.0
 
+    def line_share(self, history: History, shape: Shape) -> float:
+        """Compliance that a unit of the law has in place of the drive's line.
+
+        Parameters
+        ----------
+        history : History
+            Load history of the recording.
+        shape : mapping
+            Shape of the effect.
+
+        Returns
+        -------
+        float
+            Zero for laws that lie beside the line.
+        """
+        return 0.0
+
     def expected(self, history: History, shape: Shape) -> Floats | None:
         """Prior size of amplitudes, for those that the recording leaves open.
 

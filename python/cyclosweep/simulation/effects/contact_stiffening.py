@@ -127,6 +127,14 @@ class ContactStiffening(Effect):
             curve = CURVES[name](load, value)
         return (history.side * curve)[:, None]
 
+    def line_share(self, history: History, shape: Shape) -> float:
+        """Compliance of a cubic spring at the largest load: the whole drive may be such a spring."""
+        if "cubic_nm" not in shape:
+            return 0.0
+        top = np.array([1.0, 1.0 - 1e-6]) * history.largest_torque_nm
+        twist = _cubic(top, shape["cubic_nm"])
+        return float((twist[0] - twist[1]) / (top[0] - top[1]))
+
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Compliance that falls by a power of the load, begun as near the law as it comes."""
         if "turn_nm" in shape:
