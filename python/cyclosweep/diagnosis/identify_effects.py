@@ -108,6 +108,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     else:
         search.run(say)
     if not given_up and not _leaves_something(search):
+        take_recorded_crossings(search, search.best())
         return search
     if pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)
@@ -228,7 +229,7 @@ def _by_size(
         return Search(searched.problem, noise, searched.library, searched.seed)
 
     staged = search_in_stages(search, flexible, say, begun, renewed)
-    take_recorded_crossings(staged)
+    take_recorded_crossings(staged, staged.start)
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged

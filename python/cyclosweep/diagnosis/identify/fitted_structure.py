@@ -268,16 +268,12 @@ class FittedStructure(ABC):
     def keeps_line(self) -> bool:
         """Whether the line, and not its effects, is the elasticity of the drive.
 
-        A spring that is no line in the first place counts for it, see `Effect.line_share`.
+        Nothing need be left of it beside a law that the whole drive may follow.
         """
-        line, history = float(self.beta[1]), self.problem.history
-        springs = sum(
-            term.effect.line_share(history, term.shape) * float(size[0])
-            for term, size in self.elastic_parts
-            if term.effect is not None
-        )
-        least = LEAST_OF_SLOPE * history.compliance_deg_per_nm
-        return line > 0.0 and line + springs >= least
+        line, elastic = float(self.beta[1]), [term for term, _ in self.elastic_parts]
+        if any(t.effect is not None and t.effect.whole_spring in t.shape for t in elastic):
+            return line > 0.0
+        return line >= LEAST_OF_SLOPE * self.problem.history.compliance_deg_per_nm
 
     @property
     def valid(self) -> bool:

@@ -8,6 +8,7 @@ rows between the two places.
 
 from collections.abc import Iterator
 
+from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import in_state
 from cyclosweep.diagnosis.identify.search import Search
@@ -21,17 +22,21 @@ FLANKS_WORSE = 1.1
 """Error on the flanks over that of the state before, up to which another state is possible."""
 
 
-def take_recorded_crossings(search: Search) -> None:
+def take_recorded_crossings(search: Search, candidate: Candidate | None) -> None:
     """Let friction meet the play in the way in which a simulation crosses it as recorded.
 
     Parameters
     ----------
     search : Search
-        Of the last stage; its ``start``, the structure that was found, is replaced by the same with
-        friction in another state where that is clearly better.
+        After it has run.
+    candidate : Candidate or None
+        The structure that was found. It is replaced in the search by the same with friction in
+        another state, where that is clearly better.
     """
-    found = search.start.fit
-    if search.problem.history.free_play_deg <= 0.0 or any(t.effect is None for t in found.terms):
+    if candidate is None or any(term.effect is None for term in candidate.fit.terms):
+        return
+    found = candidate.fit
+    if search.problem.history.free_play_deg <= 0.0 or not any(t.slips for t in found.terms):
         return
     best, error = found, _forecast_error(found)
     if error <= FORECAST_WORSE * found.rmse_deg:
@@ -41,8 +46,12 @@ def take_recorded_crossings(search: Search) -> None:
         if crossed < (error / FORECAST_WORSE if best is found else error):
             best, error = other, crossed
     if best is not found:
-        search.start = search.judged(best, search.start.gain, search.start.prior)
-        search.visited[search.start.names] = search.start
+        turned = search.judged(best, candidate.gain, candidate.prior)
+        if search.suffices(candidate) and not search.suffices(turned):
+            return
+        search.visited[turned.names] = turned
+        if search.start is candidate:
+            search.start = turned
 
 
 def _in_other_states(search: Search, found: FittedStructure) -> Iterator[FittedStructure]:

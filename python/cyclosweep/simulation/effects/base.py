@@ -53,10 +53,11 @@ class Effect(FormerNames):
         The twist is what a drag torque takes from the elastic parts: its columns are minus the drag
         times `History.drag_compliance`.
     dense : bool
-        The grid of shapes stands for what is believed of them beforehand: they weigh the same, and
-        the evidence is averaged over them.
+        The grid of shapes is their prior: they weigh the same, and the evidence is averaged.
     vector : bool
         The amplitudes are the components of one vector of unknown direction.
+    whole_spring : str
+        Shape parameter of a law that the whole drive may follow, with no line beside it.
     """
 
     name: ClassVar[str]
@@ -73,6 +74,7 @@ class Effect(FormerNames):
     is_drag: ClassVar[bool] = False
     dense: ClassVar[bool] = False
     vector: ClassVar[bool] = False
+    whole_spring: ClassVar[str] = ""
 
     def shapes(self, history: History) -> Sequence[Shape]:
         """Grid of shapes over which the effect is looked for in this recording."""
@@ -250,23 +252,6 @@ class Effect(FormerNames):
 
     def penalty(self, shape: Shape) -> float:
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""
-        return 0.0
-
-    def line_share(self, history: History, shape: Shape) -> float:
-        """Compliance that a unit of the law has in place of the drive's line.
-
-        Parameters
-        ----------
-        history : History
-            Load history of the recording.
-        shape : mapping
-            Shape of the effect.
-
-        Returns
-        -------
-        float
-            Zero for laws that lie beside the line.
-        """
         return 0.0
 
     def expected(self, history: History, shape: Shape) -> Floats | None:

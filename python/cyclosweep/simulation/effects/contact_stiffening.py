@@ -62,7 +62,7 @@ class ContactStiffening(Effect):
       first law (``q = 1``) and approaches the second and the third, and is fitted only where one of
       them leaves a part of the curve.
     * A cubic spring, ``|T| = x/dC + (x/dC)^3/T0^2`` with `cubic_nm`, at most four times as stiff at
-      the largest load as at none.
+      the largest load as at none. The whole drive may be such a spring.
 
     All but the cubic spring are softest without load and lose compliance fastest there. The cubic
     spring is as soft at small loads as at none, but stiffens over the whole range and comes to no
@@ -80,6 +80,7 @@ class ContactStiffening(Effect):
     family = "smooth odd curve"
     elastic = True
     dense = True
+    whole_spring = "cubic_nm"
     shape_parameters = (
         Parameter("turn_nm", "N m", "load that halves the extra compliance", 1e-6, 1e6, True),
         Parameter("power", "", "power of the load", *POWERS[:2]),
@@ -126,14 +127,6 @@ class ContactStiffening(Effect):
             ((name, value),) = shape.items()
             curve = CURVES[name](load, value)
         return (history.side * curve)[:, None]
-
-    def line_share(self, history: History, shape: Shape) -> float:
-        """Compliance of a cubic spring at the largest load: the whole drive may be such a spring."""
-        if "cubic_nm" not in shape:
-            return 0.0
-        top = np.array([1.0, 1.0 - 1e-6]) * history.largest_torque_nm
-        twist = _cubic(top, shape["cubic_nm"])
-        return float((twist[0] - twist[1]) / (top[0] - top[1]))
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Compliance that falls by a power of the load, begun as near the law as it comes."""
