@@ -88,7 +88,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
         large = _mostly_friction(search, mismatch, begun)
         if large is not None:
-            return _by_size(search, flexible, say, large)
+            return _by_size(search, flexible, say, large, whole_loops=False)
     given_up = False
     for _ in range(RESTARTS):
         search.run(say)
@@ -114,7 +114,9 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
-    return search_in_stages(search, flexible, say)
+    staged = search_in_stages(search, flexible, say)
+    take_recorded_crossings(staged, staged.start)
+    return staged
 
 
 def _mostly_friction(
@@ -200,6 +202,8 @@ def _by_size(
     flexible: Floats,
     say: Callable[[str], None],
     begun: FittedStructure | None = None,
+    *,
+    whole_loops: bool = True,
 ) -> Search:
     """Explain a loud mismatch stage by stage, and fit the result to whole loops.
 
@@ -213,6 +217,8 @@ def _by_size(
         Called with a few words before each long step.
     begun : FittedStructure, optional
         What is known already.
+    whole_loops : bool
+        Whether it is fitted to whole loops, which the error of laws has to outweigh the noise for.
 
     Returns
     -------
@@ -230,6 +236,8 @@ def _by_size(
 
     staged = search_in_stages(search, flexible, say, begun, renewed)
     take_recorded_crossings(staged, staged.start)
+    if not whole_loops:
+        return staged
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged
