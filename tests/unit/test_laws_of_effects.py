@@ -250,16 +250,17 @@ def test_creep_of_a_power_of_the_load_is_creep() -> None:
     assert effect["parameters"]["power"]["estimate"] == pytest.approx(2.0, rel=0.03)
 
 
+@pytest.mark.parametrize("seed", [4, 6, 7])
 @pytest.mark.parametrize("tails", [np.inf, 3.0], ids=["normal", "heavy tails"])
-def test_a_drive_may_be_a_cubic_spring_as_a_whole(tails: float) -> None:
-    """It was a clearance that is taken up: nothing was left of the line beside such a spring.
+def test_a_drive_may_be_a_cubic_spring_as_a_whole(tails: float, seed: int) -> None:
+    """It was a clearance that is taken up: nothing is left of the line beside such a spring.
 
-    Under noise of heavy tails the fit ended, too, before the weights of outliers had settled.
+    With the seeds 6 and 7 the line would come out a little below zero. Under noise of heavy tails
+    the fit ended, too, before the weights of outliers had settled.
     """
-    once = np.concatenate(
-        [np.linspace(0, 1, 125), np.linspace(1, -1, 250), np.linspace(-1, 0, 125)]
-    )
-    torque, rng = 25.0 * np.tile(once, 2), np.random.default_rng(4)
+    legs = [(0.0, 1.0, 125), (1.0, -1.0, 250), (-1.0, 0.0, 125)]
+    torque = 25.0 * np.tile(np.concatenate([np.linspace(*leg) for leg in legs]), 2)
+    rng = np.random.default_rng(seed)
     twist = np.linspace(-60.0, 60.0, 4_001)
     angle = np.interp(torque, (twist + 0.25 * twist**3 / 60.0**2) / 2.4, twist)
     side = np.where(np.roll(torque, 1) >= 0.0, 1.0, -1.0)
@@ -269,6 +270,10 @@ def test_a_drive_may_be_a_cubic_spring_as_a_whole(tails: float) -> None:
     found = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
     assert found.verdict == "IDENTIFIED"
     assert [effect["name"] for effect in found.effects] == ["contact_stiffening"]
+    assert found.model is not None
+    there = cs.simulate(found.model, load)
+    back = cs.simulate(found.model, there, predict="torque")
+    np.testing.assert_allclose(back.torque_nm, torque, atol=0.05)
 
 
 def test_creep_may_flow() -> None:
@@ -287,10 +292,34 @@ def test_creep_may_flow() -> None:
     wrong = np.array([True, False])
     assert creep.reduced(shape, ~wrong) == {"time_constant_s": 30.0}
     assert creep.reduced(shape, wrong) is None
+    many = {"flow": 1.0, **{f"tau_{k}_s": 10.0 * k for k in range(1, 6)}}
+    left = creep.reduced(many, np.array([False] * 5 + [True]))
+    assert left == {name: value for name, value in many.items() if name != "flow"}
+    assert creep.combined({"time_constant_s": 9.0}, shape) == spectrum
+    still = {**shape, "flow": 0.0}
+    np.testing.assert_array_equal(creep.columns(h, still), creep.columns(h, shape)[:, :1])
+    assert "recover" in creep.found_law(h, shape, np.ones(2))
+    assert not creep.found_law(h, still, np.ones(1))
     assert creep.reduced(spectrum, np.array([True, False, False])) == {"flow": 1.0, "tau_1_s": 30.0}
     assert creep.reduced(spectrum, np.array([False, False, True])) == {
         "tau_1_s": 9.0, "tau_2_s": 30.0
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [11, 13])
+def test_orders_that_make_any_values_of_the_positions_are_no_law(count: int) -> None:
+    """Five orders and the mean are eleven free numbers."""
+    rng = np.random.default_rng(1)
+    place = np.linspace(0.0, 360.0, count, endpoint=False)
+    torque = np.tile(20.0 * np.sin(np.linspace(0.0, 2.0 * np.pi, 120)), count)
+    extra = np.repeat(rng.normal(0.0, 0.08, count), 120)
+    side = np.where(torque >= 0.0, 1.0, -1.0)
+    angle = 28.0 * side + (2.7 + extra) * torque + rng.normal(0.0, 0.04, len(torque))
+    load = cs.Recording.from_arrays(
+        torque, run=np.repeat(np.arange(count), 120), crank_deg=np.repeat(place, 120), side="input"
+    )
+    found = cs.diagnose(load.with_angle(angle), cs.Drive.reference_87(), full=False)
+    assert found.verdict != "IDENTIFIED"
 
 
 @pytest.mark.parametrize("power", [1.0, 1.4])

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.diagnosis.identify.fit import fit
+from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.whole_loop import play_crossings
 from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
+from cyclosweep.diagnosis.whole_loop.play_crossings import take_recorded_crossings
+from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.base import Shape
 from cyclosweep.simulation.effects.slip_start import state_of
 from cyclosweep.simulation.model import EffectValue
@@ -68,6 +73,26 @@ def test_a_model_of_small_friction_crosses_the_play_as_recorded(limit_nm: float)
     assert found.model is not None
     error = present(cs.simulate(found.model, recording).angle_deg) - present(recording.angle_deg)
     assert float(np.sqrt(np.mean(error**2))) < 1.1 * 0.083
+
+
+def test_another_state_is_of_the_same_effects(monkeypatch: pytest.MonkeyPatch) -> None:
+    # One that lost an effect on the way would stand in the place of a smaller structure, with the
+    # evidence of the larger one.
+    search = search_of_recording(loops({"behind_play": 1.0}, 1.07, 0.0))
+    friction = Term(find("friction_hysteresis"), {**SLIDE, "slack": 0.0}, None, 1.07)
+    warming = Term(find("thermal_drift"), {"datum": 1.0})
+    both = fit(search.problem, search.noise, (friction, warming), rounds=30)
+    alone = fit(search.problem, search.noise, (friction,), rounds=30)
+    candidate = search.judged(both, 100.0, 0.0)
+    monkeypatch.setattr(play_crossings, "in_state", lambda *_: alone)
+    monkeypatch.setattr(play_crossings, "FLANKS_WORSE", np.inf)
+    take_recorded_crossings(search, candidate)
+    assert not search.visited
+    monkeypatch.undo()
+    take_recorded_crossings(search, candidate)
+    (turned,) = search.visited.values()
+    assert turned.fit.names == both.names
+    assert turned.gain >= candidate.gain
 
 
 def test_without_torque_the_last_flank_stays_in_contact() -> None:

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects.base import Shape
+from cyclosweep.simulation.effects.orders import more_than_positions
 
 MOST_BESIDE_FRICTION = 2
 """Most shape parameters by which a law gets richer at once beside friction."""
@@ -109,7 +110,7 @@ def freer_laws(
     tried: list[Shape] = []
     for member in members:
         shape = term.effect.combined(term.shape, library.signatures[member].shape)
-        if shape is None or shape in tried:
+        if shape is None or shape in tried or more_than_positions(candidate.fit.history, shape):
             continue
         if term.effect.penalty(shape) > 0.0 and not whole_class:
             continue

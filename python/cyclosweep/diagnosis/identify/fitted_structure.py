@@ -27,6 +27,8 @@ from cyclosweep.simulation.simulate import Model
 
 LEAST_OF_SLOPE = 0.1
 """Least compliance of the line over that of the flanks, with which it is still the drive's."""
+LEAST_BESIDE_SPRING = 0.01
+"""What is left of it in any case beside a law that the whole drive may follow."""
 LEAST_TOLD = 1e-5
 """Singular value over the largest one below which the rows tell nothing of a direction."""
 
@@ -268,12 +270,12 @@ class FittedStructure(ABC):
     def keeps_line(self) -> bool:
         """Whether the line, and not its effects, is the elasticity of the drive.
 
-        Nothing need be left of it beside a law that the whole drive may follow.
+        A law that the whole drive may follow counts for it.
         """
-        line, elastic = float(self.beta[1]), [term for term, _ in self.elastic_parts]
-        if any(t.effect is not None and t.effect.whole_spring in t.shape for t in elastic):
-            return line > 0.0
-        return line >= LEAST_OF_SLOPE * self.problem.history.compliance_deg_per_nm
+        line = float(self.beta[1])
+        springs = [size for term, size in self.elastic_parts if term.is_whole_spring]
+        whole = line + sum(float(size[0]) for size in springs)
+        return line > 0.0 and whole >= LEAST_OF_SLOPE * self.problem.history.compliance_deg_per_nm
 
     @property
     def valid(self) -> bool:

@@ -7,6 +7,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter, usual_change
 from cyclosweep.diagnosis.identify.fit_state import Expansion, Linearisation
+from cyclosweep.diagnosis.identify.fitted_structure import LEAST_BESIDE_SPRING
 from cyclosweep.diagnosis.identify.friction_path import friction_path
 from cyclosweep.diagnosis.identify.path_law import (
     beyond_friction,
@@ -24,6 +25,9 @@ SETTLED = 0.01
 """Change of the modelled twist, over the noise, below which path and linear parameters agree."""
 INNER = 3
 """Most rounds in which path and linear parameters are solved in turn with one set of weights."""
+EXPANDED, EXPANDED_ON_A_LINE = 6, 40
+"""Most times the weights of the rows follow the fit, with friction and without. Far from the noise
+those of outliers settle slowly, and without a path of friction each time costs little."""
 
 
 class JointFit:
@@ -190,7 +194,14 @@ class JointFit:
         if self.slides:
             history = self._path(terms, history, mean)
         design, white, hold = self._design(terms, history)
-        return history, design, white, _solve(white, self._shifted, hold)
+        beta = _solve(white, self._shifted, hold)
+        least = LEAST_BESIDE_SPRING * self.problem.history.compliance_deg_per_nm
+        if beta[1] < least and any(term.is_whole_spring for term in terms):
+            # The line may be nothing beside such a spring; the simulation divides by it.
+            rest = self._shifted - least * white[:, 1]
+            others = _solve(np.delete(white, 1, axis=1), rest, np.delete(hold, 1))
+            beta = np.insert(others, 1, least)
+        return history, design, white, beta
 
     def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats]:
         """Solve path and linear parameters in turn at these values of the nonlinear ones.
@@ -272,7 +283,7 @@ class JointFit:
         for level in _levels(exact):
             self.noise = exact.with_sigma(level)
             self._work_at(self.mean)
-            for _ in range(6):
+            for _ in range(EXPANDED if self.slides else EXPANDED_ON_A_LINE):
                 history, mean, beta = self._evaluate(values)
                 settled = self._is_settled(self.mean, mean)
                 self.history, self.mean = history, mean

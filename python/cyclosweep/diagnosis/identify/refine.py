@@ -76,8 +76,7 @@ def refine(
         if best.misfit > HOPELESS * rival:
             break
         gained_little = abs(before.chi2 - here.chi2) < _least_change(here.chi2)
-        # Weights of outliers may go on settling where the parameters have.
-        if gained_little and (count or moved < SETTLED):
+        if moved < SETTLED or (count and gained_little):
             break
     if best is not here:
         work.return_to(best)

@@ -64,6 +64,11 @@ class Term:
         return self.unnamed is not None and self.unnamed.elastic
 
     @property
+    def is_whole_spring(self) -> bool:
+        """Whether the whole drive may follow its law, so that nothing need be left of the line."""
+        return self.effect is not None and self.elastic and self.effect.whole_spring in self.shape
+
+    @property
     def lies_beyond_friction(self) -> bool:
         """Whether it turns the measured shaft without turning the part that friction holds.
 

@@ -22,21 +22,21 @@ FLANKS_WORSE = 1.1
 """Error on the flanks over that of the state before, up to which another state is possible."""
 
 
-def take_recorded_crossings(search: Search, candidate: Candidate | None) -> None:
+def take_recorded_crossings(search: Search, candidate: Candidate) -> None:
     """Let friction meet the play in the way in which a simulation crosses it as recorded.
 
     Parameters
     ----------
     search : Search
         After it has run.
-    candidate : Candidate or None
-        The structure that was found. It is replaced in the search by the same with friction in
+    candidate : Candidate
+        A structure that was found. It is replaced in the search by the same with friction in
         another state, where that is clearly better.
     """
-    if candidate is None or any(term.effect is None for term in candidate.fit.terms):
+    found, problem = candidate.fit, search.problem
+    if problem.one_sided or problem.history.free_play_deg <= 0.0:
         return
-    found = candidate.fit
-    if search.problem.history.free_play_deg <= 0.0 or not any(t.slips for t in found.terms):
+    if any(t.effect is None for t in found.terms) or not any(t.slips for t in found.terms):
         return
     best, error = found, _forecast_error(found)
     if error <= FORECAST_WORSE * found.rmse_deg:
@@ -46,7 +46,9 @@ def take_recorded_crossings(search: Search, candidate: Candidate | None) -> None
         if crossed < (error / FORECAST_WORSE if best is found else error):
             best, error = other, crossed
     if best is not found:
-        turned = search.judged(best, candidate.gain, candidate.prior)
+        # What it is off by on the crossings counts for the state, not against the structure.
+        gained = max(0.5 * search.gain(found, best), 0.0)
+        turned = search.judged(best, candidate.gain + gained, candidate.prior)
         if search.suffices(candidate) and not search.suffices(turned):
             return
         search.visited[turned.names] = turned
@@ -72,7 +74,9 @@ def _in_other_states(search: Search, found: FittedStructure) -> Iterator[FittedS
         return
     for state in STATES:
         other = None if state == own else in_state(search.noise, found, state)
-        if other is not None and other.rmse_deg <= FLANKS_WORSE * found.rmse_deg:
+        if other is None or set(other.names) != set(found.names):
+            continue
+        if other.rmse_deg <= FLANKS_WORSE * found.rmse_deg:
             yield other
 
 

@@ -15,7 +15,9 @@ LONGEST = 3.0
 REFERENCE_NM = 10.0
 """Load at which a delayed compliance holds that changes with the load [N m]."""
 FLOW = "flow"
-"""Shape parameter: a part that flows as long as it is loaded and does not recover, too."""
+"""Shape parameter, 0 or 1: a part that flows as long as it is loaded and does not recover, too."""
+MOST_TAUS = 5
+"""Time constants of a spectrum."""
 
 
 class Creep(Effect):
@@ -77,21 +79,22 @@ class Creep(Effect):
             _core.creep_state(load, history.time_s, history.restart, tau)
             for tau in _time_constants(shape)
         ]
-        return np.column_stack([*delayed, *([_flowed(load, history)] if FLOW in shape else [])])
+        return np.column_stack([*delayed, *([_flowed(load, history)] if _flows(shape) else [])])
 
     def combined(self, shape: Shape, found: Shape) -> Shape | None:
         """Time constants of both."""
-        taus = listed("tau_{}_s", [*_time_constants(shape), *_time_constants(found)], most=5)
-        return None if taus is None else {**_kept(shape), **taus}
+        both = [*_time_constants(shape), *_time_constants(found)]
+        taus = listed("tau_{}_s", both, most=MOST_TAUS)
+        return None if taus is None else {**_kept(found), **_kept(shape), **taus}
 
     def reduced(self, shape: Shape, wrong: Flags) -> Shape | None:
         """Time constants of positive weight, and flow where it is."""
         own = _time_constants(shape)
         right = [tau for tau, off in zip(own, wrong[: len(own)], strict=True) if not off]
-        flows = FLOW in shape and not wrong[-1]
+        flows = _flows(shape) and not wrong[-1]
         if "time_constant_s" in shape and right and not flows:
             return {name: value for name, value in shape.items() if name != FLOW}
-        taus = listed("tau_{}_s", right)
+        taus = listed("tau_{}_s", right, most=MOST_TAUS)
         kept = {name: v for name, v in _kept(shape).items() if name != FLOW or flows}
         return None if taus is None else {**kept, **taus}
 
@@ -122,12 +125,21 @@ class Creep(Effect):
                 for k, tau in enumerate(_time_constants(shape), 1)
             ]
         flow = Parameter("flow_compliance", "deg/(N m s)", "compliance that flows in a second", 0.0)
-        return (*delayed, flow) if FLOW in shape else tuple(delayed)
+        return (*delayed, flow) if _flows(shape) else tuple(delayed)
+
+    def found_law(self, history: History, shape: Shape, amplitudes: Floats) -> str:
+        """Say where a part of it does not recover; see `Effect.found_law`."""
+        return "a part of it flows and does not recover" if _flows(shape) else ""
 
 
 def _time_constants(shape: Shape) -> list[float]:
     """Time constants of a shape [s]."""
     return [float(value) for name, value in shape.items() if name not in ("power", FLOW)]
+
+
+def _flows(shape: Shape) -> bool:
+    """Whether a part of the twist flows."""
+    return bool(shape.get(FLOW, 0.0))
 
 
 def _kept(shape: Shape) -> dict[str, float]:

@@ -40,6 +40,8 @@ DIAL_ORDERS = (1.0, 2.0)
 """Cycles a turn of the measured shaft that are an error of the dial's own."""
 MOST_WHOLE_ORDERS = 6
 """Most orders of recorded positions together: 1 to 4, and the two of the output pins."""
+USUAL_ORDERS = 4
+"""Orders up to which their number is not compared with that of the positions."""
 MOST_ORDERS = 2
 """Orders up to which those found along a travel are joined. More, free to move, make any curve."""
 HIGHEST_LOW_ORDER = 3
@@ -141,6 +143,24 @@ def _travelling(locked: Sequence[Shape], ratio: float) -> list[Shape]:
     return [
         {RATIO: ratio, **shape} for shape in locked if max(orders_of(shape)) <= HIGHEST_LOW_ORDER
     ]
+
+
+def more_than_positions(history: History, shape: Shape) -> bool:
+    """Whether many orders have as many free numbers as there are positions, and make any values.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+    shape : mapping
+        Shape of an effect.
+
+    Returns
+    -------
+    bool
+    """
+    orders = [name for name in shape if name.startswith(WHOLE_ORDER.format(""))]
+    return len(orders) > USUAL_ORDERS and 2 * len(orders) + 1 >= position_count(history)
 
 
 class MeshPeriodic(Effect):
