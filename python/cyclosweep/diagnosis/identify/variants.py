@@ -6,6 +6,7 @@ from dataclasses import replace
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, cost
+from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.simulation.effects import Shape
 from cyclosweep.simulation.effects.base import Effect
 from cyclosweep.simulation.effects.slip_path import otherwise_read
@@ -106,6 +107,11 @@ def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructu
         replace(term, shape=shapes.get(k, term.shape)) for k, term in enumerate(best.terms)
     )
     other = fit(best.problem, best.noise, terms, best, rounds=CONVERGED)
+    if best.valid and not other.valid:
+        signed = with_right_signs(other)
+        if signed is None:
+            return best
+        other = signed
     ahead = cost(best) - cost(other)
     if abs(ahead) <= PARAMETER_CHARGE:
         # Both are within the noise, or about as far beyond it.
