@@ -89,7 +89,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
         large = _mostly_friction(search, mismatch, begun)
         if large is not None:
-            return _by_size(search, flexible, say, large, whole_loops=False)
+            return _in_stages(search, flexible, say, large)
     given_up = False
     for _ in range(RESTARTS):
         search.run(say)
@@ -115,7 +115,34 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
-    staged = search_in_stages(search, flexible, say)
+    return _in_stages(search, flexible, say)
+
+
+def _in_stages(
+    search: Search,
+    flexible: Floats,
+    say: Callable[[str], None],
+    begun: FittedStructure | None = None,
+) -> Search:
+    """Explain a mismatch stage by stage, where the noise is known.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, or after it has run.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model.
+    say : callable
+        Called with a few words before each long step.
+    begun : FittedStructure, optional
+        What is known already.
+
+    Returns
+    -------
+    Search
+        Of the last stage.
+    """
+    staged = search_in_stages(search, flexible, say, begun)
     _cross_as_recorded(staged)
     return staged
 
@@ -223,8 +250,6 @@ def _by_size(
     flexible: Floats,
     say: Callable[[str], None],
     begun: FittedStructure | None = None,
-    *,
-    whole_loops: bool = True,
 ) -> Search:
     """Explain a loud mismatch stage by stage, and fit the result to whole loops.
 
@@ -238,9 +263,6 @@ def _by_size(
         Called with a few words before each long step.
     begun : FittedStructure, optional
         What is known already.
-    whole_loops : bool
-        Whether it is fitted to whole loops. That is for recordings in which the error of laws hides
-        the noise: it counts their rows as few independent ones.
 
     Returns
     -------
@@ -258,8 +280,6 @@ def _by_size(
 
     staged = search_in_stages(search, flexible, say, begun, renewed)
     _cross_as_recorded(staged)
-    if not whole_loops:
-        return staged
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged
