@@ -82,10 +82,12 @@ def test_another_state_is_of_the_same_effects(monkeypatch: pytest.MonkeyPatch) -
     friction = Term(find("friction_hysteresis"), {**SLIDE, "slack": 0.0}, None, 1.07)
     warming = Term(find("thermal_drift"), {"datum": 1.0})
     both = fit(search.problem, search.noise, (friction, warming), rounds=30)
-    alone = fit(search.problem, search.noise, (friction,), rounds=30)
+    behind = Term(find("friction_hysteresis"), {**SLIDE, "behind_play": 1.0}, None, 1.07)
+    alone = fit(search.problem, search.noise, (behind,), rounds=30)
     candidate = search.judged(both, 100.0, 0.0)
     monkeypatch.setattr(play_crossings, "in_state", lambda *_: alone)
     monkeypatch.setattr(play_crossings, "FLANKS_WORSE", np.inf)
+    monkeypatch.setattr(search, "suffices", lambda _: False)
     take_recorded_crossings(search, candidate)
     assert not search.visited
     monkeypatch.undo()
