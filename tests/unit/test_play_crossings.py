@@ -85,7 +85,7 @@ def test_another_state_is_of_the_same_effects(monkeypatch: pytest.MonkeyPatch) -
     behind = Term(find("friction_hysteresis"), {**SLIDE, "behind_play": 1.0}, None, 1.07)
     alone = fit(search.problem, search.noise, (behind,), rounds=30)
     candidate = search.judged(both, 100.0, 0.0)
-    monkeypatch.setattr(play_crossings, "in_state", lambda *_: alone)
+    monkeypatch.setattr(play_crossings, "in_other_states", lambda *_: [alone])
     monkeypatch.setattr(play_crossings, "FLANKS_WORSE", np.inf)
     monkeypatch.setattr(search, "suffices", lambda _: False)
     take_recorded_crossings(search, candidate)

@@ -89,7 +89,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
         large = _mostly_friction(search, mismatch, begun)
         if large is not None:
-            return _in_stages(search, flexible, say, large)
+            return _crossing_as_recorded(search_in_stages(search, flexible, say, large))
     given_up = False
     for _ in range(RESTARTS):
         search.run(say)
@@ -109,57 +109,33 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     else:
         search.run(say)
     if not given_up and not _leaves_something(search):
-        _cross_as_recorded(search)
-        return search
+        return _crossing_as_recorded(search)
     if pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
-    return _in_stages(search, flexible, say)
+    return _crossing_as_recorded(search_in_stages(search, flexible, say))
 
 
-def _in_stages(
-    search: Search,
-    flexible: Floats,
-    say: Callable[[str], None],
-    begun: FittedStructure | None = None,
-) -> Search:
-    """Explain a mismatch stage by stage, where the noise is known.
-
-    Parameters
-    ----------
-    search : Search
-        Calibrated, or after it has run.
-    flexible : ndarray, shape (fitted, k)
-        Columns of a flexible model.
-    say : callable
-        Called with a few words before each long step.
-    begun : FittedStructure, optional
-        What is known already.
-
-    Returns
-    -------
-    Search
-        Of the last stage.
-    """
-    staged = search_in_stages(search, flexible, say, begun)
-    _cross_as_recorded(staged)
-    return staged
-
-
-def _cross_as_recorded(search: Search) -> None:
+def _crossing_as_recorded(search: Search) -> Search:
     """Let the friction of what was found, and of its rivals, meet the play as recorded.
 
     Parameters
     ----------
     search : Search
         After it has run.
+
+    Returns
+    -------
+    Search
+        The same one.
     """
     found = [search.start]
     if search.start is search.baseline:
         found = [candidate for candidate, _ in decide(search, [], 0.0).explanations]
     for candidate in found:
         take_recorded_crossings(search, candidate)
+    return search
 
 
 def _mostly_friction(
@@ -278,8 +254,7 @@ def _by_size(
             return searched
         return Search(searched.problem, noise, searched.library, searched.seed)
 
-    staged = search_in_stages(search, flexible, say, begun, renewed)
-    _cross_as_recorded(staged)
+    staged = _crossing_as_recorded(search_in_stages(search, flexible, say, begun, renewed))
     say("fitting whole loops")
     staged.chosen = stepwise.whole_loop_structure(staged)
     return staged

@@ -4,7 +4,7 @@ A large friction is taken out as physics first: one effect at a time, it takes t
 and stiffening or leaves them its own, and what it leaves of a wrong start hides all the rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,6 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
-from cyclosweep.simulation.effects.parameters import Shape
 from cyclosweep.simulation.effects.slip import FrictionEffect
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
@@ -281,44 +280,42 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
     -------
     FittedStructure
     """
-    if best.problem.history.free_play_deg <= 0.0:
-        return best
-    own = next((state_of(term.shape) for term in best.terms if term.slips), None)
-    if own is None:
-        return best
     turned = best
-    for state in STATES:
-        if state == own:
-            continue
-        other = in_state(noise, best, state)
+    for other in in_other_states(noise, best):
         least = cost(best) - charge if turned is best else cost(turned)
-        if other is not None and cost(other) < least:
+        if cost(other) < least:
             turned = other
     return turned
 
 
-def in_state(noise: Noise, before: FittedStructure, state: Shape) -> FittedStructure | None:
-    """The same structure with friction that meets the play in a given way.
+def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStructure]:
+    """Fit the same structure with friction that meets the play in each other way.
 
     Parameters
     ----------
     noise : Noise
         Noise and model error together.
     before : FittedStructure
-        With friction in any state.
-    state : mapping
-        One of `STATES`.
+        With friction in any of `STATES`.
 
-    Returns
-    -------
-    FittedStructure or None
-        None where it explains far less.
+    Yields
+    ------
+    FittedStructure
+        None without free play, and where it explains far less.
     """
-    begun = [
-        replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
-        for term in before.terms
-    ]
-    return _fitted(noise, begun, before, before)
+    own = next((state_of(term.shape) for term in before.terms if term.slips), None)
+    if own is None or before.problem.history.free_play_deg <= 0.0:
+        return
+    for state in STATES:
+        if state == own:
+            continue
+        begun = [
+            replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
+            for term in before.terms
+        ]
+        other = _fitted(noise, begun, before, before)
+        if other is not None:
+            yield other
 
 
 def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:

@@ -6,14 +6,11 @@ known both leave nearly the same, and a simulation of the wrong one is off by th
 rows between the two places.
 """
 
-from collections.abc import Iterator
-
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import in_state
+from cyclosweep.diagnosis.identify.friction_first import in_other_states
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
-from cyclosweep.simulation.effects.slip_start import STATES, state_of
 
 FORECAST_WORSE = 1.3
 """Error of the simulation of all rows over that on the flanks up to which crossings are right; and
@@ -33,15 +30,20 @@ def take_recorded_crossings(search: Search, candidate: Candidate) -> None:
         A structure that was found. It is replaced in the search by the same with friction in
         another state, where that is clearly better.
     """
-    found, problem = candidate.fit, search.problem
-    if problem.one_sided or problem.history.free_play_deg <= 0.0:
+    found = candidate.fit
+    if search.problem.one_sided or search.problem.history.free_play_deg <= 0.0:
         return
     if any(t.effect is None for t in found.terms) or not any(t.slips for t in found.terms):
         return
     best, error = found, _forecast_error(found)
     if error <= FORECAST_WORSE * found.rmse_deg:
         return
-    for other in _in_other_states(search, found):
+    for other in in_other_states(search.noise, found):
+        # Physics may have left out an effect on the way.
+        if set(other.names) != set(found.names):
+            continue
+        if other.rmse_deg > FLANKS_WORSE * found.rmse_deg:
+            continue
         crossed = _forecast_error(other)
         if crossed < (error / FORECAST_WORSE if best is found else error):
             best, error = other, crossed
@@ -54,30 +56,6 @@ def take_recorded_crossings(search: Search, candidate: Candidate) -> None:
         search.visited[turned.names] = turned
         if search.start is candidate:
             search.start = turned
-
-
-def _in_other_states(search: Search, found: FittedStructure) -> Iterator[FittedStructure]:
-    """The same effects with friction in each other state that leaves no more on the flanks.
-
-    Parameters
-    ----------
-    search : Search
-    found : FittedStructure
-        Of named effects.
-
-    Yields
-    ------
-    FittedStructure
-    """
-    own = next((state_of(term.shape) for term in found.terms if term.slips), None)
-    if own is None:
-        return
-    for state in STATES:
-        other = None if state == own else in_state(search.noise, found, state)
-        if other is None or set(other.names) != set(found.names):
-            continue
-        if other.rmse_deg <= FLANKS_WORSE * found.rmse_deg:
-            yield other
 
 
 def _forecast_error(fitted: FittedStructure) -> float:

@@ -16,6 +16,8 @@ REFERENCE_NM = 10.0
 """Load at which a delayed compliance holds that changes with the load [N m]."""
 FLOW = "flow"
 """Shape parameter, 0 or 1: a part that flows as long as it is loaded and does not recover, too."""
+BESIDE_TAUS = ("power", FLOW)
+"""What a shape may have beside its time constants."""
 MOST_TAUS = 5
 """Time constants of a spectrum."""
 
@@ -43,8 +45,8 @@ class Creep(Effect):
         Parameter("power", "", "power of the load with which the delayed twist grows", 0.3, 4.0),
     )
     forms = (
-        ShapeForm(("time_constant_s",), ("power", FLOW)),
-        ShapeForm(optional=("power", FLOW), numbered="tau_{}_s"),
+        ShapeForm(("time_constant_s",), BESIDE_TAUS),
+        ShapeForm(optional=BESIDE_TAUS, numbered="tau_{}_s"),
     )
 
     def shapes(self, history: History) -> Sequence[Shape]:
@@ -134,7 +136,7 @@ class Creep(Effect):
 
 def _time_constants(shape: Shape) -> list[float]:
     """Time constants of a shape [s]."""
-    return [float(value) for name, value in shape.items() if name not in ("power", FLOW)]
+    return [float(value) for name, value in shape.items() if name not in BESIDE_TAUS]
 
 
 def _flows(shape: Shape) -> bool:
@@ -144,7 +146,7 @@ def _flows(shape: Shape) -> bool:
 
 def _kept(shape: Shape) -> dict[str, float]:
     """What a shape has beside its time constants: power of the load, and flow."""
-    return {name: value for name, value in shape.items() if name in ("power", FLOW)}
+    return {name: value for name, value in shape.items() if name in BESIDE_TAUS}
 
 
 def _flowed(load_nm: Floats, history: History) -> Floats:

@@ -159,7 +159,7 @@ def more_than_positions(history: History, shape: Shape) -> bool:
     -------
     bool
     """
-    orders = [name for name in shape if name.startswith(WHOLE_ORDER.format(""))]
+    orders = orders_of(shape) if from_recorded_position(shape) else ()
     return len(orders) > USUAL_ORDERS and 2 * len(orders) + 1 >= position_count(history)
 
 
