@@ -1,5 +1,6 @@
 """Calibration: the noise of the recording, and the published model fitted to it."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,11 +9,58 @@ from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.staged_search import visibility
 from cyclosweep.diagnosis.prepare.local_events import event_rows
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
+from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS
 from cyclosweep.simulation.effects.history import Floats
+
+ENOUGH = 500.0
+"""Signal-to-noise ratio of a mismatch beyond which further rows tell hardly more: what the laws of
+its causes miss is larger than the noise, and alike in neighbouring rows."""
+FEWEST_ROWS = 1500
+"""Rows that are kept however large a mismatch is."""
+
+
+def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
+    """Calibrate on as many rows as tell a mismatch from noise: the larger it is, the fewer.
+
+    Parameters
+    ----------
+    calibrated : callable
+        From about the largest number of rows to the calibrated search on them.
+
+    Returns
+    -------
+    Search
+    """
+    search = calibrated(MOST_ROWS)
+    assert search.flexible is not None
+    rows, ratio = len(search.problem.history), mismatch(search, search.flexible)
+    enough = max(rows * (ENOUGH / max(ratio, ENOUGH)) ** 2, FEWEST_ROWS)
+    return search if enough >= rows else calibrated(int(enough))
+
+
+def mismatch(search: Search, flexible: Floats) -> float:
+    """Signal-to-noise ratio of what the calibrated model misses, in all rows of a recording.
+
+    Rows that were passed over count like their neighbours.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model.
+
+    Returns
+    -------
+    float
+    """
+    seen = visibility(search.baseline.fit, search.noise, flexible)
+    return float(seen * np.sqrt(search.problem.rows.every))
 
 
 def calibrate(problem: Problem, library: Library, seed: int) -> Search:

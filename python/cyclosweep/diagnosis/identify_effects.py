@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cyclosweep.diagnosis.calibrate import noise_beyond
+from cyclosweep.diagnosis.calibrate import mismatch, noise_beyond
 from cyclosweep.diagnosis.friction_in_noise import (
     is_likelier,
     model_error_noise,
@@ -19,7 +19,6 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     error_factor,
     search_in_stages,
-    visibility,
 )
 from cyclosweep.diagnosis.identify.verdict import decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.noise import Noise
@@ -80,14 +79,14 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if error is not None:
         search = Search(search.problem, error, search.library, search.seed)
     calibrated = search.noise
-    mismatch = visibility(search.baseline.fit, calibrated, flexible)
+    ratio = mismatch(search, flexible)
     # Two frictions and their presliding have many optima: they are looked for once more.
     one = friction is not None and sum(term.slips for term in friction.terms) == 1
     begun = friction if one else None
-    if calibrated.structured or mismatch > LOUD:
+    if calibrated.structured or ratio > LOUD:
         return _by_size(search, flexible, say, begun)
-    if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
-        large = _mostly_friction(search, mismatch, begun)
+    if ratio > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
+        large = _mostly_friction(search, ratio, begun)
         if large is not None:
             return _crossing_as_recorded(search_in_stages(search, flexible, say, large))
     given_up = False
@@ -99,7 +98,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         noise = noise_beyond(search.problem, search.library, best.fit)
         if _is_same(noise, search.noise) or is_likelier(search.noise, noise):
             break
-        given_up = mismatch > CLEAR and _leaves_something(search)
+        given_up = ratio > CLEAR and _leaves_something(search)
         say("starting over with better-known noise")
         known = far_behind(search) if _is_same(noise, search.noise, NEARLY_SAME_NOISE) else None
         search = Search(search.problem, noise, search.library, search.seed)
@@ -139,7 +138,7 @@ def _crossing_as_recorded(search: Search) -> Search:
 
 
 def _mostly_friction(
-    search: Search, mismatch: float, known: FittedStructure | None
+    search: Search, ratio: float, known: FittedStructure | None
 ) -> FittedStructure | None:
     """Friction that explains most of a mismatch.
 
@@ -147,7 +146,7 @@ def _mostly_friction(
     ----------
     search : Search
         Calibrated, with nothing visited.
-    mismatch : float
+    ratio : float
         Signal-to-noise ratio of what it has to explain.
     known : FittedStructure or None
         Friction that was found before.
@@ -157,7 +156,7 @@ def _mostly_friction(
     FittedStructure or None
         None where there is none, or another effect is as large.
     """
-    noise = search.noise.with_model_error(error_factor(mismatch))
+    noise = search.noise.with_model_error(error_factor(ratio))
     found = known or friction_first(search, noise)
     if found is None:
         return None

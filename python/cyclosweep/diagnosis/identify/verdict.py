@@ -175,6 +175,28 @@ def likely(probable: list[tuple[Candidate, float]]) -> list[tuple[Candidate, flo
     return probable[: int(np.searchsorted(sums, COVERAGE)) + 1]
 
 
+def with_further(
+    rivals: list[tuple[Candidate, float]], others: list[tuple[Candidate, float]]
+) -> list[tuple[Candidate, float]]:
+    """Rivals of an explanation, and further ones that share the probability left to it.
+
+    Parameters
+    ----------
+    rivals : list of (Candidate, probability)
+        Those known so far.
+    others : list of (Candidate, probability)
+        Further ones, with their probabilities as if there were none so far. What is known already
+        keeps its probability.
+
+    Returns
+    -------
+    list of (Candidate, probability)
+    """
+    known = {candidate.names for candidate, _ in rivals}
+    left = 1.0 - sum(probability for _, probability in rivals)
+    return rivals + [(each, left * p) for each, p in others if each.names not in known]
+
+
 def decide_in_stages(search: Search, explained_share: float) -> Decision:
     """Verdict where effects were accepted in stages, against the error of their models.
 
