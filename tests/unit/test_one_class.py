@@ -239,6 +239,15 @@ def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
     assert 0.98 < share < 1.02
     assert named_if_close(search, decision, share - 1e-6).best is named
     assert (named_if_close(search, decision, share + 1e-6).best is named) == taken
+    # Named effects have the odds of what holds them and what may be error of their laws.
+    beyond = search.extend(named, "smooth odd curve")
+    assert beyond is not None
+    assert beyond.recognised == (True, False)
+    beyond = replace(beyond, prior=beyond.prior + other.score - 1.0 - beyond.score)
+    search.visited[beyond.names] = beyond
+    assert decide(search, [], 0.0).best is other
+    assert named_if_close(search, decision).best is named
+    del search.visited[beyond.names]
     if taken:
         # What it may be else is weighed among the named structures, however unlikely beside.
         share = 1.0 / (1.0 + np.exp(-1.0))

@@ -115,10 +115,36 @@ def named_if_close(search: Search, decision: Decision, nearly_all: float = np.in
     named = [each for each in enough if each.all_recognised]
     if not named:
         return decision
-    close = named[0].score >= decision.best.score - CLOSE_TO_UNNAMED
+    close = _with_its_errors(search, named[0]) >= decision.best.score - CLOSE_TO_UNNAMED
     if not close and _explained_of(search, named[0], decision.best) < nearly_all:
         return decision
     return Decision("AMBIGUOUS", named[0], likely(probabilities(named)), False)
+
+
+def _with_its_errors(search: Search, named: Candidate) -> float:
+    """Log odds of named effects, or of these and what may be error of their laws if that is more.
+
+    A structure that holds more than a sufficient one is no explanation of its own; but a rival has
+    to be likelier than that as well, since it may hold such errors too.
+
+    Parameters
+    ----------
+    search : Search
+        After it has run.
+    named : Candidate
+        Sufficient structure of named effects.
+
+    Returns
+    -------
+    float
+        In nat.
+    """
+
+    def holds(other: Candidate) -> bool:
+        names = {n for n, own in zip(other.fit.names, other.recognised, strict=True) if own}
+        return named.names <= names
+
+    return max(named.score, *(each.score for each in search.visited.values() if holds(each)))
 
 
 def _explained_of(search: Search, named: Candidate, best: Candidate) -> float:
