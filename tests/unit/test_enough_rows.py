@@ -1,6 +1,8 @@
 """A loud mismatch is diagnosed on fewer rows than a faint one."""
 
 import json
+from copy import copy
+from dataclasses import replace
 
 import pytest
 
@@ -15,6 +17,7 @@ from cyclosweep.diagnosis.calibrate import (
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS
 from cyclosweep.simulation.effects import effects
 from tests.support.long_recording import friction, long_recording
 
@@ -78,3 +81,24 @@ def test_the_answer_says_that_a_loud_recording_was_thinned() -> None:
     thinning = json.loads(found.to_json())["thinning"]
     assert thinning["samples"] == len(recorded(2.0))
     assert thinning["rows"] < 0.5 * COUNT
+
+
+def asked_for(search: Search) -> list[int]:
+    """Numbers of rows for which a search is calibrated."""
+    asked = list[int]()
+
+    def calibrated(most_rows: int) -> Search:
+        asked.append(most_rows)
+        return search
+
+    calibrate_on_enough_rows(calibrated)
+    return asked
+
+
+def test_all_rows_are_kept_where_noise_may_be_error_of_the_model() -> None:
+    search = on_rows(recorded(2.0), COUNT)
+    assert asked_for(search) == [MOST_ROWS, FEWEST_ROWS]
+    for noise in (replace(search.noise, tail=3.0), replace(search.noise, structured=True)):
+        unsure = copy(search)
+        unsure.noise = noise
+        assert asked_for(unsure) == [MOST_ROWS]

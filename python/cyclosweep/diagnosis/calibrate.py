@@ -17,6 +17,10 @@ from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS
 from cyclosweep.simulation.effects.history import Floats
 
+HEAVY = 5.0
+"""Degrees of freedom of the tails of a noise up to which it may be error of the model: a law of
+friction that the flexible model misses leaves a few large errors after each reversal, which pass
+for outliers."""
 ENOUGH = 500.0
 """Signal-to-noise ratio of a mismatch beyond which further rows tell hardly more: what the laws of
 its causes miss is larger than the noise, and alike in neighbouring rows."""
@@ -26,6 +30,8 @@ FEWEST_ROWS = 1500
 
 def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
     """Calibrate on as many rows as tell a mismatch from noise: the larger it is, the fewer.
+
+    Where what is taken for noise may be error of the model, all rows are kept.
 
     Parameters
     ----------
@@ -37,6 +43,8 @@ def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
     Search
     """
     search = calibrated(MOST_ROWS)
+    if search.noise.structured or search.noise.tail <= HEAVY:
+        return search
     assert search.flexible is not None
     rows, ratio = len(search.problem.history), mismatch(search, search.flexible)
     enough = max(rows * (ENOUGH / max(ratio, ENOUGH)) ** 2, FEWEST_ROWS)
