@@ -4,12 +4,14 @@ import json
 from copy import copy
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import (
     ENOUGH,
     FEWEST_ROWS,
+    LEAST_THINNED,
     calibrate,
     calibrate_on_enough_rows,
     mismatch,
@@ -19,7 +21,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS
 from cyclosweep.simulation.effects import effects
-from tests.support.long_recording import friction, long_recording
+from tests.support.long_recording import COMPLIANCE, friction, long_recording
 
 DRIVE = cs.Drive.reference_87()
 COUNT = 4_000
@@ -67,12 +69,35 @@ def test_the_mismatch_counts_rows_that_were_passed_over() -> None:
     assert ratio(fewer) == pytest.approx(ratio(every), rel=0.2)
 
 
+def test_ends_of_short_pieces_stay_and_are_not_counted_for_others() -> None:
+    legs = np.tile(np.r_[np.arange(5), np.arange(5, 0, -1)], 400) / 5.0
+    top = np.repeat(np.linspace(8.0, 30.0, 400), 10)
+    programme = cs.Recording.from_arrays(legs * top, time_s=np.arange(4000) * 2.0)
+    model = cs.Model(compliance_deg_per_nm=COMPLIANCE, free_play_deg=28.0, effects=(friction(0.6),))
+    angle = cs.simulate(model, programme).angle_deg
+    assert angle is not None
+    noise = 0.05 * np.random.default_rng(5).normal(size=4000)
+    recording = programme.with_angle(angle + noise)
+    every, fewer = on_rows(recording, COUNT), on_rows(recording, FEWEST_ROWS)
+    assert fewer.problem.rows.every > 1
+    assert len(fewer.problem.history) > 1.5 * FEWEST_ROWS
+    assert ratio(fewer) == pytest.approx(ratio(every), rel=0.15)
+
+
 def test_between_them_rows_fall_with_the_square_of_the_mismatch() -> None:
-    recording = recorded(0.6)
+    recording = recorded(0.65)
     every = on_rows(recording, COUNT)
     wanted = len(recording) * (ENOUGH / ratio(every)) ** 2
-    assert 1.1 * FEWEST_ROWS < wanted < 0.9 * len(recording)
+    assert 1.1 * FEWEST_ROWS < wanted < len(recording) / LEAST_THINNED
     assert enough(recording).problem.most_rows == int(wanted)
+
+
+def test_a_recording_is_not_thinned_for_less_than_every_second_row() -> None:
+    recording = recorded(0.5)
+    every = on_rows(recording, COUNT)
+    wanted = len(recording) * (ENOUGH / ratio(every)) ** 2
+    assert len(recording) / LEAST_THINNED < wanted < 0.9 * len(recording)
+    assert enough(recording).problem.most_rows == MOST_ROWS
 
 
 def test_the_answer_says_that_a_loud_recording_was_thinned() -> None:

@@ -247,6 +247,12 @@ def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
     search.visited[beyond.names] = beyond
     assert decide(search, [], 0.0).best is other
     assert named_if_close(search, decision).best is named
+    # What is far ahead holds more than errors: it is an explanation of its own.
+    beyond = replace(beyond, prior=beyond.prior + 80.0)
+    search.visited[beyond.names] = beyond
+    decision_beyond = decide(search, [], 0.0)
+    assert decision_beyond.best is beyond
+    assert named_if_close(search, decision_beyond) is decision_beyond
     del search.visited[beyond.names]
     if taken:
         # What it may be else is weighed among the named structures, however unlikely beside.

@@ -21,7 +21,7 @@ def better(search: Search, *accepted: tuple[str, Shape]) -> dict[str, Shape]:
     terms = tuple(Term(find(name), shape) for name, shape in accepted)
     fitted = search.refit(terms, search.baseline.fit).fit
     begun = Search(search.problem, search.noise, search.library, 0, fitted)
-    return {term.name: term.shape for term in with_better_laws(begun).fitted.terms}
+    return {term.name: term.shape for term in with_better_laws(begun).terms}
 
 
 def test_a_tilted_dial_takes_the_place_of_a_side_load() -> None:

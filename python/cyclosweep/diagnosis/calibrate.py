@@ -25,11 +25,14 @@ ENOUGH = 500.0
 """Signal-to-noise ratio of a mismatch beyond which further rows tell hardly more: what the laws of
 its causes miss is larger than the noise, and alike in neighbouring rows."""
 FEWEST_ROWS = 1500
-"""Rows that are kept however large a mismatch is."""
+"""About so many rows are kept however large a mismatch is."""
+LEAST_THINNED = 1.8
+"""Rows over those that are enough from which a recording is thinned; taking every second one is the
+least that thinning can do."""
 
 
 def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
-    """Calibrate on as many rows as tell a mismatch from noise: the larger it is, the fewer.
+    """Calibrate on about as many rows as tell a mismatch from noise: the larger it is, the fewer.
 
     Where what is taken for noise may be error of the model, all rows are kept.
 
@@ -46,15 +49,16 @@ def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
     if search.noise.structured or search.noise.tail <= HEAVY:
         return search
     assert search.flexible is not None
-    rows, ratio = len(search.problem.history), mismatch(search, search.flexible)
-    enough = max(rows * (ENOUGH / max(ratio, ENOUGH)) ** 2, FEWEST_ROWS)
-    return search if enough >= rows else calibrated(int(enough))
+    rows = len(search.problem.history)
+    seen = max(visibility(search.baseline.fit, search.noise, search.flexible), ENOUGH)
+    enough = max(rows * (ENOUGH / seen) ** 2, FEWEST_ROWS)
+    return search if rows < LEAST_THINNED * enough else calibrated(int(enough))
 
 
 def mismatch(search: Search, flexible: Floats) -> float:
-    """Signal-to-noise ratio of what the calibrated model misses, in all rows of a recording.
+    """Signal-to-noise ratio of what the calibrated model misses, in all samples of a recording.
 
-    Rows that were passed over count like their neighbours.
+    Samples that were passed over count like their neighbours.
 
     Parameters
     ----------
@@ -67,8 +71,9 @@ def mismatch(search: Search, flexible: Floats) -> float:
     -------
     float
     """
-    seen = visibility(search.baseline.fit, search.noise, flexible)
-    return float(seen * np.sqrt(search.problem.rows.every))
+    rows = search.problem.rows
+    passed_over = len(rows.row) / float(rows.samples.sum())
+    return float(visibility(search.baseline.fit, search.noise, flexible) * np.sqrt(passed_over))
 
 
 def calibrate(problem: Problem, library: Library, seed: int) -> Search:

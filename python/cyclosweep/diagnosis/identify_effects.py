@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     error_factor,
     search_in_stages,
+    visibility,
 )
 from cyclosweep.diagnosis.identify.verdict import decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.noise import Noise
@@ -86,7 +87,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if calibrated.structured or ratio > LOUD:
         return _by_size(search, flexible, say, begun)
     if ratio > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
-        large = _mostly_friction(search, ratio, begun)
+        large = _mostly_friction(search, flexible, begun)
         if large is not None:
             return _crossing_as_recorded(search_in_stages(search, flexible, say, large))
     given_up = False
@@ -138,7 +139,7 @@ def _crossing_as_recorded(search: Search) -> Search:
 
 
 def _mostly_friction(
-    search: Search, ratio: float, known: FittedStructure | None
+    search: Search, flexible: Floats, known: FittedStructure | None
 ) -> FittedStructure | None:
     """Friction that explains most of a mismatch.
 
@@ -146,8 +147,8 @@ def _mostly_friction(
     ----------
     search : Search
         Calibrated, with nothing visited.
-    ratio : float
-        Signal-to-noise ratio of what it has to explain.
+    flexible : ndarray, shape (fitted, k)
+        Columns of a flexible model.
     known : FittedStructure or None
         Friction that was found before.
 
@@ -156,7 +157,8 @@ def _mostly_friction(
     FittedStructure or None
         None where there is none, or another effect is as large.
     """
-    noise = search.noise.with_model_error(error_factor(ratio))
+    seen = visibility(search.baseline.fit, search.noise, flexible)
+    noise = search.noise.with_model_error(error_factor(seen))
     found = known or friction_first(search, noise)
     if found is None:
         return None

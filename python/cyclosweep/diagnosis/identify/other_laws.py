@@ -5,9 +5,7 @@ of one class of behaviour differ. Once everything else is known the difference s
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.candidate import Candidate
@@ -19,7 +17,6 @@ from cyclosweep.diagnosis.identify.law_in_class import makes_others_grow
 from cyclosweep.diagnosis.identify.own_classes import BOTH_CURVES, look_alikes, own_classes
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import with_further
 
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
@@ -35,30 +32,7 @@ its place although the error of models that is allowed for makes both alike; or 
 its class over what the accepted one misses, from which a small lead is enough."""
 
 
-LEAST_PROBABLE = 0.05
-"""Probability from which another law that fits about as well is a rival explanation."""
-
-
-@dataclass(frozen=True, eq=False)
-class BetterLaws:
-    """Laws of what stages accepted, once everything else is known.
-
-    Attributes
-    ----------
-    fitted : FittedStructure
-        The structure that was accepted, or one with other laws of the same classes.
-    rivals : list of (Candidate, probability)
-        Structures with another law in the place of one, which fit about as well.
-    compared : frozenset of frozenset of str
-        Names of the effects of all structures that were compared.
-    """
-
-    fitted: FittedStructure
-    rivals: list[tuple[Candidate, float]]
-    compared: frozenset[frozenset[str]]
-
-
-def with_better_laws(search: Search) -> BetterLaws:
+def with_better_laws(search: Search) -> FittedStructure:
     """Put other laws in the place of accepted ones where the recording is likelier with them.
 
     Parameters
@@ -68,22 +42,21 @@ def with_better_laws(search: Search) -> BetterLaws:
 
     Returns
     -------
-    BetterLaws
+    FittedStructure
+        That structure, or one with other laws of the same classes.
     """
     fitted = search.start.fit
-    rivals: list[tuple[Candidate, float]] = []
-    compared = set[frozenset[str]]()
     for name in fitted.names:
         term = next(each for each in fitted.terms if each.name == name)
-        others = []
+        rivals = []
         if term.effect is not None and not term.slips:
-            others = list(look_alikes(search.library, fitted.names, term))
-        if not others:
+            rivals = list(look_alikes(search.library, fitted.names, term))
+        if not rivals:
             continue
-        kept = tuple(each for each in fitted.terms if each is not term)
-        parent = search.refit(kept, fitted) if kept else search.baseline
+        others = tuple(each for each in fitted.terms if each is not term)
+        parent = search.refit(others, fitted) if others else search.baseline
         own = _extended(search, parent, name)
-        tried = [child for each in others if (child := _extended(search, parent, each)) is not None]
+        tried = [child for each in rivals if (child := _extended(search, parent, each)) is not None]
         tried = [_in_whole_class(search, child) for child in tried]
         if _is_dial(term):
             tried += list(_pairs(search, tried))
@@ -91,82 +64,18 @@ def with_better_laws(search: Search) -> BetterLaws:
         if own is not None and own.fit.loss < fitted.loss - 2.0 * CLEARLY:
             # Beside everything else the accepted law has been given more freedom.
             fitted = own.fit
-        compared |= {each.names for each in tried}
-        best, chosen = max(tried, key=lambda child: child.score, default=None), own
-        possible = [own, *(each for each in tried if _may_be_named(each, fitted))]
-        if best is not None and best in possible and _is_better(best, own, fitted):
-            fitted, chosen = best.fit, best
-        rivals = with_further(rivals, rivals_of(chosen, possible))
-    return BetterLaws(fitted, rivals, frozenset(compared))
-
-
-def _may_be_named(child: Candidate, fitted: FittedStructure) -> bool:
-    """Whether a structure with another law has names only, of which none compensates another.
-
-    Parameters
-    ----------
-    child : Candidate
-    fitted : FittedStructure
-        What was accepted.
-
-    Returns
-    -------
-    bool
-    """
-    grown = (makes_others_grow(child.fit, k, fitted) for k in range(len(child.fit.terms)))
-    return child.all_recognised and not any(grown)
-
-
-def _is_better(best: Candidate, own: Candidate | None, fitted: FittedStructure) -> bool:
-    """Whether another law takes the place of the accepted one.
-
-    Parameters
-    ----------
-    best : Candidate
-        Structure with the other law in the last place.
-    own : Candidate or None
-        Structure with the accepted law there; None where it could not be fitted.
-    fitted : FittedStructure
-        What was accepted.
-
-    Returns
-    -------
-    bool
-    """
-    if best.fit.loss >= fitted.loss:
-        return False
-    ahead = best.score - _score(own)
-    leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
-    clearly = max(CLEARLY, ERROR_OF_LAWS * _score(own))
-    if ahead > clearly or (leaves_less and ahead > -CLEARLY):
-        return True
-    return own is not None and ahead > CLEARLY and misses_far_less(best.fit, own.fit)
-
-
-def rivals_of(
-    chosen: Candidate | None, others: Sequence[Candidate | None]
-) -> list[tuple[Candidate, float]]:
-    """Structures with other laws that are about as likely as the chosen one.
-
-    Parameters
-    ----------
-    chosen : Candidate or None
-        None where none could be fitted.
-    others : sequence of (Candidate or None)
-        Structures with other laws in its place, that one among them.
-
-    Returns
-    -------
-    list of (Candidate, probability)
-        One that is ahead is taken for as likely: where that did not make it the chosen one, the
-        error of the laws decides between them.
-    """
-    if chosen is None:
-        return []
-    rest = [each for each in others if each is not None and each.names != chosen.names]
-    odds = np.exp([min(each.score - chosen.score, 0.0) for each in rest])
-    shares = odds / (1.0 + odds.sum())
-    return [(c, float(p)) for c, p in zip(rest, shares, strict=True) if p >= LEAST_PROBABLE]
+        best = max(tried, key=lambda child: child.score, default=None)
+        if best is None or not best.all_recognised or best.fit.loss >= fitted.loss:
+            continue
+        if any(makes_others_grow(best.fit, k, fitted) for k in range(len(best.fit.terms))):
+            continue
+        ahead = best.score - _score(own)
+        leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
+        clearly = max(CLEARLY, ERROR_OF_LAWS * _score(own))
+        better = ahead > clearly or (leaves_less and ahead > -CLEARLY)
+        if better or (own is not None and ahead > CLEARLY and misses_far_less(best.fit, own.fit)):
+            fitted = best.fit
+    return fitted
 
 
 def misses_far_less(other: FittedStructure, own: FittedStructure) -> bool:

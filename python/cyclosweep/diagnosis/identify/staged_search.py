@@ -44,7 +44,6 @@ from cyclosweep.diagnosis.identify.verdict import (
     likely,
     named_if_close,
     probabilities,
-    with_further,
 )
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
@@ -219,7 +218,9 @@ def search_in_stages(
         if {term.name for term in found} == before:
             break
         if not decision.unexplained:
-            rivals = with_further(rivals, [e for e in decision.explanations if e[0] is not best])
+            so_far = 1.0 - sum(share for _, share in rivals)
+            others = [each for each in decision.explanations if each[0] is not best]
+            rivals += [(candidate, so_far * share) for candidate, share in others]
         fitted = refitted(found, best.fit)
         accepted = fitted.terms
     if len(last.start.fit.terms) < len(accepted):
@@ -251,9 +252,7 @@ def _with_settled_laws(
     """
     rivals = last.rivals_of_start
     if last.start is not last.baseline:
-        laws = with_better_laws(last)
-        better = best_placed(laws.fitted)
-        rivals = with_further([r for r in rivals if r[0].names not in laws.compared], laws.rivals)
+        better = best_placed(with_better_laws(last))
         if better is not last.start.fit:
             last = _stage(searched, flexible, better)
         freer = with_freer_laws(last, last.start).fit

@@ -124,8 +124,8 @@ def named_if_close(search: Search, decision: Decision, nearly_all: float = np.in
 def _with_its_errors(search: Search, named: Candidate) -> float:
     """Log odds of named effects, or of these and what may be error of their laws if that is more.
 
-    A structure that holds more than a sufficient one is no explanation of its own; but a rival has
-    to be likelier than that as well, since it may hold such errors too.
+    A structure that holds hardly more than a sufficient one is no explanation of its own. But a
+    rival has to be likelier than that as well, since it may hold such errors too.
 
     Parameters
     ----------
@@ -139,12 +139,14 @@ def _with_its_errors(search: Search, named: Candidate) -> float:
     float
         In nat.
     """
+    listed = search.explanations()
 
     def holds(other: Candidate) -> bool:
         names = {n for n, own in zip(other.fit.names, other.recognised, strict=True) if own}
-        return named.names <= names
+        return named.names <= names and other not in listed
 
-    return max(named.score, *(each.score for each in search.visited.values() if holds(each)))
+    beyond = (each.score for each in search.visited.values() if holds(each))
+    return max(named.score, max(beyond, default=named.score))
 
 
 def _explained_of(search: Search, named: Candidate, best: Candidate) -> float:
@@ -199,28 +201,6 @@ def likely(probable: list[tuple[Candidate, float]]) -> list[tuple[Candidate, flo
     """
     sums = np.cumsum([probability for _, probability in probable])
     return probable[: int(np.searchsorted(sums, COVERAGE)) + 1]
-
-
-def with_further(
-    rivals: list[tuple[Candidate, float]], others: list[tuple[Candidate, float]]
-) -> list[tuple[Candidate, float]]:
-    """Rivals of an explanation, and further ones that share the probability left to it.
-
-    Parameters
-    ----------
-    rivals : list of (Candidate, probability)
-        Those known so far.
-    others : list of (Candidate, probability)
-        Further ones, with their probabilities as if there were none so far. What is known already
-        keeps its probability.
-
-    Returns
-    -------
-    list of (Candidate, probability)
-    """
-    known = {candidate.names for candidate, _ in rivals}
-    left = 1.0 - sum(probability for _, probability in rivals)
-    return rivals + [(each, left * p) for each, p in others if each.names not in known]
 
 
 def decide_in_stages(search: Search, explained_share: float) -> Decision:
