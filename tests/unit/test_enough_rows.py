@@ -85,7 +85,7 @@ def test_ends_of_short_pieces_stay_and_are_not_counted_for_others() -> None:
 
 
 def test_between_them_rows_fall_with_the_square_of_the_mismatch() -> None:
-    recording = recorded(0.65)
+    recording = recorded(0.5)
     every = on_rows(recording, COUNT)
     wanted = len(recording) * (ENOUGH / ratio(every)) ** 2
     assert 1.1 * FEWEST_ROWS < wanted < len(recording) / LEAST_THINNED
@@ -93,7 +93,7 @@ def test_between_them_rows_fall_with_the_square_of_the_mismatch() -> None:
 
 
 def test_a_recording_is_not_thinned_for_less_than_every_second_row() -> None:
-    recording = recorded(0.5)
+    recording = recorded(0.4)
     every = on_rows(recording, COUNT)
     wanted = len(recording) * (ENOUGH / ratio(every)) ** 2
     assert len(recording) / LEAST_THINNED < wanted < 0.9 * len(recording)
@@ -120,10 +120,9 @@ def asked_for(search: Search) -> list[int]:
     return asked
 
 
-def test_all_rows_are_kept_where_noise_may_be_error_of_the_model() -> None:
+def test_all_rows_are_kept_where_the_noise_is_not_known() -> None:
     search = on_rows(recorded(2.0), COUNT)
     assert asked_for(search) == [MOST_ROWS, FEWEST_ROWS]
-    for noise in (replace(search.noise, tail=3.0), replace(search.noise, structured=True)):
-        unsure = copy(search)
-        unsure.noise = noise
-        assert asked_for(unsure) == [MOST_ROWS]
+    unsure = copy(search)
+    unsure.noise = replace(search.noise, structured=True)
+    assert asked_for(unsure) == [MOST_ROWS]

@@ -17,11 +17,7 @@ from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS
 from cyclosweep.simulation.effects.history import Floats
 
-HEAVY = 5.0
-"""Degrees of freedom of the tails of a noise up to which it may be error of the model: a law of
-friction that the flexible model misses leaves a few large errors after each reversal, which pass
-for outliers."""
-ENOUGH = 500.0
+ENOUGH = 400.0
 """Signal-to-noise ratio of a mismatch beyond which further rows tell hardly more: what the laws of
 its causes miss is larger than the noise, and alike in neighbouring rows."""
 FEWEST_ROWS = 1500
@@ -34,7 +30,7 @@ least that thinning can do."""
 def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
     """Calibrate on about as many rows as tell a mismatch from noise: the larger it is, the fewer.
 
-    Where what is taken for noise may be error of the model, all rows are kept.
+    Where the noise is not known beside the error of the model, all rows are kept.
 
     Parameters
     ----------
@@ -46,7 +42,7 @@ def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
     Search
     """
     search = calibrated(MOST_ROWS)
-    if search.noise.structured or search.noise.tail <= HEAVY:
+    if search.noise.structured:
         return search
     assert search.flexible is not None
     rows = len(search.problem.history)

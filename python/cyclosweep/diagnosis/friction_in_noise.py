@@ -13,7 +13,7 @@ friction that takes away most of it is believed at a smaller gain of likelihood.
 
 import numpy as np
 
-from cyclosweep.diagnosis.calibrate import HEAVY, flexible_beyond, noise_left
+from cyclosweep.diagnosis.calibrate import flexible_beyond, noise_left
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
@@ -24,8 +24,10 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.history import Floats
 
 SLOW = 0.3
-"""Autocorrelation of the noise from which friction is looked for in it; of `HEAVY` tails it is,
-too."""
+"""Autocorrelation of the noise from which friction is looked for in it,"""
+HEAVY = 5.0
+"""and the degrees of freedom of its tails up to which it is, too: a law of friction that the
+flexible model misses leaves a few large errors after each reversal, which pass for outliers."""
 VERY_SLOW = 0.9
 """Autocorrelation from which noise is nearly a drift. What is left beside friction is then error of
 the model, if its tails are heavy, too: slow noise is even, and outliers are not slow."""
