@@ -17,12 +17,12 @@ from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.freer_laws import freer_instead_of_others
+from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES
 from cyclosweep.diagnosis.identify.model_error_terms import (
     LEAST_OF_MISMATCH,
     offset_count,
     without_model_error,
 )
-from cyclosweep.diagnosis.identify.own_classes import BOTH_CURVES
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import FAINT, search_in_stages, visibility
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms

@@ -69,7 +69,7 @@ STAGES = {
     "calibrate": FITTING,
     "friction_in_noise": FITTING | {"calibrate"},
     "identify_effects": FITTING | {"calibrate", "friction_in_noise"},
-    "one_history": FITTING | {"calibrate", "friction_in_noise", "identify_effects"},
+    "one_history": FITTING | {"friction_in_noise", "identify_effects"},
     "decide": FITTING | {"outcome", "provenance", "refuse"},
     "locate": DECIDED,
     "repair": DECIDED | {"elasticity"},

@@ -1,6 +1,5 @@
 """Calibration: the noise of the recording, and the published model fitted to it."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,67 +8,11 @@ from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.staged_search import visibility
 from cyclosweep.diagnosis.prepare.local_events import event_rows
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
-from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS
 from cyclosweep.simulation.effects.history import Floats
-
-ENOUGH = 400.0
-"""Signal-to-noise ratio of a mismatch beyond which further rows tell hardly more: what the laws of
-its causes miss is larger than the noise, and alike in neighbouring rows."""
-FEWEST_ROWS = 1500
-"""About so many rows are kept however large a mismatch is."""
-LEAST_THINNED = 1.8
-"""Rows over those that are enough from which a recording is thinned; taking every second one is the
-least that thinning can do."""
-
-
-def calibrate_on_enough_rows(calibrated: Callable[[int], Search]) -> Search:
-    """Calibrate on about as many rows as tell a mismatch from noise: the larger it is, the fewer.
-
-    Where the noise is not known beside the error of the model, all rows are kept.
-
-    Parameters
-    ----------
-    calibrated : callable
-        From about the largest number of rows to the calibrated search on them.
-
-    Returns
-    -------
-    Search
-    """
-    search = calibrated(MOST_ROWS)
-    if search.noise.structured:
-        return search
-    assert search.flexible is not None
-    rows = len(search.problem.history)
-    seen = max(visibility(search.baseline.fit, search.noise, search.flexible), ENOUGH)
-    enough = max(rows * (ENOUGH / seen) ** 2, FEWEST_ROWS)
-    return search if rows < LEAST_THINNED * enough else calibrated(int(enough))
-
-
-def mismatch(search: Search, flexible: Floats) -> float:
-    """Signal-to-noise ratio of what the calibrated model misses, in all samples of a recording.
-
-    Samples that were passed over count like their neighbours.
-
-    Parameters
-    ----------
-    search : Search
-        Calibrated, with nothing visited.
-    flexible : ndarray, shape (fitted, k)
-        Columns of a flexible model.
-
-    Returns
-    -------
-    float
-    """
-    rows = search.problem.rows
-    passed_over = len(rows.row) / float(rows.samples.sum())
-    return float(visibility(search.baseline.fit, search.noise, flexible) * np.sqrt(passed_over))
 
 
 def calibrate(problem: Problem, library: Library, seed: int) -> Search:

@@ -115,8 +115,8 @@ def _run_stages(
     mesh_ratio = float(drive.ratio) if recording.side == "output" else 1.0
     recording = without_single_outliers(recording, line)
 
-    def calibrated(one_history: bool, most_rows: int) -> Search:
-        problem = prepare(recording, line, pins, most_rows, mesh_ratio, one_history=one_history)
+    def calibrated(one_history: bool) -> Search:
+        problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio, one_history=one_history)
         check_prepared(problem, drive)
         return calibrate(problem, build_library(problem.history, problem.fitted, effects), seed)
 

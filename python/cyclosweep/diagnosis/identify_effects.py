@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cyclosweep.diagnosis.calibrate import mismatch, noise_beyond
+from cyclosweep.diagnosis.calibrate import noise_beyond
 from cyclosweep.diagnosis.friction_in_noise import (
     is_likelier,
     model_error_noise,
@@ -80,14 +80,14 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if error is not None:
         search = Search(search.problem, error, search.library, search.seed)
     calibrated = search.noise
-    ratio = mismatch(search, flexible)
+    mismatch = visibility(search.baseline.fit, calibrated, flexible)
     # Two frictions and their presliding have many optima: they are looked for once more.
     one = friction is not None and sum(term.slips for term in friction.terms) == 1
     begun = friction if one else None
-    if calibrated.structured or ratio > LOUD:
+    if calibrated.structured or mismatch > LOUD:
         return _by_size(search, flexible, say, begun)
-    if ratio > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
-        large = _mostly_friction(search, flexible, begun)
+    if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
+        large = _mostly_friction(search, mismatch, begun)
         if large is not None:
             return _crossing_as_recorded(search_in_stages(search, flexible, say, large))
     given_up = False
@@ -99,7 +99,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
         noise = noise_beyond(search.problem, search.library, best.fit)
         if _is_same(noise, search.noise) or is_likelier(search.noise, noise):
             break
-        given_up = ratio > CLEAR and _leaves_something(search)
+        given_up = mismatch > CLEAR and _leaves_something(search)
         say("starting over with better-known noise")
         known = far_behind(search) if _is_same(noise, search.noise, NEARLY_SAME_NOISE) else None
         search = Search(search.problem, noise, search.library, search.seed)
@@ -139,7 +139,7 @@ def _crossing_as_recorded(search: Search) -> Search:
 
 
 def _mostly_friction(
-    search: Search, flexible: Floats, known: FittedStructure | None
+    search: Search, mismatch: float, known: FittedStructure | None
 ) -> FittedStructure | None:
     """Friction that explains most of a mismatch.
 
@@ -147,8 +147,8 @@ def _mostly_friction(
     ----------
     search : Search
         Calibrated, with nothing visited.
-    flexible : ndarray, shape (fitted, k)
-        Columns of a flexible model.
+    mismatch : float
+        Signal-to-noise ratio of what it has to explain.
     known : FittedStructure or None
         Friction that was found before.
 
@@ -157,8 +157,7 @@ def _mostly_friction(
     FittedStructure or None
         None where there is none, or another effect is as large.
     """
-    seen = visibility(search.baseline.fit, search.noise, flexible)
-    noise = search.noise.with_model_error(error_factor(seen))
+    noise = search.noise.with_model_error(error_factor(mismatch))
     found = known or friction_first(search, noise)
     if found is None:
         return None

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 
-from cyclosweep.diagnosis.calibrate import calibrate_on_enough_rows
 from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -25,7 +24,7 @@ CREEP = "relaxation"
 
 
 def identify_over_runs(
-    recording: Recording, calibrated: Callable[[bool, int], Search], say: Callable[[str], None]
+    recording: Recording, calibrated: Callable[[bool], Search], say: Callable[[str], None]
 ) -> Search:
     """Identify what is missing of runs that begin afresh, or that go on from each other.
 
@@ -33,8 +32,8 @@ def identify_over_runs(
     ----------
     recording : Recording
     calibrated : callable
-        From whether runs go on from each other, though the recording does not say so, and about
-        the largest number of rows, to the calibrated search of it.
+        From whether runs go on from each other, though the recording does not say so, to the
+        calibrated search of it.
     say : callable
         Called with a few words before each long step.
 
@@ -43,14 +42,13 @@ def identify_over_runs(
     Search
         With all visited structures.
     """
-    begun = calibrate_on_enough_rows(lambda most: calibrated(False, most))
-    searched = identify(begun, say)
+    searched = identify(calibrated(False), say)
     if not may_be_one_history(recording):
         return searched
     found = _best(searched)
     if not _remembers(found):
         return searched
-    joined = calibrated(True, begun.problem.most_rows)
+    joined = calibrated(True)
     if not explains_more(searched, found, joined):
         return searched
     say("starting over with runs that go on from each other")

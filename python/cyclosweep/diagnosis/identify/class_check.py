@@ -24,6 +24,7 @@ from cyclosweep.diagnosis.identify.class_evidence import ClassColumns, ClassEvid
 from cyclosweep.diagnosis.identify.dial_check import without_other_dials
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
+    BOTH_CURVES,
     LEAST_SUM,
     LawBeside,
     LawCheck,
@@ -31,9 +32,9 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     basis_of_others,
     law_evidence,
     law_places,
+    own_classes,
 )
 from cyclosweep.diagnosis.identify.loop_check import is_without_loop
-from cyclosweep.diagnosis.identify.own_classes import BOTH_CURVES, own_classes
 from cyclosweep.diagnosis.identify.run_offsets_check import (
     without_any_offsets,
     without_leftovers,

@@ -7,8 +7,12 @@ from scipy.special import voigt_profile
 from scipy.stats import norm
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck, withdrawn_where
-from cyclosweep.diagnosis.identify.own_classes import BOTH_CURVES, own_classes
+from cyclosweep.diagnosis.identify.law_in_class import (
+    BOTH_CURVES,
+    LawCheck,
+    own_classes,
+    withdrawn_where,
+)
 from cyclosweep.simulation.effects.dial_eccentricity import LEAST_PART, MOST_STEEP
 
 ERRORS = 2.0

@@ -16,9 +16,9 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     amplitude_count,
     cancels,
     makes_others_grow,
+    own_classes,
 )
 from cyclosweep.diagnosis.identify.other_laws import left_beyond_noise
-from cyclosweep.diagnosis.identify.own_classes import own_classes
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs

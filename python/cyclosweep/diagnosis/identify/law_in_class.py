@@ -5,10 +5,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
+    CLASSES_OF_EFFECT,
+    CLASSES_OF_FAMILY,
+    EVEN_CURVE,
+    LOOP,
+    ODD_CURVE,
+    OPENING_LOOP,
+)
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.own_classes import BOTH_CURVES, own_classes, share_class
 from cyclosweep.diagnosis.identify.scan import evidence, likelihood_gain
+from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
@@ -23,6 +31,8 @@ LEAST_LEFT = 3.0
 """Log evidence that has to be left of a law beside a class that explains more [nat]."""
 LEFT_BESIDE = 0.1
 """The same as a share of the law's evidence."""
+BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
+"""Classes of an effect whose twist has an odd and an even part, as an eccentric dial's."""
 MOST_GROWN = 1.5
 """Size of an accepted effect with a new one in the fit, over its size without, above which the new
 one is refused: the two compensate each other in the odd or in the even part."""
@@ -77,6 +87,42 @@ def withdrawn_where(
     tuple of LawCheck
     """
     return tuple(replace(c, holds=c.holds and not withdraw(c.name)) for c in checks)
+
+
+def own_classes(term: Term) -> tuple[str, ...]:
+    """Classes of behaviour that a term of an effect belongs to.
+
+    Parameters
+    ----------
+    term : Term
+
+    Returns
+    -------
+    tuple of str
+        None for an effect of a family that is no class.
+    """
+    assert term.effect is not None
+    if not term.slips:
+        return CLASSES_OF_EFFECT.get(term.name) or CLASSES_OF_FAMILY.get(term.family, ())
+    plain, loaded = term.effect.friction_limits(term.shape)
+    return (LOOP,) * (plain > 0) + (OPENING_LOOP,) * (loaded > 0)
+
+
+def share_class(one: Term, other: Term) -> bool:
+    """Whether two terms are effects of the same class of behaviour.
+
+    Parameters
+    ----------
+    one : Term
+    other : Term
+
+    Returns
+    -------
+    bool
+    """
+    if one.effect is None or other.effect is None:
+        return False
+    return bool(set(own_classes(one)) & set(own_classes(other)))
 
 
 def cancels(fitted: FittedStructure, index: int) -> bool:

@@ -6,8 +6,9 @@ class that does stand for the class is named.
 """
 
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.law_in_class import own_classes
 from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
-from cyclosweep.diagnosis.identify.own_classes import look_alikes, own_classes
+from cyclosweep.diagnosis.identify.other_laws import rivals_of
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE
 
@@ -39,7 +40,7 @@ def with_law_that_holds(search: Search, accepted: Candidate, naming: Naming) -> 
     names = {check.name for check in naming.withdrawn}
     gone = [t for t in accepted.fit.terms if t.name in names and t.effect and not t.slips]
     classes = {behaviour for term in gone for behaviour in own_classes(term)}
-    rivals = {name for term in gone for name in look_alikes(search.library, accepted.names, term)}
+    rivals = {name for term in gone for name in rivals_of(search, accepted.fit, term)}
     best, least = None, part.score + INDISPENSABLE
     for name in sorted(rivals & set(part.scan.groups)):
         child = search.extend(part, name)

@@ -22,8 +22,9 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     amplitude_count,
     cancels,
     makes_others_grow,
+    own_classes,
+    share_class,
 )
-from cyclosweep.diagnosis.identify.own_classes import own_classes, share_class
 from cyclosweep.diagnosis.identify.run_offsets_check import count_states
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term

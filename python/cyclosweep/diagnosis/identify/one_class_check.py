@@ -10,8 +10,11 @@ from dataclasses import replace
 from cyclosweep.diagnosis.identify.candidate import FURTHER
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawBeside, LawCheck
-from cyclosweep.diagnosis.identify.own_classes import own_classes
+from cyclosweep.diagnosis.identify.law_in_class import (
+    LawBeside,
+    LawCheck,
+    own_classes,
+)
 
 
 def without_laws_of_one_class(

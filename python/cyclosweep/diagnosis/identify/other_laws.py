@@ -13,8 +13,12 @@ from cyclosweep.diagnosis.identify.class_check import LITTLE_MISSED, check_laws
 from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import makes_others_grow
-from cyclosweep.diagnosis.identify.own_classes import BOTH_CURVES, look_alikes, own_classes
+from cyclosweep.diagnosis.identify.law_in_class import (
+    BOTH_CURVES,
+    makes_others_grow,
+    own_classes,
+    share_class,
+)
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 
@@ -48,9 +52,7 @@ def with_better_laws(search: Search) -> FittedStructure:
     fitted = search.start.fit
     for name in fitted.names:
         term = next(each for each in fitted.terms if each.name == name)
-        rivals = []
-        if term.effect is not None and not term.slips:
-            rivals = list(look_alikes(search.library, fitted.names, term))
+        rivals = [] if term.effect is None or term.slips else list(rivals_of(search, fitted, term))
         if not rivals:
             continue
         others = tuple(each for each in fitted.terms if each is not term)
@@ -194,3 +196,26 @@ def left_beyond_noise(fitted: FittedStructure) -> float:
 def _score(candidate: Candidate | None) -> float:
     """Log odds of a candidate; none where nothing could be fitted."""
     return float("-inf") if candidate is None else candidate.score
+
+
+def rivals_of(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str]:
+    """Effects of the same class as a term that are not part of the structure.
+
+    Parameters
+    ----------
+    search : Search
+    fitted : FittedStructure
+        The structure.
+    term : Term
+        One of its terms.
+
+    Yields
+    ------
+    str
+    """
+    for name, signature in search.library.effects.items():
+        effect = signature.effect
+        if effect is None or effect.slips or name in fitted.names:
+            continue
+        if share_class(term, Term(effect, signature.shape)):
+            yield name

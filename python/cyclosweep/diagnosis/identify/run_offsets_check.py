@@ -17,9 +17,9 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     LawBeside,
     LawCheck,
     amplitude_count,
+    own_classes,
     withdrawn_where,
 )
-from cyclosweep.diagnosis.identify.own_classes import own_classes
 from cyclosweep.simulation.effects.history import Flags, History
 from cyclosweep.simulation.effects.order_names import travels
 

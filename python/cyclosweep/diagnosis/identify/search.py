@@ -14,7 +14,6 @@ from cyclosweep.diagnosis.identify.candidate import (
     prior_penalty,
 )
 from cyclosweep.diagnosis.identify.enrichment import richer_structures
-from cyclosweep.diagnosis.identify.exchange import exchanges
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.freer_part import freer_part
@@ -149,7 +148,6 @@ class Search:
             front = found[: 3 - (depth > 0)]
             front += [n for n in named[: 3 - depth] if all(n is not f for f in front)]
         self._visit_parts()
-        self._exchange()
         self._follow(progress)
 
     def explanations(self) -> list[Candidate]:
@@ -370,13 +368,6 @@ class Search:
         if (parent, name) in self.tried:
             return self.visited.get(parent.names | {name})
         return self.extend(parent, name)
-
-    def _exchange(self) -> None:
-        """Try look-alikes in the place of each effect of the best structure."""
-        best = self.best()
-        if best is not None:
-            for part, name in exchanges(best, self.start, self.visited, self.library):
-                self._child(part, name)
 
     def _follow(self, progress: Callable[[str], None]) -> None:
         """Add further terms to the best structure as long as the residual asks for them."""

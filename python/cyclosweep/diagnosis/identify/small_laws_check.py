@@ -20,9 +20,10 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     LOUD,
     LawBeside,
     LawCheck,
+    own_classes,
+    share_class,
     withdrawn_where,
 )
-from cyclosweep.diagnosis.identify.own_classes import own_classes, share_class
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Floats
 

@@ -44,8 +44,6 @@ class Problem:
         Noise of the torque reading that was smoothed [N m]; zero: none that matters.
     one_history : bool
         Runs are taken to go on from each other although the recording does not say so.
-    most_rows : int
-        About the largest number of rows that was asked for.
     """
 
     recording: Recording
@@ -65,7 +63,6 @@ class Problem:
     nominal_compliance: float
     nominal_free_play: float
     one_history: bool = False
-    most_rows: int = MOST_ROWS
 
     @property
     def count(self) -> int:
@@ -208,7 +205,6 @@ def prepare(
         recording=recording,
         history=history,
         one_history=one_history,
-        most_rows=most_rows,
         angle_deg=angle,
         weight=rows.samples,
         fitted=fitted,
