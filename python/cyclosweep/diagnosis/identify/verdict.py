@@ -92,7 +92,8 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
 def named_if_close(search: Search, decision: Decision, nearly_all: float = np.inf) -> Decision:
     """Take the best structure of named effects where it is as good as one with unnamed shapes.
 
-    It is where it is hardly less likely, or explains nearly all that the other one does.
+    It is where it is hardly less likely, what may be error of its laws counted, or explains nearly
+    all that the other one does.
 
     Parameters
     ----------
@@ -111,17 +112,17 @@ def named_if_close(search: Search, decision: Decision, nearly_all: float = np.in
     """
     if not decision.unexplained or decision.best is None:
         return decision
-    enough = [each for each in search.explanations() if search.suffices(each)]
-    named = [each for each in enough if each.all_recognised]
+    listed = search.explanations()
+    named = [each for each in listed if search.suffices(each) and each.all_recognised]
     if not named:
         return decision
-    close = _with_its_errors(search, named[0]) >= decision.best.score - CLOSE_TO_UNNAMED
+    close = _with_its_errors(search, named[0], listed) >= decision.best.score - CLOSE_TO_UNNAMED
     if not close and _explained_of(search, named[0], decision.best) < nearly_all:
         return decision
     return Decision("AMBIGUOUS", named[0], likely(probabilities(named)), False)
 
 
-def _with_its_errors(search: Search, named: Candidate) -> float:
+def _with_its_errors(search: Search, named: Candidate, listed: list[Candidate]) -> float:
     """Log odds of named effects, or of these and what may be error of their laws if that is more.
 
     A structure that holds hardly more than a sufficient one is no explanation of its own. But a
@@ -133,20 +134,20 @@ def _with_its_errors(search: Search, named: Candidate) -> float:
         After it has run.
     named : Candidate
         Sufficient structure of named effects.
+    listed : list of Candidate
+        Explanations of their own, which give no support.
 
     Returns
     -------
     float
         In nat.
     """
-    listed = search.explanations()
 
     def holds(other: Candidate) -> bool:
         names = {n for n, own in zip(other.fit.names, other.recognised, strict=True) if own}
         return named.names <= names and other not in listed
 
-    beyond = (each.score for each in search.visited.values() if holds(each))
-    return max(named.score, max(beyond, default=named.score))
+    return max([named.score, *(each.score for each in search.visited.values() if holds(each))])
 
 
 def _explained_of(search: Search, named: Candidate, best: Candidate) -> float:
