@@ -12,7 +12,6 @@ from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.law_that_holds import with_law_that_holds
 from cyclosweep.diagnosis.identify.naming import names_that_hold
-from cyclosweep.diagnosis.identify.other_laws import misses_far_less
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
@@ -79,17 +78,6 @@ def test_no_law_takes_the_place_of_one_that_fits_far_better() -> None:
     (check,) = naming.checks
     withdrawn = replace(naming, part=search.baseline, checks=(replace(check, holds=False),))
     assert with_law_that_holds(search, dial, withdrawn) is None
-
-
-def test_a_law_that_misses_far_less_of_its_class_is_told() -> None:
-    search = search_of(EffectValue("load_asymmetry", {"power": 1.0}, (0.5,)))
-    right = structure(search, Term(find("load_asymmetry"), {"power": 1.0})).fit
-    wrong = structure(search, DIAL).fit
-    both = structure(search, Term(find("load_asymmetry"), {"power": 1.0}), DIAL).fit
-    assert misses_far_less(right, wrong)
-    assert not misses_far_less(wrong, right)
-    # Two laws make any curve.
-    assert not misses_far_less(both, wrong)
 
 
 @pytest.mark.parametrize(("leaves_much", "named"), [(True, False), (False, True)])

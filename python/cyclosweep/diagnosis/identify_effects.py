@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.identify.far_behind import far_behind
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
+from cyclosweep.diagnosis.identify.other_laws import visit_rivals
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.staged_search import (
     error_factor,
@@ -109,6 +110,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     else:
         search.run(say)
     if not given_up and not _leaves_something(search):
+        visit_rivals(search)
         return _crossing_as_recorded(search)
     if pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)

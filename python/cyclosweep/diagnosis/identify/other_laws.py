@@ -6,10 +6,12 @@ of one class of behaviour differ. Once everything else is known the difference s
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import permutations, product
+
+import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.class_check import LITTLE_MISSED, check_laws
 from cyclosweep.diagnosis.identify.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -19,24 +21,21 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     own_classes,
     share_class,
 )
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.search import MOST_SHAPE_ERROR, SHAPE_ERROR, Search
 from cyclosweep.diagnosis.identify.terms import Term
 
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
-ERROR_OF_LAWS = 0.05
-"""The same as a share of the evidence of the accepted one: no law is exact, and of two of a loud
-effect the one that errs less need not be the right one."""
-
 LEAST_LEFT = 0.1
 """What is left beyond the noise counts from this share of the noise."""
 FAR_LESS = 0.5
 """What another law leaves beyond the noise, over what the accepted one leaves, from which it takes
-its place although the error of models that is allowed for makes both alike; or what it misses of
-its class over what the accepted one misses, from which a small lead is enough."""
+its place although the error of models that is allowed for makes both alike."""
 
 
-def with_better_laws(search: Search) -> FittedStructure:
+def with_better_laws(
+    search: Search,
+) -> tuple[FittedStructure, list[tuple[Candidate, float]]]:
     """Put other laws in the place of accepted ones where the recording is likelier with them.
 
     Parameters
@@ -46,19 +45,23 @@ def with_better_laws(search: Search) -> FittedStructure:
 
     Returns
     -------
-    FittedStructure
+    fitted : FittedStructure
         That structure, or one with other laws of the same classes.
+    rivals : list of (Candidate, float)
+        Structures with one law less likely in the place of one of its own, each with its odds over
+        it, error of the laws allowed for.
     """
-    fitted = search.start.fit
+    fitted = _with_dial_for_two(search, search.start.fit)
+    rivals = list[tuple[Candidate, float]]()
     for name in fitted.names:
         term = next(each for each in fitted.terms if each.name == name)
-        rivals = [] if term.effect is None or term.slips else list(rivals_of(search, fitted, term))
-        if not rivals:
+        names = [] if term.effect is None or term.slips else list(rivals_of(search, fitted, term))
+        if not names:
             continue
         others = tuple(each for each in fitted.terms if each is not term)
         parent = search.refit(others, fitted) if others else search.baseline
         own = _extended(search, parent, name)
-        tried = [child for each in rivals if (child := _extended(search, parent, each)) is not None]
+        tried = [child for each in names if (child := _extended(search, parent, each)) is not None]
         tried = [_in_whole_class(search, child) for child in tried]
         if _is_dial(term):
             tried += list(_pairs(search, tried))
@@ -67,43 +70,149 @@ def with_better_laws(search: Search) -> FittedStructure:
             # Beside everything else the accepted law has been given more freedom.
             fitted = own.fit
         best = max(tried, key=lambda child: child.score, default=None)
-        if best is None or not best.all_recognised or best.fit.loss >= fitted.loss:
-            continue
-        if any(makes_others_grow(best.fit, k, fitted) for k in range(len(best.fit.terms))):
-            continue
-        ahead = best.score - _score(own)
-        leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
-        clearly = max(CLEARLY, ERROR_OF_LAWS * _score(own))
-        better = ahead > clearly or (leaves_less and ahead > -CLEARLY)
-        if better or (own is not None and ahead > CLEARLY and misses_far_less(best.fit, own.fit)):
+        taken = best is not None and _takes_the_place(best, own, fitted)
+        if taken and best is not None:
             fitted = best.fit
-    return fitted
+        if own is not None:
+            winner = best if taken and best is not None else own
+            explained = parent.fit.loss - winner.fit.loss
+            rivals += [
+                (each, _odds(each.score - winner.score, explained))
+                for each in (own, *tried)
+                if each is not winner and each.all_recognised
+            ]
+    present = frozenset(fitted.names)
+    return fitted, [each for each in rivals if len(each[0].names ^ present) == 2]
 
 
-def misses_far_less(other: FittedStructure, own: FittedStructure) -> bool:
-    """Whether the last law of a structure misses far less of its class than that of another.
+def _takes_the_place(best: Candidate, own: Candidate | None, fitted: FittedStructure) -> bool:
+    """Whether a structure with another law is likelier, and no other effect grows by it.
 
     Parameters
     ----------
-    other : FittedStructure
-        Structure with another law in the last place.
-    own : FittedStructure
-        Structure with the accepted law there.
+    best : Candidate
+        Structure with the best other law.
+    own : Candidate or None
+        The same with the accepted law, fitted in the same way.
+    fitted : FittedStructure
+        What was accepted.
 
     Returns
     -------
     bool
-        False unless all laws of the other structure may be named, it has as many as this one, and
-        the accepted law misses more than any law may.
     """
-    if len(other.terms) != len(own.terms):
+    if not best.all_recognised or best.fit.loss >= fitted.loss:
         return False
-    accepted = next(check for check in check_laws(own) if check.name == own.names[-1])
-    if accepted.missed_share < LITTLE_MISSED:
+    if any(makes_others_grow(best.fit, k, fitted) for k in range(len(best.fit.terms))):
         return False
-    checks = {check.name: check for check in check_laws(other)}
-    missed = checks[other.names[-1]].missed_share
-    return all(each.holds for each in checks.values()) and missed < FAR_LESS * accepted.missed_share
+    ahead = best.score - _score(own)
+    leaves_less = left_beyond_noise(best.fit) < FAR_LESS * left_beyond_noise(fitted)
+    return ahead > CLEARLY or (leaves_less and ahead > -CLEARLY)
+
+
+def _odds(ahead: float, explained: float) -> float:
+    """Odds of one law over another, none of which is exact.
+
+    Parameters
+    ----------
+    ahead : float
+        Log evidence by which it is ahead [nat].
+    explained : float
+        Chi-squared that the other one explains.
+
+    Returns
+    -------
+    float
+        No more than one: that one has been preferred.
+    """
+    error = min(0.5 * SHAPE_ERROR**2 * max(explained, 0.0), MOST_SHAPE_ERROR)
+    return float(np.exp(min(ahead, 0.0) / (1.0 + error)))
+
+
+def visit_rivals(search: Search) -> None:
+    """Fit the rivals of each effect of the best structure in its place, and dials with a tilt.
+
+    A search in breadth follows the likeliest structures, and offers a dial without a tilt.
+
+    Parameters
+    ----------
+    search : Search
+        After it has run from the baseline.
+    """
+    best = search.best()
+    if best is None:
+        return
+    near = [best.names]
+    for term in best.fit.terms:
+        rest = best.names - {term.name}
+        parent = search.visited.get(rest) if rest else search.baseline
+        if term.effect is None or term.slips or parent is None:
+            continue
+        rivals = list(rivals_of(search, best.fit, term))
+        for name in rivals:
+            if rest | {name} not in search.visited:
+                _extended(search, parent, name)
+        near += [rest, *(rest | {name} for name in rivals)]
+    for candidate in [search.visited[names] for names in near if names in search.visited]:
+        for index in range(len(candidate.fit.terms)):
+            whole = _in_whole_class(search, candidate, index)
+            if whole.score > candidate.score:
+                search.visited[whole.names] = whole
+
+
+def _with_dial_for_two(search: Search, fitted: FittedStructure) -> FittedStructure:
+    """Put one law with an odd and an even part in the place of two, where it is likelier.
+
+    Parameters
+    ----------
+    search : Search
+    fitted : FittedStructure
+        What was accepted.
+
+    Returns
+    -------
+    FittedStructure
+        The same, or one with a dial in the place of a side load and an odd curve.
+    """
+    curves = [t for t in fitted.terms if t.effect is not None and not t.slips]
+    even = [t for t in curves if own_classes(t) == (EVEN_CURVE,)]
+    odd = [t for t in curves if own_classes(t) == (ODD_CURVE,)]
+    for pair in product(even, odd):
+        others = tuple(each for each in fitted.terms if each not in pair)
+        parent = search.refit(others, fitted) if others else search.baseline
+        own = max(
+            (found for order in permutations(pair) if (found := _both(search, parent, order))),
+            key=lambda found: found.score,
+            default=None,
+        )
+        for name in rivals_of(search, fitted, pair[0]):
+            other = _extended(search, parent, name)
+            if own is None or other is None or not _is_dial(other.fit.terms[-1]):
+                continue
+            other = _in_whole_class(search, other)
+            if any(makes_others_grow(other.fit, k, fitted) for k in range(len(other.fit.terms))):
+                continue
+            if other.all_recognised and other.score > own.score + CLEARLY:
+                return other.fit
+    return fitted
+
+
+def _both(search: Search, parent: Candidate, pair: Sequence[Term]) -> Candidate | None:
+    """Add two effects to a structure, in this order.
+
+    Parameters
+    ----------
+    search : Search
+    parent : Candidate
+    pair : sequence of Term
+
+    Returns
+    -------
+    Candidate or None
+    """
+    first, second = (term.name for term in pair)
+    one = _extended(search, parent, first)
+    return None if one is None else _extended(search, one, second)
 
 
 def _extended(search: Search, parent: Candidate, name: str) -> Candidate | None:
@@ -128,8 +237,8 @@ def _is_dial(term: Term) -> bool:
     return set(own_classes(term)) >= BOTH_CURVES
 
 
-def _in_whole_class(search: Search, child: Candidate) -> Candidate:
-    """Give a dial that a structure got last the form that holds nearly its whole class.
+def _in_whole_class(search: Search, child: Candidate, index: int = -1) -> Candidate:
+    """Give a dial of a structure the form that holds nearly its whole class.
 
     An eccentric dial is hardly ever without a tilt, and the search offers it without.
 
@@ -137,21 +246,24 @@ def _in_whole_class(search: Search, child: Candidate) -> Candidate:
     ----------
     search : Search
     child : Candidate
+    index : int
+        Which of its terms, the last one unless told.
 
     Returns
     -------
     Candidate
         The same for another law, and where the evidence does not prefer that form.
     """
-    last = len(child.fit.terms) - 1
-    effect = child.fit.terms[last].effect
-    if effect is None or not _is_dial(child.fit.terms[last]):
+    index %= len(child.fit.terms)
+    term = child.fit.terms[index]
+    if term.effect is None or not _is_dial(term):
         return child
-    richer = search.first_better(child, freer_laws(child, search.library, last, whole_class=True))
+    richer = search.first_better(child, freer_laws(child, search.library, index, whole_class=True))
     if richer is None:
         return child
-    before, after = (each.fit.terms[last].shape for each in (child, richer))
-    return replace(richer, prior=richer.prior - effect.penalty(after) + effect.penalty(before))
+    before, after = (each.fit.terms[index].shape for each in (child, richer))
+    charge = term.effect.penalty(after) - term.effect.penalty(before)
+    return replace(richer, prior=richer.prior - charge)
 
 
 def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:

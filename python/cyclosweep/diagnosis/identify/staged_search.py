@@ -17,10 +17,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.freer_laws import (
-    freer_instead_of_others,
-    with_freer_laws,
-)
+from cyclosweep.diagnosis.identify.freer_laws import freer_instead_of_others, with_freer_laws
 from cyclosweep.diagnosis.identify.friction_first import (
     CONVERGED,
     PARAMETER_CHARGE,
@@ -44,6 +41,7 @@ from cyclosweep.diagnosis.identify.verdict import (
     likely,
     named_if_close,
     probabilities,
+    with_further_rivals,
 )
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
@@ -252,7 +250,8 @@ def _with_settled_laws(
     """
     rivals = last.rivals_of_start
     if last.start is not last.baseline:
-        better = best_placed(with_better_laws(last))
+        settled, others = with_better_laws(last)
+        rivals, better = with_further_rivals(rivals, others), best_placed(settled)
         if better is not last.start.fit:
             last = _stage(searched, flexible, better)
         freer = with_freer_laws(last, last.start).fit

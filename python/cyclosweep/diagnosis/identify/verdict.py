@@ -188,6 +188,30 @@ def probabilities(candidates: list[Candidate]) -> list[tuple[Candidate, float]]:
     return list(zip(candidates, map(float, probability), strict=True))
 
 
+def with_further_rivals(
+    rivals: list[tuple[Candidate, float]], further: list[tuple[Candidate, float]]
+) -> list[tuple[Candidate, float]]:
+    """Rivals of an accepted structure, and further ones by their odds over it.
+
+    Parameters
+    ----------
+    rivals : list of (Candidate, probability)
+        Other explanations that are known.
+    further : list of (Candidate, float)
+        Structures with their odds over the accepted one; those of the same effects as a known
+        rival are passed over.
+
+    Returns
+    -------
+    list of (Candidate, probability)
+    """
+    known = {candidate.names for candidate, _ in rivals}
+    new = [(candidate, odds) for candidate, odds in further if candidate.names not in known]
+    left = 1.0 - sum(share for _, share in rivals)
+    whole = 1.0 + sum(odds for _, odds in new)
+    return [*rivals, *((candidate, left * odds / whole) for candidate, odds in new)]
+
+
 def likely(probable: list[tuple[Candidate, float]]) -> list[tuple[Candidate, float]]:
     """The most probable structures that together have a probability of `COVERAGE`.
 
@@ -223,7 +247,7 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
     best = search.chosen or search.start
     probability = 1.0 - sum(share for _, share in search.rivals_of_start)
     explanations = [(best, probability), *search.rivals_of_start]
-    explanations.sort(key=lambda each: -each[1])
+    explanations = likely(sorted(explanations, key=lambda each: -each[1]))
     if search.suffices(best) and best.fit.noise.model_error_factor == 1.0:
         sure = probability >= SURE
         return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
