@@ -306,7 +306,7 @@ def test_a_study_of_the_component_model_has_its_budget(tmp_path: Path) -> None:
 
 BAD = {
     "no study": (["report", ".", "--out", "x.html"], "no study there"),
-    "no folder": (["report", "S", "--out", "none/x.html"], "no such folder"),
+    "no folder": (["report", "S", "--out", "none/x.html"], "a folder that exists"),
     "a folder": (["report", "S", "--out", "S"], "is a folder"),
     "objective": (["report", "S", "--out", "x.html", "--pareto", "a,b"], "no column a"),
     "limit": (["report", "S", "--out", "x.html", "--limit", "hole_web > 1"], "did you mean"),

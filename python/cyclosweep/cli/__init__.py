@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import sys
 from typing import Annotated, NoReturn, cast
@@ -117,6 +118,21 @@ def _with_plugins(arguments: list[str]) -> list[str]:
     return rest
 
 
+MACHINE_ERRORS = frozenset(
+    {
+        errno.ENOSPC,
+        errno.EDQUOT,
+        errno.EFBIG,
+        errno.EIO,
+        errno.ENOMEM,
+        errno.EMFILE,
+        errno.ENFILE,
+        None,
+    }
+)
+"""Errors of the machine and not of a path that was given; None where no number is known."""
+
+
 def _end_without_reader() -> NoReturn:
     """End quietly where the program that reads the output has ended, as `head` does."""
     with contextlib.suppress(OSError):  # else Python's own flush at the end fails
@@ -152,7 +168,7 @@ def main() -> None:
         raise
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        fail(f"{where}{error.strerror or error}", 1)
+        fail(f"{where}{error.strerror or error}", 1 if error.errno in MACHINE_ERRORS else 2)
     except ImportError as error:
         if is_interruption(error):
             sys.exit(INTERRUPTED)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import AsJson, interruptible, print_json, refuse_file
+from cyclosweep.cli.output import AsJson, interruptible, print_json, refuse_folder
 from cyclosweep.errors import InputError
 
 
@@ -46,7 +46,7 @@ def challenge(
             "'cyclosweep[challenge]'"
         ) from None
 
-    refuse_file(out)
+    refuse_folder(out)
     options = Options(opponents=opponents)
     try:
         with interruptible(f"the same command goes on from {out}"):

@@ -18,7 +18,7 @@ from cyclosweep.cli.output import (
     interruptible,
     print_json,
     print_tables,
-    refuse_file,
+    refuse_folder,
 )
 from cyclosweep.display import shown_steps
 from cyclosweep.errors import DesignError, InputError
@@ -26,6 +26,7 @@ from cyclosweep.errors import DesignError, InputError
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from cyclosweep.diagnosis import Diagnosis
     from cyclosweep.diagnosis.folder import Series
 
 
@@ -106,7 +107,7 @@ def diagnose(
     from cyclosweep.design.drive import Drive
     from cyclosweep.recording.reading import stem
 
-    refuse_file(out)
+    refuse_folder(out)
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError(f"tolerance: found {tolerance:g}, expected degrees above zero")
     options = {
@@ -157,20 +158,31 @@ def _diagnose_one(path: Path, folder: Path, job: _Job) -> dict[str, Any]:
     recording: Recording = Recording.read(path, job.meta)
     with shown_steps(recording.name, sys.stderr.isatty()) as show:
         found = run(recording, progress=show, full=not job.quick, **job.options)
-        if job.quick:
-            found.write(folder, report=False)
-        else:
-            show("writing the report")
-            found.write(folder)
-        if job.png:
-            found.report(folder / "pictures")
+        try:
+            if job.quick:
+                found.write(folder, report=False)
+            else:
+                show("writing the report")
+                found.write(folder)
+            if job.png:
+                found.report(folder / "pictures")
+        except OSError:
+            # What was computed is not lost with the folder.
+            _show(found, job)
+            raise
+    _show(found, job)
+    if not job.quiet:
+        print(f"Written: {folder}" if job.quick else f"Report: {folder / 'report.html'}")
+    content: dict[str, Any] = json.loads(found.to_json())
+    return content
+
+
+def _show(found: Diagnosis, job: _Job) -> None:
+    """Print the summary of a diagnosis, unless nothing is to be printed."""
     if not job.quiet:
         from cyclosweep.report import print_summary
 
         print_summary(found.report_data())
-        print(f"Written: {folder}" if job.quick else f"Report: {folder / 'report.html'}")
-    content: dict[str, Any] = json.loads(found.to_json())
-    return content
 
 
 def _diagnose_folder(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cyclosweep.cli.frames import titled
-from cyclosweep.cli.output import AsJson, print_json, print_tables, refuse_file
+from cyclosweep.cli.output import AsJson, print_json, print_tables, refuse_folder
 
 if TYPE_CHECKING:
     import polars as pl
@@ -125,7 +125,7 @@ def shock(
     what = Event.from_toml(event).of_drive(chosen)
     train = chosen.train(_springs(what.model), with_efficiency=True, **what.parts)
     run = transient(train, what)
-    refuse_file(out)
+    refuse_folder(out)
     out.mkdir(parents=True, exist_ok=True)
     content: dict[str, Any] = {
         "schema": "cyclosweep.shock/1",

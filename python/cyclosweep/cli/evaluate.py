@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import AsJson, print_json
+from cyclosweep.cli.output import AsJson, print_json, refuse_output
 from cyclosweep.errors import InputError
 
 
@@ -42,6 +42,7 @@ def evaluate(
     from cyclosweep.sweep.table_files import read_table, row_in_file, writable, write_table
 
     writable(out)
+    refuse_output(Path(out), designs)
     loads_tn = None if loads is None else _loads(loads)
     logging.getLogger("cyclosweep").addHandler(handler := _Notes())
     try:

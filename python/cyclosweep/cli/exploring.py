@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from cyclosweep.cli.output import refuse_output
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,14 +36,13 @@ OutTable = Annotated[
 Rows = Annotated[int, typer.Option("--rows", min=1, help="Rows shown.")]
 
 
-def check_out(out: Path | None) -> None:
-    """Refuse a table that cannot be written, before any work."""
+def check_out(out: Path | None, *sources: str | Path) -> None:
+    """Refuse a table that cannot be written, or is one of those that are read, before any work."""
     from cyclosweep.sweep.table_files import writable
 
     if out is not None:
         writable(out)
-        if not out.absolute().parent.is_dir():
-            raise InputError(f"--out: no folder {out.parent}, expected one that is there")
+        refuse_output(out, *sources)
 
 
 def say_if_unfinished(folder: Path) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from cyclosweep.cli.output import AsJson, fail, print_json
+from cyclosweep.cli.output import AsJson, fail, print_json, refuse_output
 from cyclosweep.errors import InputError, did_you_mean
 
 ENDINGS = (".dxf", ".svg", ".csv", ".step", ".stp")
@@ -57,11 +57,7 @@ def export(
     if ending not in ENDINGS:
         meant = did_you_mean(ending, ENDINGS)
         raise InputError(f"--out: found {out}, expected a file in {', '.join(ENDINGS)}{meant}")
-    path = Path(drive)
-    if path.exists() and out.exists() and path.samefile(out):
-        raise InputError(f"--out: found {out}, which is read, expected another file")
-    if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
+    refuse_output(out, drive)
     if housing_bore_radius_mm is not None and (ending not in (".dxf", ".svg") or disc is not None):
         raise InputError(
             "--housing-bore-radius-mm: the housing stands in drawings of the whole drive alone, "

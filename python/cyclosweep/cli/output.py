@@ -21,7 +21,15 @@ from cyclosweep.errors import InputError
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["AsJson", "fail", "interruptible", "print_json", "print_tables", "refuse_file"]
+__all__ = [
+    "AsJson",
+    "fail",
+    "interruptible",
+    "print_json",
+    "print_tables",
+    "refuse_folder",
+    "refuse_output",
+]
 
 MOMENT_S = 0.02
 """Time after which an interruption that Python ignored is made once more [s]."""
@@ -57,7 +65,9 @@ def print_tables(renderables: Iterable[RenderableType]) -> None:
     from rich.console import Console
 
     # Without a terminal rich would cut the tables to 80 columns.
-    console = Console(width=None if sys.stdout.isatty() else 120)
+    asked = os.environ.get("COLUMNS", "")
+    wide = int(asked) if asked.isdigit() and int(asked) > 0 else 120
+    console = Console(width=None if sys.stdout.isatty() else wide)
     for renderable in renderables:
         console.print(renderable)
 
@@ -67,10 +77,56 @@ def print_json(value: dict[str, Any]) -> None:
     print(json.dumps(value, indent=1, allow_nan=False))
 
 
-def refuse_file(folder: Path) -> None:
-    """Refuse a file in the place of a folder that is to be written to."""
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out: found {folder}, which is a file, expected a folder")
+def refuse_output(out: Path, *sources: str | Path, option: str = "--out") -> None:
+    """Refuse to write over a file that is read, or where no file can be.
+
+    Parameters
+    ----------
+    out : Path
+        The file that is to be written.
+    *sources : str or Path
+        What is read.
+    option : str
+        Option that names the file.
+
+    Raises
+    ------
+    InputError
+        With the file that was found.
+    """
+    if any(_same(Path(source), out) for source in sources):
+        raise InputError(f"{option}: found {out}, which is read, expected another file")
+    if out.is_dir():
+        raise InputError(f"{option}: found {out}, which is a folder, expected a file")
+    if not out.absolute().parent.is_dir():
+        raise InputError(f"{option}: found {out}, expected a file in a folder that exists")
+
+
+def _same(path: Path, other: Path) -> bool:
+    """Whether two paths are one file, whether it exists or not."""
+    if path.exists() and other.exists():
+        return path.samefile(other)
+    return path.resolve() == other.resolve()
+
+
+def refuse_folder(folder: Path) -> None:
+    """Refuse a folder for results that cannot be made, before anything is computed.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder, whether it exists or not.
+
+    Raises
+    ------
+    InputError
+        With what was found in its place, or on the way to it.
+    """
+    nearest = next(each for each in (folder, *folder.absolute().parents) if each.exists())
+    if not nearest.is_dir():
+        raise InputError(f"--out: found {nearest}, which is a file, expected a folder")
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise InputError(f"--out: found {nearest}, expected a folder that can be written to")
 
 
 def fail(error: object, status: int) -> NoReturn:

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from cyclosweep.cli.output import refuse_output
+
 
 def pick(
     study: Annotated[Path, typer.Argument(metavar="STUDY_DIR", help="Folder of a sweep.")],
@@ -22,6 +24,7 @@ def pick(
     """
     from cyclosweep.sweep.stored import open_study
 
+    refuse_output(out)
     stored = open_study(study)
     drive = stored.drive_of(variant, name=name)
     status = stored.row(variant)["status"]

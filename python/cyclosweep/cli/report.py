@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from cyclosweep.cli.output import interruptible
+from cyclosweep.cli.output import interruptible, refuse_output
 from cyclosweep.errors import InputError
 
 
@@ -41,10 +41,9 @@ def report(
     from cyclosweep.study_report import report_study
     from cyclosweep.sweep.tolerances import Tolerances
 
-    if out.is_dir():
-        raise InputError(f"--out: found {out}, which is a folder, expected a file")
-    if not out.absolute().parent.is_dir():
-        raise InputError(f"--out: {out.parent}: no such folder")
+    refuse_output(out)
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"--out: found {out}, expected a file ending in .html")
     held = None if tolerances is None else Tolerances.from_toml(tolerances)
     with interruptible("nothing was written"):
         report_study(

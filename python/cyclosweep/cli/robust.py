@@ -68,7 +68,7 @@ def robust(
     from cyclosweep.explore import robust_choice
     from cyclosweep.sweep.tolerances import Tolerances
 
-    check_out(out)
+    check_out(out, *designs, tolerances)
     spread = Tolerances.from_toml(tolerances)
     with interruptible("nothing was written"):
         wanted, base, table, model = _designs(designs, minimise, maximise, limit, candidates, drive)

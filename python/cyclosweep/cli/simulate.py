@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from cyclosweep.atomic import unfinished
-from cyclosweep.cli.output import fail
+from cyclosweep.cli.output import fail, refuse_output
 from cyclosweep.errors import InputError, refuse_no_file
 
 if TYPE_CHECKING:
@@ -66,9 +66,9 @@ def simulate(
 
     refuse_no_file(program)
     read = (program, _metadata(program), Path(model))
-    _refuse_output("--out", out, read)
+    refuse_output(out, *read)
     if sheet is not None:
-        _refuse_output("--sheet", sheet, (*read, out))
+        refuse_output(sheet, *read, out, option="--sheet")
         if sheet.exists():
             raise InputError(f"--sheet: {sheet} exists, it may hold readings; give another name")
     elif lever_arm is not None:
@@ -99,21 +99,6 @@ def _write(table: DataFrame, out: Path) -> None:
             table.write_csv(file)
     except OSError as error:
         fail(f"{out}: {error.strerror or error}", 1)
-
-
-def _refuse_output(option: str, out: Path, inputs: tuple[Path, ...]) -> None:
-    """Refuse to write over a file that is read, or where no file can be."""
-    if any(_same(path, out) for path in inputs):
-        raise InputError(f"{option}: found {out}, which is read, expected another file")
-    if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"{option}: found {out}, expected a file in a folder that exists")
-
-
-def _same(path: Path, other: Path) -> bool:
-    """Whether two paths are one file, whether it exists or not."""
-    if path.exists() and other.exists():
-        return path.samefile(other)
-    return path.resolve() == other.resolve()
 
 
 def _metadata(program: Path) -> Path:

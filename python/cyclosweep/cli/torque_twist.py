@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from cyclosweep.atomic import unfinished
-from cyclosweep.cli.output import AsJson, fail, print_json
+from cyclosweep.cli.output import AsJson, fail, print_json, refuse_output
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -33,11 +33,7 @@ def torque_twist(
     """Write torque over twist of a drive by its component model, free play and both directions."""
     from cyclosweep.design.drive import Drive
 
-    path = Path(drive)
-    if path.exists() and out.exists() and path.samefile(out):
-        raise InputError(f"--out: found {out}, which is read, expected another file")
-    if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
+    refuse_output(out, drive)
     chosen = Drive.load(drive)
     curve = chosen.torque_twist(side, crank_deg, to_load_tn=to_load, points=points)
     try:

@@ -103,6 +103,11 @@ class Drive(PublishedDrive):
         """
         if not isinstance(name, str) or name not in _BUILT_IN:
             known = ", ".join(_BUILT_IN)
+            if isinstance(name, str) and Path(name).is_file():
+                raise InputError(
+                    f"drive {name!r}: found a file that does not end in .toml, expected {known} "
+                    "or a .toml file"
+                )
             hint = did_you_mean(name, _BUILT_IN)
             raise InputError(
                 f"drive {name!r}: no such built-in drive, expected {known} or a file{hint}"

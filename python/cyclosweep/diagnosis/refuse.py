@@ -91,9 +91,11 @@ def check_prepared(problem: Problem, drive: Drive) -> None:
         )
     torque = problem.history.applied_nm[problem.fitted]
     if float(np.ptp(np.abs(torque))) < LEAST_CHANGE * float(np.abs(torque).max()):
+        both = torque.min() < 0.0 < torque.max()
+        what = "under load the torque has one size only" if both else "the torque hardly changes"
         raise NoDiagnosisError(
             "INSUFFICIENT_DATA",
-            "the torque hardly changes, so no compliance can be read",
+            f"{what}, so no compliance can be read",
             RECORD_MORE.format("a load that rises and falls in both directions"),
         )
     check_compliance(problem, drive, problem.history.compliance_deg_per_nm)

@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY, UNBROKEN
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.look_at import LOOK_AT
+from cyclosweep.report.summary import not_shown
 from cyclosweep.report.wording import (
     angle,
     interval,
@@ -15,7 +18,16 @@ from cyclosweep.report.wording import (
     without_unit,
 )
 from cyclosweep.result import EffectParameter, FoundEffect, Region
+from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.words import telling_digits
+
+LEAST_BACKWARDS = 0.01
+"""Friction below zero, over the largest torque, from which a loop runs the wrong way round."""
+BACKWARDS = (
+    "loop: it runs the wrong way round, as if the drive gave out work (friction below zero), which "
+    "no passive drive does. Check whether the torque is filtered or read later than the angle, the "
+    "order of the rows, and the signs."
+)
 
 
 def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
@@ -111,16 +123,14 @@ def _possible(data: ReportData) -> set[str]:
 def bounds(data: ReportData) -> list[str]:
     """Upper bounds of what was not found, those above the tolerance first."""
     causes = _possible(data)
-    undecided = [
+    undecided = [bound for bound in data.result.undecided if bound.name not in causes]
+    tolerance = data.result.tolerance_deg or 0.0
+    above = [bound for bound in undecided if bound.upper95_deg >= tolerance]
+    below = [bound for bound in undecided if bound not in above] + list(data.result.ruled_out)
+    return [
         f"{plain(bound.name)}: could be as large as {angle(bound.upper95_deg)}, above the tolerance"
-        for bound in data.result.undecided
-        if bound.name not in causes
-    ]
-    ruled_out = [
-        f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}"
-        for bound in data.result.ruled_out
-    ]
-    return undecided + ruled_out
+        for bound in above
+    ] + [f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}" for bound in below]
 
 
 def unknown(data: ReportData) -> str:
@@ -137,7 +147,17 @@ def unknown(data: ReportData) -> str:
 
 def findings(data: ReportData) -> list[str]:
     """What the loop shows, in the words of a gear test."""
-    return [f"{finding.topic}: {finding.text}" for finding in data.result.findings]
+    backwards = [BACKWARDS] if runs_backwards(data) else []
+    return backwards + [f"{finding.topic}: {finding.text}" for finding in data.result.findings]
+
+
+def runs_backwards(data: ReportData) -> bool:
+    """Whether a loop takes less torque on the way up than on the way down, error allowed for."""
+    read = data.result.play_and_stiffness
+    if read is None or read.friction_nm is None:
+        return False
+    highest = read.friction_nm.ci95[1] if read.friction_nm.ci95 else read.friction_nm.estimate
+    return highest < -LEAST_BACKWARDS * float(np.abs(data.recording.torque_nm).max())
 
 
 def untestable(data: ReportData) -> list[str]:
@@ -167,7 +187,7 @@ def explanations(data: ReportData) -> list[str]:
 def next_experiment(data: ReportData) -> str:
     """Load programme that would tell most, in one sentence or two."""
     plan = data.result.next_experiment
-    if plan is None:
+    if plan is None or (plan.program == NONE_NEEDED and not_shown(data.result)):
         return ""
     text = plan.program.rstrip(".") + "."
     text = text[:1].upper() + text[1:]

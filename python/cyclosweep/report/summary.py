@@ -6,6 +6,20 @@ from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.words import degrees, falls, listed, readable, shape_in_words
 
+NOTHING_TOLD = (
+    "The model misses something that no listed effect explains; its shape and place do not show."
+)
+"""Sentence where the error is too large for the noise and no test says why."""
+SHOWN_BY_LOOPS = frozenset(
+    {
+        "friction_hysteresis",
+        "load_dependent_friction",
+        "contact_stiffening",
+        "clearance_takeup",
+        "overload_softening",
+    }
+)
+"""Effects that a loop of many readings shows, and other programmes may not."""
 NEARLY_ALL = 0.995
 """Share of the mismatch that would be written as all of it, though something is left."""
 
@@ -64,6 +78,11 @@ def do_now(answer: Answer) -> str:
         text = answer.plausibility[0].text
         return f"Check first: {text}."
     if answer.verdict == "NOTHING_MISSING":
+        if hidden := not_shown(answer):
+            return (
+                f"Nothing that this recording can show. It cannot show {listed(hidden)}: record "
+                "loading and unloading in many steps."
+            )
         return "Nothing: the calibrated model describes this drive."
     largest = max(answer.effects, key=lambda effect: effect.size_deg.estimate, default=None)
     if largest is not None and largest.name in LOOK_AT and answer.change is None:
@@ -72,6 +91,23 @@ def do_now(answer: Answer) -> str:
     if plan is None or not plan.program or plan.program == NONE_NEEDED:
         return ""
     return f"Record next: {plan.program}."
+
+
+def not_shown(answer: Answer) -> list[str]:
+    """Usual effects that a recording with nothing missing cannot show.
+
+    Parameters
+    ----------
+    answer : Answer
+        The whole answer.
+
+    Returns
+    -------
+    list of str
+    """
+    if answer.verdict != "NOTHING_MISSING":
+        return []
+    return [row.name for row in answer.not_testable if row.name in SHOWN_BY_LOOPS]
 
 
 def _named(answer: Answer) -> str:
@@ -122,7 +158,7 @@ def _rest(answer: Answer) -> str:
         )
     rest = answer.unknown
     if rest is None:
-        return ""
+        return "" if answer.effects else NOTHING_TOLD
     what = f"{shape_in_words(rest.shape)} of {rest.size_deg:.2g} deg"
     named = {effect.name for effect in answer.effects}
     others = [law for law in answer.repaired.stand_ins if law not in named]

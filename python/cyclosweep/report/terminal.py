@@ -26,6 +26,8 @@ from cyclosweep.result.words import telling_digits
 
 NARROW = 60
 """Columns below which tables are written as lines, each with its own words."""
+MOST_NOTES = 4
+"""Notes on how a recording was read that are shown; all are in diagnosis.json."""
 FRAME = 6
 """Columns that the frame takes of a line with a title."""
 
@@ -80,11 +82,12 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         ("What the loop shows", sentences.findings(data)),
         ("What remains without a name", [rest] if rest else []),
         ("Where simulation and recording differ", sentences.regions(data)[:3]),
-        ("Explanations that fit", sentences.explanations(data)[:4]),
-        ("Possible (95 % upper bound)", sentences.possible(data)[:6]),
-        ("Not found (95 % upper bound)", sentences.bounds(data)[:6]),
-        ("What this recording cannot show", sentences.untestable(data)[:6]),
+        ("Explanations that fit", _first(sentences.explanations(data), 4)),
+        ("Beside what is named at most (95 % upper bound)", _first(sentences.possible(data))),
+        ("Not found (95 % upper bound)", _first(sentences.bounds(data))),
+        ("What this recording cannot show", _first(sentences.untestable(data))),
         ("Remarks on the recording", _remarks(data)),
+        ("How it was read", list(result.notes[:MOST_NOTES])),
     ):
         if lines:
             yield _bullets(heading, lines)
@@ -93,6 +96,14 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     said = result.statement.removeprefix(f"{data.recording.name}: ")
     if said.casefold() != summary_of(result).casefold():
         yield Text.assemble(("\nThe answer in full\n", "bold"), result.statement)
+
+
+def _first(lines: list[str], most: int = 6) -> list[str]:
+    """First lines of a list, and the names with which the others begin."""
+    if len(lines) <= most + 1:
+        return lines
+    names = ", ".join(line.partition(":")[0] for line in lines[most:])
+    return [*lines[:most], f"and {len(lines) - most} more: {names}"]
 
 
 def _remarks(data: ReportData) -> list[str]:

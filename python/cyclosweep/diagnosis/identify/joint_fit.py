@@ -196,11 +196,20 @@ class JointFit:
         design, white, hold = self._design(terms, history)
         beta = _solve(white, self._shifted, hold)
         least = LEAST_BESIDE_SPRING * self.problem.history.compliance_deg_per_nm
+        held = dict[int, float]()
         if beta[1] < least and any(term.is_whole_spring for term in terms):
             # The line may be nothing beside such a spring; the simulation divides by it.
-            rest = self._shifted - least * white[:, 1]
-            others = _solve(np.delete(white, 1, axis=1), rest, np.delete(hold, 1))
-            beta = np.insert(others, 1, least)
+            held[1] = least
+        if not self.problem.one_sided and beta[2] < 0.0:
+            # No play is negative; where a curve has taken its place it is nothing.
+            held[2] = 0.0
+        if held:
+            places = list(held)
+            rest = self._shifted - white[:, places] @ np.array(list(held.values()))
+            others = _solve(np.delete(white, places, axis=1), rest, np.delete(hold, places))
+            for place, value in held.items():
+                others = np.insert(others, place, value)
+            beta = others
         return history, design, white, beta
 
     def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats]:
