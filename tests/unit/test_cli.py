@@ -370,3 +370,29 @@ def test_numbers_of_a_narrow_table_are_not_broken() -> None:
     assert text.getvalue().count("3.6245e+05") == 5
     assert text.getvalue().count("-1.2345e-07") == 5
     assert max(map(len, text.getvalue().splitlines())) <= 75
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (
+            ("diagnose", "loop.csv", "--drive", "reference-87", "--out", "file/sub"),
+            "which is a file",
+        ),
+        (("evaluate", "designs.csv", "--out", "designs.csv"), "which is read"),
+        (("export", "reference-87", "--out", "none/x.dxf"), "a folder that exists"),
+        (("show", "drive.txt"), "does not end in .toml"),
+        (("show", "a" * 300 + ".toml"), "File name too long"),
+    ],
+)
+def test_an_output_that_cannot_be_is_refused_before_anything_is_computed(
+    arguments: tuple[str, ...], words: str, tmp_path: Path
+) -> None:
+    for name in ("file", "drive.txt"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "designs.csv").write_text("eccentricity_mm\n0.5\n")
+    found = run(*arguments, cwd=tmp_path)
+    assert (found.returncode, found.stdout) == (2, "")
+    assert words in found.stderr
+    assert len(found.stderr.strip().splitlines()) == 1
+    assert (tmp_path / "designs.csv").read_text() == "eccentricity_mm\n0.5\n"

@@ -14,7 +14,16 @@ from cyclosweep.recording.unbroken_runs import UNBROKEN
 from cyclosweep.report import ReportData, print_summary, write_png, write_report
 from cyclosweep.report.figures import all_figures
 from cyclosweep.report.png import _write
-from cyclosweep.result import Answer, PlayAndStiffness, Reading
+from cyclosweep.report.summary import summary_of
+from cyclosweep.result import (
+    Answer,
+    Bound,
+    Mismatch,
+    NextExperiment,
+    PlayAndStiffness,
+    Reading,
+    Untestable,
+)
 from tests.unit.made_up_report import make
 
 
@@ -128,3 +137,53 @@ def test_the_name_chooses_the_form(tmp_path: Path) -> None:
     )
     with pytest.raises(cs.InputError, match="no angles"):
         write_report(program, tmp_path / "d.png")
+
+
+def test_a_long_list_ends_with_the_names_of_the_rest() -> None:
+    data = make()
+    bounds = tuple(Bound(name=f"effect_{k}", upper95_deg=0.1) for k in range(9))
+    text = " ".join(
+        printed(
+            replace(data, result=replace(data.result, ruled_out=bounds, undecided=())), 120
+        ).split()
+    )
+    assert "And 3 more: effect 6, effect 7, effect 8" in text
+
+
+def test_a_bound_below_the_tolerance_is_not_said_to_be_above_it() -> None:
+    data = make()
+    for tolerance, said in ((0.05, True), (0.5, False)):
+        bound = (Bound(name="creep", upper95_deg=0.1),)
+        answer = replace(data.result, undecided=bound, tolerance_deg=tolerance)
+        text = " ".join(printed(replace(data, result=answer), 120).split())
+        assert ("could be as large as 0.1 deg (6 arcmin), above the tolerance" in text) is said
+
+
+def test_nothing_missing_says_what_the_recording_cannot_show() -> None:
+    hidden = (Untestable(name="friction_hysteresis", reason="it only loads"),)
+    data = make()
+    told = {}
+    for rows in ((), hidden):
+        answer = Answer(
+            verdict="NOTHING_MISSING",
+            not_testable=rows,
+            next_experiment=NextExperiment(program="none needed"),
+        )
+        told[rows] = " ".join(printed(replace(data, result=answer), 120).replace("│", "").split())
+    assert "the calibrated model describes this drive" in told[()]
+    assert "None needed" in told[()]
+    assert "It cannot show friction hysteresis" in told[hidden]
+    assert "None needed" not in told[hidden]
+
+
+def test_a_loop_that_runs_backwards_is_called_so() -> None:
+    data = make()
+    for friction, said in ((-0.4, True), (-1e-4, False), (0.4, False)):
+        read = PlayAndStiffness(runs=1, friction_nm=Reading(estimate=friction))
+        text = printed(replace(data, result=replace(data.result, play_and_stiffness=read)), 300)
+        assert ("the wrong way round" in text) is said
+
+
+def test_an_unknown_without_shape_or_effects_still_has_a_sentence() -> None:
+    answer = Answer(verdict="UNKNOWN_PHYSICS", mismatch=Mismatch(p_value=0.001))
+    assert "something that no listed effect explains" in summary_of(answer)
