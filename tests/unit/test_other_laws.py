@@ -5,7 +5,11 @@ import pytest
 from cyclosweep.diagnosis.identify.other_laws import visit_rivals, with_better_laws
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import decide, with_further_rivals
+from cyclosweep.diagnosis.identify.verdict import (
+    decide,
+    decide_in_stages,
+    with_further_rivals,
+)
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.base import Shape
 from cyclosweep.simulation.model import EffectValue
@@ -106,6 +110,26 @@ def test_further_rivals_share_what_is_left_and_none_is_counted_twice() -> None:
             ("load_asymmetry", POWER),
         )
     )
-    found = with_further_rivals([(takeup, 0.2)], [(takeup, 0.9), (dial, 0.5), (side, 0.5)])
+    others = [(takeup, 0.9), (dial, 0.5), (side, 0.5), (dial, 0.4)]
+    found = with_further_rivals([(takeup, 0.2)], others)
     assert [each for each, _ in found] == [takeup, dial, side]
     assert [share for _, share in found] == pytest.approx([0.2, 0.2, 0.2])
+
+
+def test_the_rivals_of_a_tilted_dial_are_measured_against_it_with_its_tilt() -> None:
+    amplitudes = (0.06, 0.02, 0.064, -0.048)
+    search = search_of(EffectValue("dial_eccentricity", TILTED, amplitudes))
+    begun = begun_with(search, ("dial_eccentricity", TILTED))
+    fitted, rivals = with_better_laws(begun)
+    assert {term.name: term.shape for term in fitted.terms} == {"dial_eccentricity": TILTED}
+    assert max((odds for _, odds in rivals), default=0.0) < 0.05
+
+
+def test_what_was_accepted_is_listed_however_many_rivals_it_has() -> None:
+    search = search_of(EffectValue("load_asymmetry", POWER, (0.5,)))
+    begun = begun_with(search, ("load_asymmetry", POWER))
+    others = [search.judged(begun.start.fit, 0.0, 0.0) for _ in range(5)]
+    begun.rivals_of_start = list(zip(others, (0.4, 0.3, 0.2, 0.06, 0.03), strict=True))
+    decision = decide_in_stages(begun, 1.0)
+    assert decision.verdict == "AMBIGUOUS"
+    assert any(each is decision.best for each, _ in decision.explanations)

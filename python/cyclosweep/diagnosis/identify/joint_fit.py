@@ -58,6 +58,8 @@ class JointFit:
         self.problem, self.noise, self.terms = problem, noise, terms
         self.fit_parameters = parameters
         self.slides = any(term.slips for term in terms)
+        # Where the noise is error of the model, whole loops are fitted next, whose play is bounded.
+        self._bounds_play = not (problem.one_sided or noise.structured)
         self.use = problem.fitted
         self.angle = problem.angle_deg[self.use]
         self.drags = any(term.effect is not None and term.effect.is_drag for term in terms)
@@ -200,7 +202,7 @@ class JointFit:
         if beta[1] < least and any(term.is_whole_spring for term in terms):
             # The line may be nothing beside such a spring; the simulation divides by it.
             held[1] = least
-        if not self.problem.one_sided and beta[2] < 0.0:
+        if self._bounds_play and beta[2] < 0.0:
             # No play is negative; where a curve has taken its place it is nothing.
             held[2] = 0.0
         if held:

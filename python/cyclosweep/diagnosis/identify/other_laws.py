@@ -23,6 +23,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
 )
 from cyclosweep.diagnosis.identify.search import MOST_SHAPE_ERROR, SHAPE_ERROR, Search
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.verdict import decide
 
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
@@ -74,12 +75,16 @@ def with_better_laws(
         if taken and best is not None:
             fitted = best.fit
         if own is not None:
-            winner = best if taken and best is not None else own
+            same = fitted.names if taken else own.fit.names
+            winner = max(
+                (each for each in (own, *tried) if each.names == frozenset(same)),
+                key=lambda each: each.score,
+            )
             explained = parent.fit.loss - winner.fit.loss
             rivals += [
                 (each, _odds(each.score - winner.score, explained))
                 for each in (own, *tried)
-                if each is not winner and each.all_recognised
+                if each.names != winner.names and each.all_recognised
             ]
     present = frozenset(fitted.names)
     return fitted, [each for each in rivals if len(each[0].names ^ present) == 2]
@@ -139,7 +144,7 @@ def visit_rivals(search: Search) -> None:
     search : Search
         After it has run from the baseline.
     """
-    best = search.best()
+    best = decide(search, [], 0.0).best
     if best is None:
         return
     near = [best.names]
@@ -156,7 +161,7 @@ def visit_rivals(search: Search) -> None:
     for candidate in [search.visited[names] for names in near if names in search.visited]:
         for index in range(len(candidate.fit.terms)):
             whole = _in_whole_class(search, candidate, index)
-            if whole.score > candidate.score:
+            if whole is not candidate:
                 search.visited[whole.names] = whole
 
 
@@ -263,7 +268,8 @@ def _in_whole_class(search: Search, child: Candidate, index: int = -1) -> Candid
         return child
     before, after = (each.fit.terms[index].shape for each in (child, richer))
     charge = term.effect.penalty(after) - term.effect.penalty(before)
-    return replace(richer, prior=richer.prior - charge)
+    charged = replace(richer, prior=richer.prior - charge)
+    return charged if charged.score > child.score else child
 
 
 def _pairs(search: Search, tried: Sequence[Candidate]) -> Iterator[Candidate]:

@@ -251,6 +251,7 @@ def _with_settled_laws(
     rivals = last.rivals_of_start
     if last.start is not last.baseline:
         settled, others = with_better_laws(last)
+        rivals = [each for each in rivals if each[0].names != frozenset(settled.names)]
         rivals, better = with_further_rivals(rivals, others), best_placed(settled)
         if better is not last.start.fit:
             last = _stage(searched, flexible, better)

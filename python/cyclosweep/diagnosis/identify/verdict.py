@@ -198,15 +198,18 @@ def with_further_rivals(
     rivals : list of (Candidate, probability)
         Other explanations that are known.
     further : list of (Candidate, float)
-        Structures with their odds over the accepted one; those of the same effects as a known
-        rival are passed over.
+        Structures with their odds over the accepted one. Of several of the same effects the
+        likeliest counts, and none that is a known rival already.
 
     Returns
     -------
     list of (Candidate, probability)
     """
-    known = {candidate.names for candidate, _ in rivals}
-    new = [(candidate, odds) for candidate, odds in further if candidate.names not in known]
+    seen, new = {candidate.names for candidate, _ in rivals}, list[tuple[Candidate, float]]()
+    for candidate, odds in sorted(further, key=lambda each: -each[1]):
+        if candidate.names not in seen:
+            seen.add(candidate.names)
+            new.append((candidate, odds))
     left = 1.0 - sum(share for _, share in rivals)
     whole = 1.0 + sum(odds for _, odds in new)
     return [*rivals, *((candidate, left * odds / whole) for candidate, odds in new)]
@@ -246,8 +249,9 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
     """
     best = search.chosen or search.start
     probability = 1.0 - sum(share for _, share in search.rivals_of_start)
-    explanations = [(best, probability), *search.rivals_of_start]
-    explanations = likely(sorted(explanations, key=lambda each: -each[1]))
+    own = (best, probability)
+    explanations = likely(sorted([own, *search.rivals_of_start], key=lambda each: -each[1]))
+    explanations += [own] if own not in explanations else []
     if search.suffices(best) and best.fit.noise.model_error_factor == 1.0:
         sure = probability >= SURE
         return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
