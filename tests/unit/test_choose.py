@@ -191,6 +191,6 @@ def test_a_reader_that_ends_early_is_no_error(made: Path) -> None:
 def test_a_folder_that_cannot_be_written_to(made: Path) -> None:
     target = "/proc/drive.toml"
     found = run("pick", "studie ü", "3", "--out", target, cwd=made)
-    assert found.returncode == 1
+    assert found.returncode == 2
     [line] = found.stderr.strip().splitlines()
     assert "/proc" in line

@@ -88,7 +88,7 @@ def test_each_prints_a_table_or_json_and_writes_a_table(
         (["nearest", "Maße 1", "--target", "twist_1=3"], "no column twist_1"),
         (["feasible", "none"], "none"),
         (["feasible", "Maße 1", "--out", "x.doc"], "x.doc"),
-        (["feasible", "Maße 1", "--out", "no/x.csv"], "--out: no folder no"),
+        (["feasible", "Maße 1", "--out", "no/x.csv"], "a folder that exists"),
         (["sensitivity", "study.toml", "--limit", "hole_web_mm > 3"], "--limit: for the folder"),
         (["sensitivity", "study.toml", "--results", "twist"], "results: no column twist"),
         (["robust", "reference-87", "--tolerances", TOLERANCES], "no objective"),

@@ -65,9 +65,7 @@ def print_tables(renderables: Iterable[RenderableType]) -> None:
     from rich.console import Console
 
     # Without a terminal rich would cut the tables to 80 columns.
-    asked = os.environ.get("COLUMNS", "")
-    wide = int(asked) if asked.isdigit() and int(asked) > 0 else 120
-    console = Console(width=None if sys.stdout.isatty() else wide)
+    console = Console(width=None if sys.stdout.isatty() else 120)
     for renderable in renderables:
         console.print(renderable)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import tomllib
 from importlib import resources
@@ -103,7 +104,7 @@ class Drive(PublishedDrive):
         """
         if not isinstance(name, str) or name not in _BUILT_IN:
             known = ", ".join(_BUILT_IN)
-            if isinstance(name, str) and Path(name).is_file():
+            if isinstance(name, str) and os.path.isfile(name):
                 raise InputError(
                     f"drive {name!r}: found a file that does not end in .toml, expected {known} "
                     "or a .toml file"

@@ -87,7 +87,7 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
         ("Not found (95 % upper bound)", _first(sentences.bounds(data))),
         ("What this recording cannot show", _first(sentences.untestable(data))),
         ("Remarks on the recording", _remarks(data)),
-        ("How it was read", list(result.notes[:MOST_NOTES])),
+        ("How it was read", _notes(data)),
     ):
         if lines:
             yield _bullets(heading, lines)
@@ -112,6 +112,12 @@ def _remarks(data: ReportData) -> list[str]:
     reasons = [fault.reason for fault in data.recording.faults]
     asked = sentences.asked(data)
     return [*asked, *(reason for reason in reasons if reason.rstrip(".") not in said)][:4]
+
+
+def _notes(data: ReportData) -> list[str]:
+    """First notes on how the recording was read, without what the statement says."""
+    said = data.result.statement
+    return [note for note in data.result.notes if note.rstrip(".") not in said][:MOST_NOTES]
 
 
 def _facts(data: ReportData) -> list[tuple[str, str]]:

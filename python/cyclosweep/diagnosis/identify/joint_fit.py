@@ -211,7 +211,8 @@ class JointFit:
             others = _solve(np.delete(white, places, axis=1), rest, np.delete(hold, places))
             for place, value in held.items():
                 others = np.insert(others, place, value)
-            beta = others
+            # Beside a wave of the angle the line itself may then have no stiffness.
+            beta = others if others[1] > 0.0 else beta
         return history, design, white, beta
 
     def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats]:
