@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cyclosweep.cli.exploring import say_if_unfinished
+from cyclosweep.cli.exploring import check_out, say_if_unfinished
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
@@ -54,10 +54,9 @@ def best(
     from cyclosweep.choose.best import best_variants
     from cyclosweep.explore import pareto_front
     from cyclosweep.sweep.stored import open_study
-    from cyclosweep.sweep.table_files import writable, write_table
+    from cyclosweep.sweep.table_files import write_table
 
-    if out is not None:
-        writable(out)
+    check_out(out)
     stored = open_study(study)
     say_if_unfinished(study)
     goals = _goals(pareto, minimise, maximise, stored)

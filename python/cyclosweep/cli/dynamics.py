@@ -124,8 +124,8 @@ def shock(
     chosen = Drive.load(drive)
     what = Event.from_toml(event).of_drive(chosen)
     train = chosen.train(_springs(what.model), with_efficiency=True, **what.parts)
-    run = transient(train, what)
     refuse_folder(out)
+    run = transient(train, what)
     out.mkdir(parents=True, exist_ok=True)
     content: dict[str, Any] = {
         "schema": "cyclosweep.shock/1",

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import AsJson, print_json, refuse_output
+from cyclosweep.cli.exploring import check_out
+from cyclosweep.cli.output import AsJson, print_json
 from cyclosweep.errors import InputError
 
 
@@ -39,10 +40,9 @@ def evaluate(
 
     from cyclosweep.design.drive import Drive
     from cyclosweep.sweep.design_table import evaluate_table
-    from cyclosweep.sweep.table_files import read_table, row_in_file, writable, write_table
+    from cyclosweep.sweep.table_files import read_table, row_in_file, write_table
 
-    writable(out)
-    refuse_output(Path(out), designs)
+    check_out(out, designs)
     loads_tn = None if loads is None else _loads(loads)
     logging.getLogger("cyclosweep").addHandler(handler := _Notes())
     try:

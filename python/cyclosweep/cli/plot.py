@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import fail
+from cyclosweep.cli.output import fail, refuse_output
 from cyclosweep.errors import DesignError, InputError
 
 if TYPE_CHECKING:
@@ -163,13 +163,9 @@ def plot(
 
 def _refuse(out: Path, sources: list[str]) -> None:
     """Refuse a file that cannot be written before anything is computed."""
-    for source in sources:
-        if Path(source).exists() and out.exists() and out.samefile(source):
-            raise InputError(f"--out: found {out}, which is read, expected another file")
+    refuse_output(out, *sources)
     if out.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"--out: found {out}, expected a file ending in .png, .svg or .pdf")
-    if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
 
 
 def _disc(asked: _Asked) -> Figure:

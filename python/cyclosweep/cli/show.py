@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from cyclosweep.cli.exploring import check_out
 from cyclosweep.cli.output import AsJson, print_json, print_tables
 
 
@@ -31,10 +32,9 @@ def show(
     """
     from cyclosweep.choose.comparison import compare
     from cyclosweep.choose.comparison_text import renderables
-    from cyclosweep.sweep.table_files import writable, write_table
+    from cyclosweep.sweep.table_files import write_table
 
-    if out is not None:
-        writable(out)
+    check_out(out)
     found = compare(drives)
     if out is not None:
         write_table(found.table, out)

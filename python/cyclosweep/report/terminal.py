@@ -108,16 +108,18 @@ def _first(lines: list[str], most: int = 6) -> list[str]:
 
 def _remarks(data: ReportData) -> list[str]:
     """What the diagnosis asks, and first remarks without the verdict's own statement."""
-    said = data.result.statement
     reasons = [fault.reason for fault in data.recording.faults]
-    asked = sentences.asked(data)
-    return [*asked, *(reason for reason in reasons if reason.rstrip(".") not in said)][:4]
+    return [*sentences.asked(data), *_unsaid(data, reasons)][:4]
 
 
 def _notes(data: ReportData) -> list[str]:
     """First notes on how the recording was read, without what the statement says."""
-    said = data.result.statement
-    return [note for note in data.result.notes if note.rstrip(".") not in said][:MOST_NOTES]
+    return _unsaid(data, data.result.notes)[:MOST_NOTES]
+
+
+def _unsaid(data: ReportData, lines: Sequence[str]) -> list[str]:
+    """Lines that the statement of the verdict does not hold already."""
+    return [line for line in lines if line.rstrip(".") not in data.result.statement]
 
 
 def _facts(data: ReportData) -> list[tuple[str, str]]:
