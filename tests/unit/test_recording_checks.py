@@ -6,10 +6,15 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.recording.inspection import inspect
+from cyclosweep.recording.proposed import Known
 
 TORQUE = np.r_[np.linspace(0.5, 20, 40), np.linspace(20, 0.5, 40), np.linspace(-0.5, -20, 40)]
 ANGLE = 28 * np.sign(TORQUE) + 2.73 * TORQUE
 TIME = np.arange(len(TORQUE), dtype=float)
+
+
+KNOWN = Known(cs.Drive.load("reference-87"), "reference-87", "input")
 
 
 def kinds(recording: cs.Recording) -> dict[str, str | None]:
@@ -116,3 +121,48 @@ def test_arrays_with_gaps_lose_the_samples_without_a_number() -> None:
     recording = cs.Recording.from_arrays(torque, angle)
     assert len(recording) == 200
     assert "100 of 300 samples" in recording.notes[0]
+
+
+def clipped_on_both_flanks(limit_deg: float, step_deg: float = 0.0) -> cs.Recording:
+    angle = ANGLE + 0.02 * np.random.default_rng(5).normal(size=len(ANGLE))
+    if step_deg:
+        angle = step_deg * np.round(angle / step_deg)
+    return cs.Recording.from_arrays(TORQUE, np.clip(angle, -limit_deg, limit_deg))
+
+
+def test_an_angle_clipped_near_the_ends_of_both_flanks_is_said() -> None:
+    # The load goes on by 8 % of the range of both flanks together.
+    assert kinds(clipped_on_both_flanks(74.0)) == {"saturation": None}
+
+
+@pytest.mark.parametrize("step_deg", [0.0, 1.0, 4.0])
+def test_a_coarse_dial_and_friction_at_the_turn_are_no_saturation(step_deg: float) -> None:
+    assert kinds(clipped_on_both_flanks(200.0, step_deg)) == {}
+    turning = np.r_[np.full(6, 20.0), np.linspace(20.0, 17.0, 8)]
+    torque = np.r_[np.linspace(0.5, 20, 40), turning, np.linspace(16.5, 0.5, 40)]
+    angle = 28.0 + 2.73 * np.r_[torque[:40], np.full(14, 20.0), torque[54:]]
+    assert kinds(cs.Recording.from_arrays(np.r_[torque, -torque], np.r_[angle, -angle])) == {}
+
+
+def test_a_clock_that_stands_still_is_left_out(tmp_path: Path) -> None:
+    recording = cs.Recording.from_arrays(TORQUE, ANGLE, time_s=np.full(len(TORQUE), 5.0))
+    assert recording.time_s is None
+    assert len(recording) == len(TORQUE)
+    path = tmp_path / "loop.csv"
+    rows = "".join(f"5.0,{t},{a}\n" for t, a in zip(TORQUE, ANGLE, strict=True))
+    path.write_text("time_s,torque_nm,angle_deg\n" + rows)
+    assert "same_time" not in repr(inspect(path, KNOWN, {}))
+    assert len(cs.Recording.read(path)) == len(TORQUE)
+
+
+def test_a_torque_that_no_sensor_reads_is_a_data_fault() -> None:
+    recording = cs.Recording.from_arrays(TORQUE * 1e-300, ANGLE)
+    assert kinds(recording) == {"absurd_value": "DATA_FAULT"}
+
+
+def test_a_column_that_stands_twice_is_said_when_a_file_is_inspected(tmp_path: Path) -> None:
+    path = tmp_path / "loop.csv"
+    path.write_text("torque_nm,angle_deg,torque_nm\n" + "1.0,2.0,1.0\n" * 20)
+    found = inspect(path, KNOWN, {})
+    assert found.text_columns == []
+    assert any("torque_nm: more than one column" in text for text in found.proposal.assumed)

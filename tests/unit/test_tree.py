@@ -78,7 +78,8 @@ STAGES = {
     "change": DECIDED | {"growth", "sweeps"},
     "verification": DECIDED | {"verify", "change"},
     "effects_found": DECIDED | {"elasticity"},
-    "remainder": DECIDED | {"verify", "verification", "locate"},
+    "abrupt_step": DECIDED,
+    "remainder": DECIDED | {"verify", "verification", "locate", "abrupt_step"},
     "model_error_table": DECIDED | {"verify", "verification", "repair"},
     "finish": DECIDED | {"verification", "repair"},
     "compose": DECIDED

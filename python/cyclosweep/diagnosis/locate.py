@@ -22,6 +22,8 @@ LEVEL = 0.05
 """Probability by noise alone below which a region is given."""
 LEAST_LEFT = 0.2
 """Share of a cell that earlier regions have to leave for it to become one itself."""
+MOST_TAKEN = 0.5
+"""Share of its rows that earlier regions may hold."""
 BANDS = 8
 """Bands of torque on either side of zero."""
 MOST_RUNS = 60
@@ -138,29 +140,60 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     maxima = _largest_by_chance(gram, size, draws, np.random.default_rng([search.seed, 2]))
     raw = (problem.angle_deg - fitted.mean_deg)[use]
     residual = fitted.residual
-    # Where the residual is error of the model, none of it is noise to be taken off.
-    of_noise = 0.0 if search.noise.structured else search.noise.freedom
-    excess = max(max(fitted.chi2, float(residual @ residual)) - of_noise, 1e-9)
-    shared = 0.0
-    found: list[Region] = []
+    best_cells: list[tuple[_Cell, float]] = []
+    taken = np.zeros(len(raw), dtype=bool)
     for _ in range(MOST_REGIONS):
         z = np.abs(white.T @ residual) / size
         best = int(np.argmax(z))
         p = (1 + np.count_nonzero(maxima >= z[best])) / (1 + draws)
         if p > LEVEL or not testable[best]:
             break
-        cell = cells[best]
-        # The parts are at right angles to each other, so that together they are no more than all.
-        share = min(float(z[best] ** 2) / excess, 1.0 - shared)
-        shared += share
-        found.append(_region(problem, cell, float(raw[cell.rows[use]].mean()), share, p))
+        best_cells.append((cells[best], p))
         direction = white[:, best] / np.linalg.norm(white[:, best])
         residual = residual - direction * (direction @ residual)
         white = white - np.outer(direction, direction @ white)
         left = np.linalg.norm(white, axis=0)
         testable &= left > LEAST_LEFT * np.where(np.isfinite(size), size, 0.0)
+        taken |= cells[best].rows[use]
+        testable &= taken @ columns < MOST_TAKEN * columns.sum(axis=0)
         size = np.where(testable, left, np.inf)
-    return found
+    # Where the residual is error of the model, none of it is noise to be taken off.
+    noise_deg = 0.0 if search.noise.structured else search.noise.spread_deg
+    shares = _shares(raw, [cell.rows[use] for cell, _ in best_cells], noise_deg)
+    return [
+        _region(problem, cell, float(raw[cell.rows[use]].mean()), share, p)
+        for (cell, p), share in zip(best_cells, shares, strict=True)
+    ]
+
+
+def _shares(residual: Floats, regions: Sequence[Flags], noise_deg: float) -> list[float]:
+    """Share of the mean square residual beyond noise that the mean of each region makes up.
+
+    Rows that belong to several regions count in the first of them, so that together the shares
+    are no more than one.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (n,)
+        Measured less modelled twist [deg].
+    regions : sequence of ndarray of bool, shape (n,)
+        Rows of each region.
+    noise_deg : float
+        Standard deviation of the noise of a row [deg].
+
+    Returns
+    -------
+    list of float
+    """
+    taken = np.zeros(len(residual), dtype=bool)
+    squares = []
+    for rows in regions:
+        new = residual[rows & ~taken]
+        squares.append(len(new) * float(new.mean()) ** 2 if len(new) else 0.0)
+        taken |= rows
+    beyond = float(residual @ residual) - len(residual) * noise_deg**2
+    whole = max(beyond, sum(squares), 1e-300)
+    return [part / whole for part in squares]
 
 
 def _largest_by_chance(gram: Floats, size: Floats, draws: int, rng: np.random.Generator) -> Floats:

@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from cyclosweep.diagnosis.abrupt_step import abrupt_step, beside_line
 from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.hypotheses.unnamed_shapes import from_place
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
@@ -45,13 +47,14 @@ def remainder(
     if not verified.decision.unexplained:
         return None
     if verified.decision.best is None:
-        return _of_event(concluded, regions)
+        return _of_event(concluded, regions) or _strongest(concluded.accepted)
     if concluded.naming.withdrawn and concluded.naming.shown:
         return no_larger_than_left(_of_class(concluded), concluded.naming.part.fit)
     if verified.drift is not None:
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
-        return _staircase(concluded.accepted, concluded.repetition)
+        found = _step(concluded.accepted.fit)
+        return found or _staircase(concluded.accepted, concluded.repetition)
     found = _unnamed_term(concluded.best) or _unfitted(concluded)
     return no_larger_than_left(found, concluded.accepted.fit)
 
@@ -151,18 +154,63 @@ def _of_class(concluded: Conclusion) -> Remainder:
     return Remainder(shape=shape, place="all along", size_deg=size)
 
 
+def _step(fitted: FittedStructure) -> Remainder | None:
+    """Describe the single step of the zero that is nearly all that is left; None without one."""
+    step = abrupt_step(fitted)
+    if step is None:
+        return None
+    place = from_place(fitted.problem.history, step.row)
+    return Remainder(shape="step of the angle", place=place, size_deg=abs(step.size_deg))
+
+
 def _unnamed_term(best: Candidate) -> Remainder | None:
-    """Describe the first term without a name: a free shape, or an effect like many others."""
+    """Describe the largest free shape, or the first effect that is like many others."""
     fitted = best.fit
-    for index, term in enumerate(fitted.terms):
-        if term.unnamed is not None:
-            size = float(np.max(np.abs(size_of(fitted, index))))
-            return Remainder(shape=term.unnamed.family, place=term.unnamed.place, size_deg=size)
+    shapes = [
+        Remainder(
+            shape=term.unnamed.family,
+            place=term.unnamed.place,
+            size_deg=float(np.max(np.abs(size_of(fitted, index)))),
+        )
+        for index, term in enumerate(fitted.terms)
+        if term.unnamed is not None
+    ]
+    if shapes:
+        return max(shapes, key=lambda shape: shape.size_deg)
     for index, (term, named) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
         if not named and term.effect is not None:
             size = float(np.max(np.abs(size_of(fitted, index))))
             return Remainder(shape=term.effect.family, place="all along", size_deg=size)
     return None
+
+
+def _strongest(accepted: Candidate) -> Remainder | None:
+    """Describe what is left where no structure was found; None where it is within the noise.
+
+    Parameters
+    ----------
+    accepted : Candidate
+        The calibrated published model.
+
+    Returns
+    -------
+    Remainder or None
+    """
+    if not any(left > 0.0 for left in accepted.excesses.values()):
+        return None
+    step = _step(accepted.fit)
+    if step is not None:
+        return step
+    name, term, place = _strongest_hypothesis(accepted)
+    size = accepted.fit.rmse_deg
+    if term is not None:
+        # Far beyond the noise, rows count less the further off they are; here all count the same.
+        rows, basis, residual = beside_line(accepted.fit)
+        columns = term.columns(accepted.fit.history)[rows]
+        columns = columns - basis @ (basis.T @ columns)
+        amplitudes = np.linalg.lstsq(columns, residual, rcond=1e-6)[0]
+        size = float(np.max(np.abs(columns @ amplitudes)))
+    return Remainder(shape=name, place=place, size_deg=size)
 
 
 def _unfitted(concluded: Conclusion) -> Remainder:
@@ -178,19 +226,38 @@ def _unfitted(concluded: Conclusion) -> Remainder:
     Remainder
     """
     best = concluded.best
-    excesses = best.excesses
-    name = max(excesses, key=lambda key: excesses[key])
-    wave = best.sinusoid[1]
-    term: Term | None = None
-    place = ""
-    if wave is not None and wave.family == name:
-        term, place = Term(None, {}, wave), wave.place
-    elif name in best.scan.groups:
-        signature = best.scan.library.signatures[best.scan.best_signature(name)]
-        term = Term(signature.effect, signature.shape, signature.unnamed)
-        place = signature.unnamed.place if signature.unnamed is not None else "all along"
+    name, term, place = _strongest_hypothesis(best)
     size = concluded.accepted.fit.rmse_deg if term is None else size_left(best.fit, term)
     return Remainder(shape=name, place=place, size_deg=size)
+
+
+def _strongest_hypothesis(candidate: Candidate) -> tuple[str, Term | None, str]:
+    """What explains most of the residual of a structure.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The structure.
+
+    Returns
+    -------
+    name : str
+        Of the hypothesis.
+    term : Term or None
+        With its best shape; None where the recording hardly shows it.
+    place : str
+        Where it sits, in words.
+    """
+    excesses = candidate.excesses
+    name = max(excesses, key=lambda key: excesses[key])
+    wave = candidate.sinusoid[1]
+    if wave is not None and wave.family == name:
+        return name, Term(None, {}, wave), wave.place
+    if name not in candidate.scan.groups:
+        return name, None, ""
+    signature = candidate.scan.library.signatures[candidate.scan.best_signature(name)]
+    place = signature.unnamed.place if signature.unnamed is not None else "all along"
+    return name, Term(signature.effect, signature.shape, signature.unnamed), place
 
 
 def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:

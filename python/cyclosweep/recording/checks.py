@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from cyclosweep.recording.faults import Fault
-from cyclosweep.recording.samples import Samples
+from cyclosweep.recording.samples import Flags, Floats, Samples
 
 MIN_SAMPLES = 8
 """Fewest samples from which stiffness, free play, datum and a scatter can be estimated."""
@@ -15,6 +15,18 @@ ABSURD = 1e10
 
 GAP_FACTOR = 20.0
 """A step of the clock beyond so many median steps is a gap."""
+
+FEWEST_PINNED = 5
+"""Fewest samples at the end of a range from which a sensor may be saturated,"""
+MOVED = 0.1
+"""and the share of its range over which the other reading then goes,"""
+ON_LOADING = 0.05
+"""or the share of the largest torque by which the load grows while the angle stands,"""
+STEPS = 4.0
+"""if it is so many times what a step of the angle's resolution takes."""
+
+SMALLEST_TORQUE_NM = 1e-12
+"""Largest torque up to which a recording is empty: no sensor reads less."""
 
 
 @np.errstate(all="ignore")
@@ -61,6 +73,10 @@ def _absurd(recording: Samples) -> tuple[Fault, ...]:
         if largest > ABSURD:
             reason = f"{name} reaches {largest:.3g} {unit}: no rig reads that."
             return (Fault("absurd_value", "DATA_FAULT", reason),)
+    torque = float(np.abs(recording.torque_nm).max(initial=0.0))
+    if 0.0 < torque < SMALLEST_TORQUE_NM:
+        reason = f"torque_nm reaches only {torque:.3g} N m: no sensor reads that."
+        return (Fault("absurd_value", "DATA_FAULT", reason),)
     return ()
 
 
@@ -169,7 +185,6 @@ def _range(recording: Samples) -> list[Fault]:
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < 2:
         return []
-    faults = []
     if np.ptp(torque) <= 1e-9 * np.abs(torque).max():
         return [
             Fault(
@@ -188,6 +203,15 @@ def _range(recording: Samples) -> list[Fault]:
                 f"{torque.max():g} N m: the angle sensor did not move.",
             )
         ]
+    return _saturation(recording)
+
+
+def _saturation(recording: Samples) -> list[Fault]:
+    """Find readings that stand at an end of their range while the other one goes on."""
+    torque, angle = recording.torque_nm, recording.angle_deg
+    if angle is None:
+        return []
+    faults = []
     for name, values, other, unit in (
         ("angle", angle, torque, "deg"),
         ("torque", torque, angle, "N m"),
@@ -195,8 +219,12 @@ def _range(recording: Samples) -> list[Fault]:
         for end, level in (("lower", values.min()), ("upper", values.max())):
             pinned = values == level
             share = float(np.mean(pinned))
-            moved = np.ptp(other[pinned]) / np.ptp(other)
-            if np.count_nonzero(pinned) >= 5 and moved > 0.1:
+            moved = float(np.ptp(other[pinned]) / np.ptp(other))
+            if np.count_nonzero(pinned) < FEWEST_PINNED:
+                continue
+            # Torque that stands still while the angle goes on may as well be a weight and creep.
+            stops = name == "angle" and _stops_on_loading(angle, torque, pinned)
+            if moved > MOVED or stops:
                 faults.append(
                     Fault(
                         "saturation",
@@ -207,6 +235,35 @@ def _range(recording: Samples) -> list[Fault]:
                     )
                 )
     return faults
+
+
+def _stops_on_loading(angle: Floats, torque: Floats, pinned: Flags) -> bool:
+    """Whether an angle stops at the end of its range while the load still grows.
+
+    Friction holds the angle at its end too, but then the load falls; a coarse dial stands still
+    for a step.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        Reading that may be saturated [deg].
+    torque : ndarray, shape (n,)
+        The other one [N m].
+    pinned : ndarray of bool, shape (n,)
+        Rows at one end of its range.
+
+    Returns
+    -------
+    bool
+    """
+    levels = np.unique(angle)
+    ends = levels[:2] if angle[pinned][0] == levels[0] else levels[-2:]
+    of_a_step = float(np.ptp(ends) / np.ptp(angle) * np.ptp(torque))
+    load = np.abs(torque)
+    least = max(ON_LOADING * float(load.max()), STEPS * of_a_step)
+    rows = np.flatnonzero(pinned)
+    stretches = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+    return max(float(load[part].max() - load[part[0]]) for part in stretches) > least
 
 
 def _relation(recording: Samples) -> list[Fault]:

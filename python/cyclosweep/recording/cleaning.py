@@ -102,6 +102,32 @@ def keep_selected(
     return _rows(columns, keep)
 
 
+def without_stopped_clock(columns: Columns, notes: list[str]) -> Columns:
+    """Leave out a clock that shows the same time at every row.
+
+    Parameters
+    ----------
+    columns : dict of str to ndarray of float, shape (rows,), or None
+        Canonical columns.
+    notes : list of str
+        That the clock is left out is added to it.
+
+    Returns
+    -------
+    dict of str to ndarray of float, shape (rows,), or None
+    """
+    time = columns["time_s"]
+    if time is None or len(time) < 2 or not np.isfinite(time).any():
+        return columns
+    if np.nanmax(time) > np.nanmin(time):
+        return columns
+    notes.append(
+        f"The clock stands at {np.nanmin(time):g} s in every row and is left out: only the order "
+        "of the rows is known."
+    )
+    return {**columns, "time_s": None}
+
+
 def merge_ticks(path: Path, columns: Columns, notes: list[str]) -> Columns:
     """Average neighbouring rows of one run that share a clock tick.
 

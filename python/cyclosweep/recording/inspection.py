@@ -181,14 +181,21 @@ def inspect(
     made = propose(
         table, numbers, choice, known, bad, {} if in_force is None else in_force.columns(table)
     )
+    twice = [name for name in dict.fromkeys(table.header) if name and table.header.count(name) > 1]
+    if twice:
+        made.assumed.append(
+            f"{', '.join(twice)}: more than one column of that name, not read; rename all but one "
+            "to use it."
+        )
     suggested: list[str] = []
     if in_force is not None:
         by_file = choose(table, numbers, given).roles
         suggested = in_force.suggestions(by_file, made)
         in_force.put_into(made)
     text = to_toml(made, path.name)
+    words = [name for name in table.header if name and name not in (*numbers, *twice)]
     found = Inspection(
-        path, [], [name for name in table.header if name and name not in numbers], made, text,
+        path, [], words, made, text,
         notes=list(table.notes), settings=settings, suggested=suggested,
     )  # fmt: skip
     meta = None

@@ -14,6 +14,7 @@ from cyclosweep.recording.cleaning import (
     keep_selected,
     merge_ticks,
     put_angle_right,
+    without_stopped_clock,
 )
 from cyclosweep.recording.columns import (
     Columns,
@@ -127,7 +128,9 @@ def _clean_columns(
     columns = canonical_columns(path, frame, sources, notes)
     columns["unscored"] = beyond_limits(meta.score.abs_max, columns, frame)
     columns = keep_selected((path, meta_path), meta, columns, frame, notes)
-    if meta.merge.same_time:
+    clock = columns["time_s"]
+    columns = without_stopped_clock(columns, notes)
+    if meta.merge.same_time and (clock is None or columns["time_s"] is not None):
         columns = merge_ticks(path, columns, notes)
     elif columns["time_s"] is not None:
         columns = drop_repeated(columns, notes)

@@ -21,7 +21,7 @@ from cyclosweep.errors import (
 )
 from cyclosweep.notebook import html_table
 from cyclosweep.recording.checks import find_faults
-from cyclosweep.recording.cleaning import drop_missing
+from cyclosweep.recording.cleaning import drop_missing, without_stopped_clock
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.messages import printable
 from cyclosweep.recording.metadata import Metadata
@@ -225,7 +225,7 @@ class Recording(Samples):
         }
         whole = cls(name=name, **given, **known)  # refuses columns of unequal length
         notes = list(whole.notes)
-        columns, faults = drop_missing(given, notes)
+        columns, faults = drop_missing(without_stopped_clock(given, notes), notes)
         kept: dict[str, Any] = dict(columns)
         return replace(whole, **kept, notes=tuple(notes), faults=faults)._checked()
 

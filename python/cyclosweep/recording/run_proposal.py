@@ -128,7 +128,7 @@ def propose_ticks(numbers: dict[str, Floats], choice: Choice, made: Proposal) ->
     if rows > LONG:
         made.meta["merge"] = {"neighbours": -(-rows // KEPT)}
         made.remarks["merge"] = f"{rows} rows: means of neighbours, never over a reversal"
-    if share > TICKS:
+    if TICKS < share < 1.0:  # of a clock that stands still all do, and it is left out
         made.meta["merge"] = {"same_time": True}  # which shortens a long recording, too
         made.remarks["merge"] = f"{share:.0%} of the rows share a clock tick with the one before"
 

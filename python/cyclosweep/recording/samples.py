@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from cyclosweep.errors import InputError
 
-__all__ = ["COLUMNS", "Floats", "Ints", "Samples"]
+__all__ = ["COLUMNS", "Flags", "Floats", "Ints", "Samples"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 COLUMNS: dict[str, type] = {
     "time_s": np.float64,

@@ -32,7 +32,8 @@ class Region(Part):
     mean_residual_deg: float
     """Mean of measured less modelled twist [deg]."""
     share_of_excess: float | None = None
-    """Share of the misfit beyond noise that this region accounts for."""
+    """Share of the mean square residual beyond noise that the mean of this region makes up, without
+    the rows of the regions before it."""
     p_value: float | None = None
     """Probability of as large a mean anywhere by noise alone."""
 

@@ -126,10 +126,8 @@ def _steps(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
     if count < 1:
         return
     places = index[np.linspace(0, len(index) - 1, count + 2)[1:-1].astype(int)]
-    clock = clock_of(history)
-    what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
     for place in places:
-        label = f"from {what.format(clock[place])} (run {history.run[place] + 1})"
+        label = from_place(history, place)
         yield UnnamedShape(
             "step of the angle",
             label,
@@ -145,9 +143,26 @@ def _steps(history: History, fitted: Flags) -> Iterator[UnnamedShape]:
     for place in places[::3]:
         yield UnnamedShape(
             "change of compliance",
-            f"from {what.format(clock[place])} (run {history.run[place] + 1})",
+            from_place(history, place),
             partial(softer_after, place),
         )
+
+
+def from_place(history: History, row: int) -> str:
+    """Words for the rows of a recording from one on.
+
+    Parameters
+    ----------
+    history : History
+    row : int
+        The first of them.
+
+    Returns
+    -------
+    str
+    """
+    what = "t = {:.4g} s" if history.time_s is not None else "row {:.0f}"
+    return f"from {what.format(clock_of(history)[row])} (run {history.run[row] + 1})"
 
 
 def _bumps(history: History) -> Iterator[UnnamedShape]:
