@@ -110,6 +110,8 @@ def test_a_loop_without_friction_is_said_to_have_none() -> None:
         (0.5, (0.48, 0.52), ("0.5 N m", "0.48 … 0.52")),
         (-0.5, (-0.52, -0.48), ("−0.5 N m", "−0.52 … −0.48")),
         (0.25, None, ("0.25 N m", "–")),
+        (-0.02, None, ("none found", "–")),
+        (-0.5, None, ("−0.5 N m", "–")),
     ):
         found = replace(read, friction_nm=Reading(estimate=estimate, ci95=ends))
         assert shown(found)[label] == words

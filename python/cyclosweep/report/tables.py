@@ -7,6 +7,7 @@ import numpy as np
 from cyclosweep.page import Table
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.loops import LoopFigures, loop_figures
+from cyclosweep.report.sentences import runs_backwards
 from cyclosweep.report.wording import (
     ARCMIN,
     NOTHING,
@@ -286,10 +287,11 @@ def play_table(data: ReportData) -> Table | None:
     if read is None:
         return None
     side = data.recording.side
+    friction = _friction(read.friction_nm, runs_backwards(data))
     rows = [
         (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, angle)),
         ("stiffness at the output", *_read(read.stiffness_at_output_nm_per_arcmin, _stiffnesses)),
-        (f"friction at the {side}, half the loop's width", *_friction(read.friction_nm)),
+        (f"friction at the {side}, half the loop's width", *friction),
     ]
     if side == "input":
         rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, angle)))
@@ -312,9 +314,23 @@ def _read(reading: Reading | None, write: Callable[[float, int], str]) -> tuple[
     return write(reading.estimate, digits), interval(reading.ci95, digits)
 
 
-def _friction(reading: Reading | None) -> tuple[str, str]:
-    """Friction and its interval; none where the interval holds zero."""
+def _friction(reading: Reading | None, backwards: bool) -> tuple[str, str]:
+    """Friction and its interval; none where the interval holds zero.
+
+    Parameters
+    ----------
+    reading : Reading or None
+        As read from the loop.
+    backwards : bool
+        Whether the loop runs the wrong way round, so that a value below zero is no error.
+
+    Returns
+    -------
+    (str, str)
+    """
     if reading is not None:
+        if reading.ci95 is None and reading.estimate <= 0.0 and not backwards:
+            return "none found", NOTHING
         low, high = reading.ci95 or (reading.estimate, reading.estimate)
         if low <= 0.0 <= high:
             return "none found", f"at most {_torques(high)}" if high > 0.0 else NOTHING
