@@ -381,6 +381,7 @@ def test_numbers_of_a_narrow_table_are_not_broken() -> None:
         ),
         (("evaluate", "designs.csv", "--out", "designs.csv"), "which is read"),
         (("export", "reference-87", "--out", "none/x.dxf"), "a folder that exists"),
+        (("torque-twist", "reference-87", "--out", "x.xlsx"), "ending in .csv"),
         (("show", "drive.txt"), "does not end in .toml"),
         (("show", "a" * 300 + ".toml"), "File name too long"),
     ],

@@ -29,6 +29,7 @@ __all__ = [
     "print_tables",
     "refuse_folder",
     "refuse_output",
+    "refuse_table",
 ]
 
 MOMENT_S = 0.02
@@ -98,6 +99,32 @@ def refuse_output(out: Path, *sources: str | Path, option: str = "--out") -> Non
         raise InputError(f"{option}: found {out}, which is a folder, expected a file")
     if not out.absolute().parent.is_dir():
         raise InputError(f"{option}: found {out}, expected a file in a folder that exists")
+
+
+OTHER_TABLES = {".arrow", ".feather", ".html", ".ipc", ".json", ".ods", ".parquet", ".xls", ".xlsx"}
+"""Endings of tables that are not comma-separated text."""
+
+
+def refuse_table(out: Path, *sources: str | Path, option: str = "--out") -> None:
+    """Refuse what `refuse_output` does, and a name that promises another table than CSV.
+
+    Parameters
+    ----------
+    out : Path
+        The file that is to be written.
+    *sources : str or Path
+        What is read.
+    option : str
+        Option that names the file.
+
+    Raises
+    ------
+    InputError
+        With the file that was found.
+    """
+    refuse_output(out, *sources, option=option)
+    if out.suffix.lower() in OTHER_TABLES:
+        raise InputError(f"{option}: found {out}, expected a file ending in .csv")
 
 
 def _same(path: Path, other: Path) -> bool:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from cyclosweep.atomic import unfinished
-from cyclosweep.cli.output import fail, refuse_output
+from cyclosweep.cli.output import fail, refuse_table
 from cyclosweep.errors import InputError, refuse_no_file
 
 if TYPE_CHECKING:
@@ -66,9 +66,9 @@ def simulate(
 
     refuse_no_file(program)
     read = (program, _metadata(program), Path(model))
-    refuse_output(out, *read)
+    refuse_table(out, *read)
     if sheet is not None:
-        refuse_output(sheet, *read, out, option="--sheet")
+        refuse_table(sheet, *read, out, option="--sheet")
         if sheet.exists():
             raise InputError(f"--sheet: {sheet} exists, it may hold readings; give another name")
     elif lever_arm is not None:

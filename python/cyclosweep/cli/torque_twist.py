@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from cyclosweep.atomic import unfinished
-from cyclosweep.cli.output import AsJson, fail, print_json, refuse_output
+from cyclosweep.cli.output import AsJson, fail, print_json, refuse_table
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def torque_twist(
     """Write torque over twist of a drive by its component model, free play and both directions."""
     from cyclosweep.design.drive import Drive
 
-    refuse_output(out, drive)
+    refuse_table(out, drive)
     chosen = Drive.load(drive)
     curve = chosen.torque_twist(side, crank_deg, to_load_tn=to_load, points=points)
     try:
