@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis import Diagnosis
 
 DRIVE = cs.Drive.load("reference-87")
 TORQUE = np.concatenate([
@@ -16,7 +15,7 @@ TWIST = DRIVE.free_play_deg * np.where(TORQUE >= 0, 1.0, -1.0) + 2.6 * TORQUE
 NOISE = 0.05 * np.random.default_rng(7).normal(size=len(TORQUE))
 
 
-def diagnosed(beside_deg: np.ndarray) -> Diagnosis:
+def diagnosed(beside_deg: np.ndarray) -> cs.Diagnosis:
     recording = cs.Recording.from_arrays(
         TORQUE, TWIST + NOISE + beside_deg, time_s=TIME, side="input", drive="reference-87"
     )

@@ -103,7 +103,7 @@ def keep_selected(
 
 
 def without_stopped_clock(columns: Columns, notes: list[str]) -> Columns:
-    """Leave out a clock that shows the same time at every row.
+    """Leave out a recording's clock that shows the same time at every row; a programme's stays.
 
     Parameters
     ----------
@@ -117,7 +117,9 @@ def without_stopped_clock(columns: Columns, notes: list[str]) -> Columns:
     dict of str to ndarray of float, shape (rows,), or None
     """
     time = columns["time_s"]
-    if time is None or len(time) < 2 or not np.isfinite(time).any():
+    if columns["angle_deg"] is None or time is None or len(time) < 2:
+        return columns
+    if not np.isfinite(time).any():
         return columns
     if np.nanmax(time) > np.nanmin(time):
         return columns
