@@ -130,3 +130,30 @@ def test_answers_of_an_unfinished_study_say_so(
             assert run(monkeypatch, command, "part of it", *options) == 0
             errors = capsys.readouterr().err
             assert errors == (f"cyclosweep: part of it: {said}" if said else ""), command
+
+
+def test_pieces_have_to_keep_the_limits_of_the_study(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ["--tolerances", TOLERANCES, "--pieces", "64", "--candidates", "3", "--json"]
+    found = []
+    for name, limits, options in (
+        ("free", "", []),
+        ("typed", "", ["--limit", "hole_web_mm > 6.345"]),
+        ("own", "[limits]\nhole_web_mm = { min = 6.345 }\n", []),
+    ):
+        Path("study.toml").write_text(STUDY + limits)
+        cs.sink(cs.Study.from_toml("study.toml"), name)
+        assert run(monkeypatch, "robust", name, *asked, *options) == 0
+        designs = json.loads(capsys.readouterr().out)["designs"]
+        found.append([(each["variant"], each["share_ok"]) for each in designs])
+    assert found[1] == found[2] != found[0]
+    assert any(share < 1.0 for _, share in found[2])
+
+
+def test_a_percentile_beyond_100_is_named_as_it_was_given(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--maximise", "hole_web_mm", "--tolerances", TOLERANCES, "--percentile", "120"]
+    assert run(monkeypatch, "robust", "reference-87", *options) == 2
+    assert "percentile: found 120, expected 0 to 100" in capsys.readouterr().err

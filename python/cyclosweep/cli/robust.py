@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 
     from cyclosweep.design.drive import Drive
     from cyclosweep.sweep.objective import Objective
-    from cyclosweep.sweep.study import StudyModel
+    from cyclosweep.sweep.stored import StoredStudy
 
 
 def robust(
@@ -63,7 +65,8 @@ def robust(
     """Order designs by how good they stay within manufacturing tolerances.
 
     Of each design so many pieces are evaluated; the figure is the percentile at the bad end. A
-    design of which more than 1 % of the pieces cannot be built or miss a limit comes last.
+    design of which more than 1 % of the pieces cannot be built or miss a limit comes last. The
+    limits of a sweep's own study count, too.
     """
     from cyclosweep.explore import robust_choice
     from cyclosweep.sweep.tolerances import Tolerances
@@ -71,17 +74,17 @@ def robust(
     check_out(out, *designs, tolerances)
     spread = Tolerances.from_toml(tolerances)
     with interruptible("nothing was written"):
-        wanted, base, table, model = _designs(designs, minimise, maximise, limit, candidates, drive)
+        wanted, base, table, study = _designs(designs, minimise, maximise, limit, candidates, drive)
         found = robust_choice(
             table,
             spread,
             wanted,
             percentile=percentile,
-            limits=limit,
+            limits=[*_limits_of(study), *(limit or [])],
             drive=base,
             count=pieces,
             seed=seed,
-            model=model,
+            **({} if study is None else _settings_of(study)),
         )
     write_out(found, out)
     if as_json:
@@ -112,8 +115,8 @@ def _designs(
     limit: list[str] | None,
     candidates: int,
     drive: str | None,
-) -> tuple[Objective, Drive | None, pl.DataFrame | list[Drive], StudyModel | None]:
-    """What is to be small or great, and the designs as drawn."""
+) -> tuple[Objective, Drive | None, pl.DataFrame | list[Drive], StoredStudy | None]:
+    """What is to be small or great, the designs as drawn, and the study they are of."""
     from cyclosweep.choose.best import best_variants
     from cyclosweep.design.drive import Drive
     from cyclosweep.sweep.stored import open_study
@@ -136,10 +139,27 @@ def _designs(
         if best.table.is_empty():
             raise InputError(f"{first}: no feasible variant within the limits")
         table = best.table.select("variant", *stored.axes)
-        return _stated(objective), stored.drive, table, stored.model
+        return _stated(objective), stored.drive, table, stored
     if drive is not None:
         raise InputError("--drive: only for a table of designs")
     return _stated(wanted), None, [Drive.load(path) for path in given], None
+
+
+def _limits_of(study: StoredStudy | None) -> list[str]:
+    """Conditions of a study's own limits; said on standard error where one cannot be computed."""
+    found = []
+    for name, (low, high) in ({} if study is None else study.limits).items():
+        if study is not None and name in study.own_columns:
+            print(f"Not counted: the limit of {name}, a column of your own.", file=sys.stderr)
+            continue
+        found += [f"{name} >= {low!r}"] if math.isfinite(low) else []
+        found += [f"{name} <= {high!r}"] if math.isfinite(high) else []
+    return found
+
+
+def _settings_of(study: StoredStudy) -> dict[str, Any]:
+    """Loads, model and solver of a study."""
+    return {"loads_tn": study.loads_tn, "model": study.model, "solver": study.solver}
 
 
 def _objective(minimise: str | None, maximise: str | None) -> Objective | None:

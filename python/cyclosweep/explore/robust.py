@@ -200,6 +200,8 @@ def robust_choice(
     """
     instance_of("objective", objective, str, Objective)
     wanted = Objective(objective) if isinstance(objective, str) else objective
+    if not 0 <= finite_number("percentile", percentile) <= 100:
+        raise InputError(f"percentile: found {percentile:g}, expected 0 to 100")
     worst = 100 - percentile if wanted.maximise else percentile
     found = tolerance_percentiles(designs, tolerances, wanted.column, [worst], **settings)
     by, as_drawn = found.columns[-1], f"{wanted.column}_nominal"

@@ -150,9 +150,9 @@ def robust_variants(
         does not tell how to compute.
     """
     texts = [each.column for each in objectives]
-    limits = _limits(study)
+    limits = study.limits
     read = {name for text in (*texts, *limits) for name in names_in(text)}
-    if read & {name for name, _ in study.definition.get("own_columns", ())}:
+    if read & study.own_columns:
         return []
     parts = []
     for variant in variants:
@@ -207,7 +207,3 @@ def _held(tolerances: Tolerances, drive: Drive) -> Tolerances:
         if math.isfinite(given.get(name, math.nan))
     }
     return Tolerances(kept, tolerances.batches, tolerances.batch_size)
-
-
-def _limits(study: StoredStudy) -> Mapping[str, tuple[float | None, float | None]]:
-    return {name: (float(low), float(high)) for name, low, high in study.definition["limits"]}

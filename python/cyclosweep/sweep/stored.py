@@ -98,6 +98,16 @@ class StoredStudy:
         """Loads [T_N] at which twists were computed."""
         return tuple(float(load) for load in self.definition.get("loads_tn", ()))
 
+    @property
+    def limits(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each column that a feasible variant has."""
+        return {name: (float(low), float(high)) for name, low, high in self.definition["limits"]}
+
+    @property
+    def own_columns(self) -> frozenset[str]:
+        """Columns of the user's own, which the stored study does not tell how to compute."""
+        return frozenset(name for name, _ in self.definition.get("own_columns", ()))
+
     @cached_property
     def summary(self) -> Summary:
         """Counts by status, ranges of the results and best variants, of the parts' footers."""
