@@ -80,7 +80,7 @@ def robust(
             spread,
             wanted,
             percentile=percentile,
-            limits=[*_limits_of(study), *(limit or [])],
+            limits=[*(_limits_of(study) if study is not None else ()), *(limit or ())],
             drive=base,
             count=pieces,
             seed=seed,
@@ -145,11 +145,11 @@ def _designs(
     return _stated(wanted), None, [Drive.load(path) for path in given], None
 
 
-def _limits_of(study: StoredStudy | None) -> list[str]:
+def _limits_of(study: StoredStudy) -> list[str]:
     """Conditions of a study's own limits; said on standard error where one cannot be computed."""
     found = []
-    for name, (low, high) in ({} if study is None else study.limits).items():
-        if study is not None and name in study.own_columns:
+    for name, (low, high) in study.limits.items():
+        if name in study.own_columns:
             print(f"Not counted: the limit of {name}, a column of your own.", file=sys.stderr)
             continue
         found += [f"{name} >= {low!r}"] if math.isfinite(low) else []

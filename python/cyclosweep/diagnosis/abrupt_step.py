@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.prepare.problem import line_design
-from cyclosweep.simulation.effects.history import Floats, Ints
+from cyclosweep.diagnosis.identify.testability import calibration_basis
+from cyclosweep.simulation.effects.history import Floats
 
 MOST = 0.9
 """Share of the mean square residual from which one step is what it consists of. A steady drift is
@@ -47,7 +47,8 @@ def abrupt_step(fitted: FittedStructure) -> AbruptStep | None:
     AbruptStep or None
         None where the residual is something else.
     """
-    rows, basis, residual = beside_line(fitted)
+    rows, basis = np.flatnonzero(fitted.problem.fitted), calibration_basis(fitted)
+    residual = fitted.residual_deg - basis @ (basis.T @ fitted.residual_deg)
     if len(rows) < 2 * EACH_SIDE:
         return None
     whole = float(residual @ residual)
@@ -61,32 +62,6 @@ def abrupt_step(fitted: FittedStructure) -> AbruptStep | None:
     if not whole > 0.0 or gain[first] < MOST * whole:
         return None
     return AbruptStep(int(rows[first]), float(common[first] / alone[first]))
-
-
-def beside_line(fitted: FittedStructure) -> tuple[Ints, Floats, Floats]:
-    """Residual of the fitted rows that datum, compliance and play would not take up.
-
-    Every row counts the same, as far off as it may be.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-
-    Returns
-    -------
-    rows : ndarray of int, shape (fitted,)
-        The fitted ones among all rows.
-    basis : ndarray, shape (fitted, 2 or 3)
-        Orthonormal columns of the line.
-    residual : ndarray, shape (fitted,)
-        Measured less modelled twist [deg], without what the basis holds.
-    """
-    problem = fitted.problem
-    rows = np.flatnonzero(problem.fitted)
-    line = line_design(fitted.history, fitted.history.elastic_nm, one_sided=problem.one_sided)
-    basis = np.linalg.qr(line[rows])[0]
-    residual = (problem.angle_deg - fitted.mean_deg)[rows]
-    return rows, basis, residual - basis @ (basis.T @ residual)
 
 
 def _from_row_on(values: Floats) -> Floats:

@@ -90,7 +90,7 @@ def event_regions(problem: Problem, accepted: Candidate) -> list[Region]:
         The largest first.
     """
     use, labels = np.flatnonzero(problem.fitted), recorded_runs(problem)
-    left = (problem.angle_deg - accepted.fit.mean_deg)[use]
+    left = accepted.fit.residual_deg
     run = problem.history.run[use]
     event = np.flatnonzero(event_rows(left, np.zeros((len(left), 0)), run))
     if not len(event):
@@ -138,9 +138,9 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     testable = size > 1e-6 * max(float(size.max()), 1e-300)
     size = np.where(testable, size, np.inf)
     maxima = _largest_by_chance(gram, size, draws, np.random.default_rng([search.seed, 2]))
-    raw = (problem.angle_deg - fitted.mean_deg)[use]
-    residual = fitted.residual
-    best_cells: list[tuple[_Cell, float]] = []
+    raw, residual = fitted.residual_deg, fitted.residual
+    found: list[Region] = []
+    squares: list[float] = []
     taken = np.zeros(len(raw), dtype=bool)
     for _ in range(MOST_REGIONS):
         z = np.abs(white.T @ residual) / size
@@ -148,52 +148,27 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
         p = (1 + np.count_nonzero(maxima >= z[best])) / (1 + draws)
         if p > LEVEL or not testable[best]:
             break
-        best_cells.append((cells[best], p))
+        rows = cells[best].rows[use]
+        found.append(_region(problem, cells[best], float(raw[rows].mean()), 0.0, p))
+        # Rows of several regions count in the first, so that all shares are at most the whole.
+        new = raw[rows & ~taken]
+        squares.append(len(new) * float(new.mean()) ** 2)
+        taken |= rows
         direction = white[:, best] / np.linalg.norm(white[:, best])
         residual = residual - direction * (direction @ residual)
         white = white - np.outer(direction, direction @ white)
         left = np.linalg.norm(white, axis=0)
         testable &= left > LEAST_LEFT * np.where(np.isfinite(size), size, 0.0)
-        taken |= cells[best].rows[use]
         testable &= taken @ columns < MOST_TAKEN * columns.sum(axis=0)
         size = np.where(testable, left, np.inf)
     # Where the residual is error of the model, none of it is noise to be taken off.
     noise_deg = 0.0 if search.noise.structured else search.noise.spread_deg
-    shares = _shares(raw, [cell.rows[use] for cell, _ in best_cells], noise_deg)
-    return [
-        _region(problem, cell, float(raw[cell.rows[use]].mean()), share, p)
-        for (cell, p), share in zip(best_cells, shares, strict=True)
-    ]
-
-
-def _shares(residual: Floats, regions: Sequence[Flags], noise_deg: float) -> list[float]:
-    """Share of the mean square residual beyond noise that the mean of each region makes up.
-
-    Rows that belong to several regions count in the first of them, so that together the shares
-    are no more than one.
-
-    Parameters
-    ----------
-    residual : ndarray, shape (n,)
-        Measured less modelled twist [deg].
-    regions : sequence of ndarray of bool, shape (n,)
-        Rows of each region.
-    noise_deg : float
-        Standard deviation of the noise of a row [deg].
-
-    Returns
-    -------
-    list of float
-    """
-    taken = np.zeros(len(residual), dtype=bool)
-    squares = []
-    for rows in regions:
-        new = residual[rows & ~taken]
-        squares.append(len(new) * float(new.mean()) ** 2 if len(new) else 0.0)
-        taken |= rows
-    beyond = float(residual @ residual) - len(residual) * noise_deg**2
+    beyond = float(raw @ raw) - len(raw) * noise_deg**2
     whole = max(beyond, sum(squares), 1e-300)
-    return [part / whole for part in squares]
+    return [
+        replace(region, share_of_excess=part / whole)
+        for region, part in zip(found, squares, strict=True)
+    ]
 
 
 def _largest_by_chance(gram: Floats, size: Floats, draws: int, rng: np.random.Generator) -> Floats:

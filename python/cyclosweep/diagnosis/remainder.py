@@ -5,18 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.abrupt_step import abrupt_step, beside_line
+from cyclosweep.diagnosis.abrupt_step import abrupt_step
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import from_place
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_left, size_of
+from cyclosweep.diagnosis.identify.testability import recalibration, size_left, size_of
 from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
-from cyclosweep.simulation.effects.history import Floats
 
 STRONG_WAVE = 5.0
 """Log evidence from which a sinusoid in the residual is worth naming."""
@@ -74,13 +73,8 @@ def no_larger_than_left(found: Remainder, named: FittedStructure) -> Remainder:
     -------
     Remainder
     """
-    largest = float(np.abs(_residual_deg(named)).max())
+    largest = float(np.abs(named.residual_deg).max())
     return replace(found, size_deg=min(found.size_deg, largest))
-
-
-def _residual_deg(fitted: FittedStructure) -> Floats:
-    """Measured less modelled twist of the fitted rows [deg]."""
-    return np.asarray((fitted.problem.angle_deg - fitted.mean_deg)[fitted.problem.fitted])
 
 
 def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | None:
@@ -205,10 +199,9 @@ def _strongest(accepted: Candidate) -> Remainder | None:
     size = accepted.fit.rmse_deg
     if term is not None:
         # Far beyond the noise, rows count less the further off they are; here all count the same.
-        rows, basis, residual = beside_line(accepted.fit)
-        columns = term.columns(accepted.fit.history)[rows]
-        columns = columns - basis @ (basis.T @ columns)
-        amplitudes = np.linalg.lstsq(columns, residual, rcond=1e-6)[0]
+        fitted, beside_line = accepted.fit, recalibration(accepted.fit)
+        columns = beside_line(term.columns(fitted.history)[fitted.problem.fitted])
+        amplitudes = np.linalg.lstsq(columns, beside_line(fitted.residual_deg), rcond=1e-6)[0]
         size = float(np.max(np.abs(columns @ amplitudes)))
     return Remainder(shape=name, place=place, size_deg=size)
 
@@ -275,7 +268,7 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     Remainder
     """
     fitted = accepted.fit
-    left = _residual_deg(fitted)
+    left = fitted.residual_deg
     shape, place = "misfit of the model", "which does not repeat from run to run"
     if repeats.is_physics or repeats.order is not None:
         shape, place = "staircase tied to the position of the mesh", f"repeating {repeats.in_words}"

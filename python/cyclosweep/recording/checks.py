@@ -203,14 +203,21 @@ def _range(recording: Samples) -> list[Fault]:
                 f"{torque.max():g} N m: the angle sensor did not move.",
             )
         ]
-    return _saturation(recording)
+    return _saturation(torque, angle)
 
 
-def _saturation(recording: Samples) -> list[Fault]:
-    """Find readings that stand at an end of their range while the other one goes on."""
-    torque, angle = recording.torque_nm, recording.angle_deg
-    if angle is None:
-        return []
+def _saturation(torque: Floats, angle: Floats) -> list[Fault]:
+    """Find readings that stand at an end of their range while the other one goes on.
+
+    Parameters
+    ----------
+    torque, angle : ndarray, shape (n,)
+        Readings that are not constant [N m], [deg].
+
+    Returns
+    -------
+    list of Fault
+    """
     faults = []
     for name, values, other, unit in (
         ("angle", angle, torque, "deg"),

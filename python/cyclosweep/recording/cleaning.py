@@ -119,12 +119,11 @@ def without_stopped_clock(columns: Columns, notes: list[str]) -> Columns:
     time = columns["time_s"]
     if columns["angle_deg"] is None or time is None or len(time) < 2:
         return columns
-    if not np.isfinite(time).any():
-        return columns
-    if np.nanmax(time) > np.nanmin(time):
+    shown = time[np.isfinite(time)]
+    if not len(shown) or np.ptp(shown) > 0.0:
         return columns
     notes.append(
-        f"The clock stands at {np.nanmin(time):g} s in every row and is left out: only the order "
+        f"The clock stands at {shown[0]:g} s in every row and is left out: only the order "
         "of the rows is known."
     )
     return {**columns, "time_s": None}

@@ -57,7 +57,7 @@ class Samples:
     run: Ints
     crank_deg: Floats | None = None
     temperature_c: Floats | None = None
-    unscored: NDArray[np.bool_] | None = None
+    unscored: Flags | None = None
 
     def __post_init__(self) -> None:
         for name, kind in COLUMNS.items():
@@ -97,7 +97,7 @@ class Samples:
         first = np.unique(self.run, return_index=True)[1]
         return tuple(int(k) for k in self.run[np.sort(first)])
 
-    def in_runs(self, runs: Iterable[int]) -> NDArray[np.bool_]:
+    def in_runs(self, runs: Iterable[int]) -> Flags:
         """Mask of the samples that belong to the given runs."""
         return np.isin(self.run, list(runs))
 

@@ -29,7 +29,7 @@ def explained_share(before: FittedStructure, after: FittedStructure, seed: int) 
     problem = before.problem
     use = problem.fitted
     weight = problem.weight[use]
-    errors = [(problem.angle_deg - fit.mean_deg)[use] ** 2 * weight for fit in (before, after)]
+    errors = [fit.residual_deg**2 * weight for fit in (before, after)]
     count = min(int(INDEPENDENT_PIECES), max(int(np.count_nonzero(use)) // 3, 1))
     stretch = np.arange(len(weight)) * count // max(len(weight), 1)
     totals = [np.bincount(stretch, error, count) for error in errors]

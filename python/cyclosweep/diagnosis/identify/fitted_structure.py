@@ -229,6 +229,11 @@ class FittedStructure(ABC):
         return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance), 0.0)))
 
     @property
+    def residual_deg(self) -> Floats:
+        """Measured less modelled twist of the fitted rows, shape (fitted,) [deg]."""
+        return np.asarray((self.problem.angle_deg - self.mean_deg)[self.problem.fitted])
+
+    @property
     def rmse_deg(self) -> float:
         """Root mean square of the angle residual on the fitted rows in contact [deg]."""
         return self.problem.rms_error(self.mean_deg, self.problem.fitted)

@@ -248,11 +248,16 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
     return frozenset(fitted.terms[k].name for k in others if hides(k) or is_open(k))
 
 
-def recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
-    """Function that takes out of twists on the fitted rows all that a calibration takes up."""
+def calibration_basis(fitted: FittedStructure) -> Floats:
+    """Orthonormal columns of what a calibration takes up on the fitted rows, shape (fitted, k)."""
     problem, history = fitted.problem, fitted.history
     line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
-    basis = orthonormal(line[problem.fitted])
+    return orthonormal(line[problem.fitted])
+
+
+def recalibration(fitted: FittedStructure) -> Callable[[Floats], Floats]:
+    """Function that takes out of twists on the fitted rows all that a calibration takes up."""
+    basis = calibration_basis(fitted)
     return lambda part: np.asarray(part - basis @ (basis.T @ part))
 
 
