@@ -300,12 +300,21 @@ def test_from_arrays_take_and_frame() -> None:
         cs.Recording.from_arrays(torque, torque[:3])
 
 
-@pytest.mark.parametrize(
-    ("step", "seen"), [(0.5, 0.5), (0.25, 0.25), (1.0, 1.0), (360 / 1024, 0.351562), (0.3, 0)]
-)
-def test_only_graduations_count_as_resolution(step: float, seen: float) -> None:
-    angle = step * np.rint(np.random.default_rng(2).uniform(-80, 80, 300) / step)
-    assert angle_lattice(angle) == pytest.approx(seen, rel=1e-5)
+@pytest.mark.parametrize("step", [0.5, 0.25, 1.0, 360 / 1024, 0.3, 0.9, 4.0, 1.8, 0.716, 1 / 60])
+@pytest.mark.parametrize("noise", [0.0, 0.6])
+def test_steps_of_an_angle_are_its_resolution(step: float, noise: float) -> None:
+    rng = np.random.default_rng(2)
+    torque = np.concatenate([np.linspace(0, 30, 200), np.linspace(30, -30, 400)])
+    angle = 2.7 * torque + noise * step * rng.standard_normal(600)
+    if step < 0.1:
+        angle /= 50.0
+    assert angle_lattice(step * np.rint(angle / step), torque) == pytest.approx(step, rel=1e-5)
+
+
+@pytest.mark.parametrize("step", [0.3, 0.9, 4.0])
+def test_even_steps_of_torque_on_a_straight_line_are_no_resolution(step: float) -> None:
+    place = np.concatenate([np.arange(0, 40), np.arange(40, -40, -1), np.arange(-40, 0)])
+    assert angle_lattice(step * place, 0.7 * place) == 0.0
 
 
 def test_a_true_half_turn_is_not_a_wrap(tmp_path: Path) -> None:

@@ -158,10 +158,10 @@ def _resolution(meta: Metadata, columns: Columns, notes: list[str]) -> float:
     float
         Step [deg]; 0 where the angle is continuous.
     """
-    angle = columns["angle_deg"]
-    if meta.angle_resolution_deg or angle is None:
+    angle, torque = columns["angle_deg"], columns["torque_nm"]
+    if meta.angle_resolution_deg or angle is None or torque is None:
         return meta.angle_resolution_deg
-    resolution = angle_lattice(angle)
+    resolution = angle_lattice(angle, torque)
     if resolution:
         notes.append(f"Angles lie on steps of {resolution:g} deg: taken as the resolution.")
     return resolution

@@ -5,6 +5,9 @@ from numpy.typing import NDArray
 
 from cyclosweep.recording.samples import Floats
 
+REGULAR = 0.8
+"""Share of readings that go on by the same step from which an angle advances regularly."""
+
 
 def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
     """Undo wraps: steps beyond half a period are taken as the shorter way round.
@@ -107,11 +110,23 @@ def sign_is_reversed(torque_nm: Floats, angle_deg: Floats, run: NDArray[np.gener
     return bool(spread > 0 and np.mean(torque * angle) < -0.5 * spread)
 
 
-def angle_lattice(angle_deg: Floats) -> float:
+def angle_lattice(angle_deg: Floats, torque_nm: Floats) -> float:
     """Step of the angle reading [deg] where all values are multiples of one; else 0.
 
     Steps below a thousandth of the range, as the printing of decimals makes them, do not matter
-    and count as continuous; so do steps that no dial or encoder has.
+    and count as continuous. Steps that no common dial or encoder has count where the reading
+    does not advance regularly: a gear or a change of units gives any step.
+
+    Parameters
+    ----------
+    angle_deg : ndarray of float, shape (n,)
+        Angle as read [deg], in file order.
+    torque_nm : ndarray of float, shape (n,)
+        Torque [N m].
+
+    Returns
+    -------
+    float
     """
     levels = np.unique(angle_deg)
     if len(levels) < 3 or len(levels) > 1000:
@@ -124,18 +139,41 @@ def angle_lattice(angle_deg: Floats) -> float:
     if np.abs(places - np.rint(places)).max() > 1e-3:
         return 0.0
     step = float(f"{span / np.rint(places[-1]):.6g}")
-    return step if _is_graduation(step) else 0.0
+    if _is_graduation(step) or not _advances_regularly(angle_deg, torque_nm, step):
+        return step
+    return 0.0
 
 
 def _is_graduation(step_deg: float) -> bool:
-    """Whether a dial or an encoder has such steps: 1, 2, 2.5 or 5 times ten to a power, or 360/2^n.
-
-    Even steps of torque on a straight line give even steps of angle too, but not such ones.
-    """
+    """Whether common dials and encoders have such steps: 1, 2, 2.5, 5 times 10^n, or 360/2^n."""
     mantissa = step_deg / 10.0 ** np.floor(np.log10(step_deg) + 1e-9)
     power = np.log2(360.0 / step_deg)
     dial = bool(np.isclose(mantissa, [1.0, 2.0, 2.5, 5.0], rtol=1e-5).any())
     return dial or bool(abs(power - np.rint(power)) < 1e-5)
+
+
+def _advances_regularly(angle_deg: Floats, torque_nm: Floats, step_deg: float) -> bool:
+    """Whether the angle goes by the same number of steps between most readings.
+
+    So it does where it is prescribed, or where even steps of torque meet a straight line.
+
+    Parameters
+    ----------
+    angle_deg : ndarray of float, shape (n,)
+        Angle as read [deg].
+    torque_nm : ndarray of float, shape (n,)
+        Torque [N m].
+    step_deg : float
+        Step of the reading [deg].
+
+    Returns
+    -------
+    bool
+    """
+    moves = np.rint(np.abs(np.diff(angle_deg)) / step_deg).astype(np.int64)
+    moves = moves[(moves > 0) | (np.diff(torque_nm) != 0.0)]
+    counts = np.bincount(moves[moves > 0])
+    return bool(counts.max() >= REGULAR * len(moves))
 
 
 def merge_same_time(
