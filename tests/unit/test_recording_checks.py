@@ -135,6 +135,39 @@ def test_an_angle_clipped_near_the_ends_of_both_flanks_is_said() -> None:
     assert kinds(clipped_on_both_flanks(74.0)) == {"saturation": None}
 
 
+def with_limited_torque(limit_nm: float, seed: int = 5) -> cs.Recording:
+    """Three loops to 30 N m, read by a torque sensor that ends earlier."""
+    rng = np.random.default_rng(seed)
+    once = np.r_[np.linspace(0.3, 30, 99), np.linspace(30, -30, 200), np.linspace(-30, -0.3, 99)]
+    torque = np.tile(once, 3)
+    angle = 28.0 * np.sign(torque) + 2.73 * torque + 0.2 * rng.normal(size=len(torque))
+    run = np.repeat([1, 2, 3], len(once))
+    clipped = np.clip(torque, -limit_nm, limit_nm)
+    return cs.Recording.from_arrays(clipped, angle, run=run, drive="reference-87")
+
+
+@pytest.mark.parametrize("limit_nm", [15.0, 25.0, 28.0])
+def test_a_clipped_torque_is_said_and_its_samples_do_not_count(limit_nm: float) -> None:
+    recording = with_limited_torque(limit_nm)
+    assert kinds(recording) == {"saturation": None}
+    assert recording.unscored is not None
+    np.testing.assert_array_equal(recording.unscored, np.abs(recording.torque_nm) == limit_nm)
+    answer = cs.diagnose(recording, cs.Drive.load("reference-87"))
+    assert answer.verdict == "NOTHING_MISSING"
+    assert "the sensor is saturated" in answer.statement
+
+
+def test_a_hold_with_creep_and_runs_that_begin_at_one_torque_are_no_saturation() -> None:
+    rng = np.random.default_rng(6)
+    rise = np.linspace(0.5, 30, 60)
+    torque = np.tile(np.r_[rise, np.full(60, 30.0), rise[::-1]], 3)
+    hold = np.r_[np.zeros(60), 1.0 - np.exp(-np.arange(60) / 15), np.linspace(1, 0, 60)]
+    angle = 28.0 + 2.73 * torque + 8.0 * np.tile(hold, 3) + 0.1 * rng.normal(size=len(torque))
+    angle[torque == 0.5] -= 28.0  # within the play
+    run = np.repeat([1, 2, 3], 180)
+    assert kinds(cs.Recording.from_arrays(torque, angle, run=run)) == {}
+
+
 @pytest.mark.parametrize("step_deg", [0.0, 1.0, 4.0])
 def test_a_coarse_dial_and_friction_at_the_turn_are_no_saturation(step_deg: float) -> None:
     assert kinds(clipped_on_both_flanks(200.0, step_deg)) == {}

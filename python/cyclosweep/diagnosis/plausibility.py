@@ -7,6 +7,7 @@ from math import log
 from cyclosweep.recording import Recording
 from cyclosweep.recording.units import factor_of
 from cyclosweep.result import CalibratedParameter, Doubt
+from cyclosweep.result.plausibility import Quantity
 
 FAR_COMPLIANCE = 2.0
 """Factor from nominal beyond which a compliance is remarked on. Real drives are often softer than
@@ -33,8 +34,12 @@ RARER = log(1.1)
 RIVAL = log(1.12)
 """How much worse than the best a mistake may fit and still be named beside it."""
 
-AGAINST_NAMES = ("columns_swapped", "unit_contradicted")
-"""Remarks of reading that the names of the file speak against its settings."""
+REMARKS: dict[str, Quantity] = {
+    "columns_swapped": "columns",
+    "unit_contradicted": "columns",
+    "saturation": "range",
+}
+"""Remarks of reading to be settled first, and what each is about."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +184,7 @@ def doubts(
     recording: Recording,
     ratio: float,
 ) -> tuple[Doubt, ...]:
-    """Remark on compliance, free play and datum far from nominal, and on a modulo too small.
+    """Remark on compliance, play and datum far from nominal, and on what reading found at fault.
 
     Parameters
     ----------
@@ -229,9 +234,12 @@ def doubts(
     if modulo is not None:
         found.append(Doubt(quantity="angle_modulo", text=modulo.reason))
     found += [
-        Doubt(quantity="columns", text=fault.reason[0].lower() + fault.reason[1:].rstrip("."))
+        Doubt(
+            quantity=REMARKS[fault.kind],
+            text=fault.reason[0].lower() + fault.reason[1:].rstrip("."),
+        )
         for fault in recording.faults
-        if fault.kind in AGAINST_NAMES
+        if fault.kind in REMARKS
     ]
     return tuple(found)
 

@@ -1,11 +1,11 @@
-"""Checks of a recording that was read: clock, gaps, saturation, duplicates, sample size."""
+"""Checks of a recording that was read: clock, gaps, range, duplicates, sample size."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from cyclosweep.recording.faults import Fault
-from cyclosweep.recording.samples import Flags, Floats, Samples
+from cyclosweep.recording.samples import Samples
 
 MIN_SAMPLES = 8
 """Fewest samples from which stiffness, free play, datum and a scatter can be estimated."""
@@ -15,15 +15,6 @@ ABSURD = 1e10
 
 GAP_FACTOR = 20.0
 """A step of the clock beyond so many median steps is a gap."""
-
-FEWEST_PINNED = 5
-"""Fewest samples at the end of a range from which a sensor may be saturated,"""
-MOVED = 0.1
-"""and the share of its range over which the other reading then goes,"""
-ON_LOADING = 0.05
-"""or the share of the largest torque by which the load grows while the angle stands,"""
-STEPS = 4.0
-"""if it is so many times what a step of the angle's resolution takes."""
 
 SMALLEST_TORQUE_NM = 1e-12
 """Largest torque up to which a recording is empty: no sensor reads less."""
@@ -181,7 +172,7 @@ def _clock(recording: Samples) -> list[Fault]:
 
 
 def _range(recording: Samples) -> list[Fault]:
-    """Find a constant torque or angle, and plateaus at the end of the range."""
+    """Find a constant torque or angle."""
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < 2:
         return []
@@ -203,74 +194,7 @@ def _range(recording: Samples) -> list[Fault]:
                 f"{torque.max():g} N m: the angle sensor did not move.",
             )
         ]
-    return _saturation(torque, angle)
-
-
-def _saturation(torque: Floats, angle: Floats) -> list[Fault]:
-    """Find readings that stand at an end of their range while the other one goes on.
-
-    Parameters
-    ----------
-    torque, angle : ndarray, shape (n,)
-        Readings that are not constant [N m], [deg].
-
-    Returns
-    -------
-    list of Fault
-    """
-    faults = []
-    for name, values, other, unit in (
-        ("angle", angle, torque, "deg"),
-        ("torque", torque, angle, "N m"),
-    ):
-        for end, level in (("lower", values.min()), ("upper", values.max())):
-            pinned = values == level
-            share = float(np.mean(pinned))
-            moved = float(np.ptp(other[pinned]) / np.ptp(other))
-            if np.count_nonzero(pinned) < FEWEST_PINNED:
-                continue
-            # Torque that stands still while the angle goes on may as well be a weight and creep.
-            stops = name == "angle" and _stops_on_loading(angle, torque, pinned)
-            if moved > MOVED or stops:
-                faults.append(
-                    Fault(
-                        "saturation",
-                        "DATA_FAULT" if share > 0.5 else None,
-                        f"The {name} reading stands at its {end} end, {level:g} {unit}, for "
-                        f"{share:.1%} of the samples while the other reading goes over "
-                        f"{moved:.0%} of its range: it may be saturated.",
-                    )
-                )
-    return faults
-
-
-def _stops_on_loading(angle: Floats, torque: Floats, pinned: Flags) -> bool:
-    """Whether an angle stops at the end of its range while the load still grows.
-
-    Friction holds the angle at its end too, but then the load falls; a coarse dial stands still
-    for a step.
-
-    Parameters
-    ----------
-    angle : ndarray, shape (n,)
-        Reading that may be saturated [deg].
-    torque : ndarray, shape (n,)
-        The other one [N m].
-    pinned : ndarray of bool, shape (n,)
-        Rows at one end of its range.
-
-    Returns
-    -------
-    bool
-    """
-    levels = np.unique(angle)
-    ends = levels[:2] if angle[pinned][0] == levels[0] else levels[-2:]
-    of_a_step = float(np.ptp(ends) / np.ptp(angle) * np.ptp(torque))
-    load = np.abs(torque)
-    least = max(ON_LOADING * float(load.max()), STEPS * of_a_step)
-    rows = np.flatnonzero(pinned)
-    stretches = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-    return max(float(load[part].max() - load[part[0]]) for part in stretches) > least
+    return []
 
 
 def _relation(recording: Samples) -> list[Fault]:

@@ -27,6 +27,7 @@ from cyclosweep.recording.messages import printable
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.reading import read
 from cyclosweep.recording.samples import COLUMNS, Floats, Ints, Samples
+from cyclosweep.recording.saturation import find_saturation
 from cyclosweep.recording.structure import Structure, find_structure
 from cyclosweep.recording.wrapping import modulo_fault
 
@@ -230,13 +231,19 @@ class Recording(Samples):
         return replace(whole, **kept, notes=tuple(notes), faults=faults)._checked()
 
     def _checked(self) -> Self:
-        """Return this recording with the faults that its samples show."""
+        """Return this recording with the faults that its samples show, the saturated unscored."""
         found = find_faults(
             self, conditioning_runs=self.conditioning_runs, holdout_runs=self.holdout_runs
         )
+        saturation, lost = find_saturation(self)
         modulo = self.modulo_fault(self._play_deg())
-        found = found if modulo is None else (*found, modulo)
-        return replace(self, faults=(*self.faults, *found))
+        found = (*found, *saturation, *(() if modulo is None else (modulo,)))
+        unscored = lost if self.unscored is None else self.unscored | lost
+        return replace(
+            self,
+            faults=(*self.faults, *found),
+            unscored=unscored if lost.any() else self.unscored,
+        )
 
     def modulo_fault(self, play_deg: float | None = None) -> Fault | None:
         """Return the remark that the angle's modulo is too small to put it together, if it is.

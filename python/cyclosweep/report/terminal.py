@@ -113,13 +113,16 @@ def _remarks(data: ReportData) -> list[str]:
 
 
 def _notes(data: ReportData) -> list[str]:
-    """First notes on how the recording was read, without what the statement says."""
-    return _unsaid(data, data.result.notes)[:MOST_NOTES]
+    """First notes on how the recording was read, without what is said elsewhere."""
+    reasons = {fault.reason for fault in data.recording.faults}
+    notes = [note for note in data.result.notes if note not in reasons]
+    return _unsaid(data, notes)[:MOST_NOTES]
 
 
 def _unsaid(data: ReportData, lines: Sequence[str]) -> list[str]:
     """Lines that the statement of the verdict does not hold already."""
-    return [line for line in lines if line.rstrip(".") not in data.result.statement]
+    statement = data.result.statement.casefold()
+    return [line for line in lines if line.rstrip(".").casefold() not in statement]
 
 
 def _facts(data: ReportData) -> list[tuple[str, str]]:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from cyclosweep.result.part import Part
 
-Quantity = Literal["compliance", "free_play", "datum", "angle_modulo", "columns"]
+Quantity = Literal["compliance", "free_play", "datum", "angle_modulo", "columns", "range"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -13,7 +13,8 @@ class Doubt(Part):
     """One calibrated value far from nominal, and the mistakes that would explain it."""
 
     quantity: Quantity
-    """Which value; columns: names or units of the file speak against its settings."""
+    """Which value; columns: names or units of the file speak against its settings; range: a sensor
+    is saturated."""
     found: float | None = None
     """What was found [deg/(N m) or deg]."""
     nominal: float | None = None
