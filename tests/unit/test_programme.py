@@ -47,6 +47,36 @@ def test_the_rating_is_that_of_the_measured_shaft() -> None:
         scaled_programme(cs.Recording.from_arrays([0.0, 0.0]), 3.0)
 
 
+def test_a_programme_beyond_the_recording_of_a_repaired_model_is_said(tmp_path: Path) -> None:
+    loop = np.r_[np.linspace(0.5, 20, 40), np.linspace(20, -20, 80), np.linspace(-20, -0.5, 40)]
+    twist = 28.0 * np.sign(loop) + 2.73 * loop + 4e-4 * loop**3
+    angle = twist + 0.05 * np.random.default_rng(4).normal(size=len(loop))
+    recording = cs.Recording.from_arrays(np.tile(loop, 2), np.tile(angle, 2))
+    found = cs.diagnose(recording, cs.Drive.reference_87())
+    assert found.model.fitted_torque_nm == (-20.0, 20.0)
+    model = tmp_path / "model.json"
+    model.write_text(found.model.to_json())
+    assert cs.Model.from_json(model).fitted_torque_nm == (-20.0, 20.0)
+    program, out = tmp_path / "program.csv", tmp_path / "out.csv"
+    for largest, said in ((20.5, False), (40.0, True), (-40.0, True)):
+        program.write_text(f"torque_nm\n0\n{largest}\n0\n")
+        done = run("simulate", str(model), str(program), "--out", str(out))
+        assert done.returncode == 0, done.stderr
+        assert ("is extrapolated" in done.stderr) == said
+
+
+def test_rows_of_a_programme_without_a_torque_are_said(tmp_path: Path) -> None:
+    program, out = tmp_path / "program.csv", tmp_path / "out.csv"
+    program.write_text("torque_nm,run\n0,1\nnan,1\n5,1\n")
+    done = run("simulate", "reference-87", str(program), "--out", str(out))
+    assert done.returncode == 0
+    assert "1 of 3 samples without a finite value dropped" in done.stderr
+    program.write_text("torque_nm,run\nnan,1\nnan,1\n")
+    done = run("simulate", "reference-87", str(program), "--out", str(out))
+    assert done.returncode == 2
+    assert "no row has all of its values" in done.stderr
+
+
 def test_a_sheet_filled_in_by_hand_is_a_recording(tmp_path: Path) -> None:
     out, sheet = tmp_path / "expected.csv", tmp_path / "my readings.csv"
     first = run("simulate", "reference-87", str(WEIGHTS), "--out", str(out), "--largest-load-nm",

@@ -61,7 +61,7 @@ def simulate(
     With --sheet the programme is also written as a sheet with an empty column for the readings.
     """
     from cyclosweep.design.drive import Drive
-    from cyclosweep.recording.programme import beyond_rating, scaled_programme, sheet_of
+    from cyclosweep.recording.programme import beyond_fit, beyond_rating, scaled_programme, sheet_of
     from cyclosweep.simulation.simulate import simulate as run
 
     refuse_no_file(program)
@@ -77,7 +77,13 @@ def simulate(
     programme = _programme(program, chosen)
     if largest_load_nm is not None:
         programme = scaled_programme(programme, largest_load_nm)
-    if isinstance(chosen, Drive) and (warning := beyond_rating(programme, chosen)):
+    for note in programme.notes:
+        print(f"{program}: {note}", file=sys.stderr)
+    if isinstance(chosen, Drive):
+        warning = beyond_rating(programme, chosen)
+    else:
+        warning = beyond_fit(programme, chosen.fitted_torque_nm) if predict == "angle" else None
+    if warning:
         print(f"Warning: {warning}", file=sys.stderr)
     filled_in = None if sheet is None else sheet_of(programme, lever_arm)
     if law == "components":
@@ -131,6 +137,8 @@ def _programme(path: Path, model: Model | Drive) -> Recording:
     from cyclosweep.recording import Recording
 
     programme = Recording.read(path)
+    if not len(programme):
+        raise InputError(f"{path}: no row has all of its values, expected a torque in each")
     side = getattr(model, "side", None)
     if side is None or _metadata(path).exists():
         return programme

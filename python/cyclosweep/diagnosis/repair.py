@@ -66,7 +66,11 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     problem = concluded.search.problem
     base, fitted = concluded.search.baseline.fit, concluded.accepted.fit
     before, after = fitted.baseline_prediction(base), fitted.prediction
-    model = fitted.model(drive.name)
+    torque = problem.recording.torque_nm[problem.recording.counts]
+    model = replace(
+        fitted.model(drive.name),
+        fitted_torque_nm=(float(torque.min()), float(torque.max())),
+    )
     if model.one_history:
         model = replace(model, notes=(ONE_HISTORY, *model.notes))
     if base.beta[1] <= 0.0:

@@ -10,8 +10,10 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.recording import Recording
 from cyclosweep.recording.units import KILOPOND_N
 
-__all__ = ["beyond_rating", "scaled_programme", "sheet_of"]
+__all__ = ["beyond_fit", "beyond_rating", "scaled_programme", "sheet_of"]
 
+SAME_LOAD = 0.05
+"""Share of the largest torque by which a programme may go beyond a recording of the same load."""
 WEIGHT_DIGITS = 3
 """Digits of a weight in kg: a gram on a lever is less than any friction of a rig."""
 
@@ -72,6 +74,34 @@ def beyond_rating(programme: Recording, drive: Drive) -> str | None:
         f"the programme reaches {largest:.4g} N m at the {programme.side} shaft, "
         f"{largest / rated:.3g} times the {rated:.4g} N m that {drive.name} is rated for; "
         f"--largest-load-nm {rated:.4g} scales it"
+    )
+
+
+def beyond_fit(programme: Recording, fitted_torque_nm: tuple[float, float] | None) -> str | None:
+    """Say that a programme loads a repaired model beyond the recording that it was fitted to.
+
+    Parameters
+    ----------
+    programme : Recording
+        The programme, at the model's shaft.
+    fitted_torque_nm : tuple of float and float, or None
+        Least and greatest torque of that recording [N m]; None where there was none.
+
+    Returns
+    -------
+    str or None
+        None where it does not.
+    """
+    if fitted_torque_nm is None or not len(programme):
+        return None
+    least, greatest = fitted_torque_nm
+    margin = SAME_LOAD * max(abs(least), abs(greatest))
+    lowest, highest = float(programme.torque_nm.min()), float(programme.torque_nm.max())
+    if lowest >= min(least, 0.0) - margin and highest <= max(greatest, 0.0) + margin:
+        return None
+    return (
+        f"the programme goes from {lowest:.4g} to {highest:.4g} N m, the model was fitted to a "
+        f"recording from {least:.4g} to {greatest:.4g} N m: the twist beyond it is extrapolated"
     )
 
 

@@ -68,6 +68,9 @@ class Model:
     one_history : bool
         Runs of a programme go on from each other, unless the programme says that the rig is reset
         between them or its clock starts anew. Without it, the programme's ``history`` decides.
+    fitted_torque_nm : tuple of float and float, or None
+        Least and greatest torque of the recording to which the model was fitted [N m]; beyond
+        them its effects are extrapolated.
     """
 
     compliance_deg_per_nm: float
@@ -82,6 +85,7 @@ class Model:
     elastic_curve: ElasticCurve | None = None
     model_error: ModelError | None = None
     one_history: bool = False
+    fitted_torque_nm: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         numbers = ("compliance_deg_per_nm", "free_play_deg", "datum_deg", "torque_zero_nm")
@@ -90,6 +94,8 @@ class Model:
         one_of("side", self.side, ("input", "output"))
         instance_of("effects", self.effects, tuple)
         instance_of("one_history", self.one_history, bool)
+        if self.fitted_torque_nm is not None:
+            real_numbers("fitted_torque_nm", list(self.fitted_torque_nm))
         for value in self.effects:
             instance_of("effects", value, EffectValue)
 
@@ -258,6 +264,9 @@ class Model:
             content["model_error"] = self.model_error.as_dict()
         if self.one_history:
             content["one_history"] = True
+        if self.fitted_torque_nm is not None:
+            least, greatest = self.fitted_torque_nm
+            content["fitted_torque_nm"] = {"from": least, "to": greatest}
         return json.dumps(content, indent=1)
 
     @classmethod
@@ -306,6 +315,7 @@ class Model:
         notes = list_of(content, "notes")
         curve = object_of(content, "elastic_curve", {})
         missed = object_of(content, "model_error", {})
+        fitted = object_of(content, "fitted_torque_nm", {})
         return cls(
             compliance_deg_per_nm=compliance,
             free_play_deg=number_of(base, "free_play_deg"),
@@ -322,4 +332,7 @@ class Model:
             elastic_curve=ElasticCurve.from_dict(curve) if curve else None,
             model_error=ModelError.from_dict(missed) if missed else None,
             one_history=flag_of(content, "one_history"),
+            fitted_torque_nm=(number_of(fitted, "from"), number_of(fitted, "to"))
+            if fitted
+            else None,
         )
