@@ -19,6 +19,11 @@ from cyclosweep.result import DriveChange, Region, Remainder
 
 STRONG_WAVE = 5.0
 """Log evidence from which a sinusoid in the residual is worth naming."""
+LEAST_OF_THE_REST = 0.5
+"""Least height of a shape over the rms that is left beyond the noise. A lower one is less than a
+quarter of its mean square."""
+MISFIT = "misfit of the model"
+"""What is left where no shape tells it."""
 STEP_QUANTILE = 0.95
 """Quantile of the residual that is given as the size of a staircase."""
 
@@ -48,14 +53,37 @@ def remainder(
     if verified.decision.best is None:
         return _of_event(concluded, regions) or _strongest(concluded.accepted)
     if concluded.naming.withdrawn and concluded.naming.shown:
-        return no_larger_than_left(_of_class(concluded), concluded.naming.part.fit)
+        return _of_the_size_left(_of_class(concluded), concluded.naming.part.fit)
     if verified.drift is not None:
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
         found = _step(concluded.accepted.fit)
         return found or _staircase(concluded.accepted, concluded.repetition)
     found = _unnamed_term(concluded.best) or _unfitted(concluded)
-    return no_larger_than_left(found, concluded.accepted.fit)
+    return _of_the_size_left(found, concluded.accepted.fit)
+
+
+def _of_the_size_left(found: Remainder, named: FittedStructure) -> Remainder:
+    """Say no more of a shape than the residual holds, and nothing of one that hardly shows in it.
+
+    Parameters
+    ----------
+    found : Remainder
+        The shape.
+    named : FittedStructure
+        The structure of the named effects.
+
+    Returns
+    -------
+    Remainder
+        A misfit without a shape where the shape is too small to be what is left.
+    """
+    left, noise = named.residual_deg, named.noise.spread_deg
+    beyond = float(np.sqrt(max(float(np.mean(left**2)) - noise**2, 0.0)))
+    if found.size_deg >= LEAST_OF_THE_REST * beyond:
+        return no_larger_than_left(found, named)
+    size = float(np.quantile(np.abs(left), STEP_QUANTILE))
+    return _step(named) or Remainder(shape=MISFIT, place="all along", size_deg=size)
 
 
 def no_larger_than_left(found: Remainder, named: FittedStructure) -> Remainder:
@@ -269,7 +297,7 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     """
     fitted = accepted.fit
     left = fitted.residual_deg
-    shape, place = "misfit of the model", "which does not repeat from run to run"
+    shape, place = MISFIT, "which does not repeat from run to run"
     if repeats.is_physics or repeats.order is not None:
         shape, place = "staircase tied to the position of the mesh", f"repeating {repeats.in_words}"
     elif not repeats.is_known:
