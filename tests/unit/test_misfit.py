@@ -52,3 +52,20 @@ def test_rows_that_are_far_off_are_forgotten_only_where_they_are_few(noise: Nois
     }
     assert largest[20] < 1.0
     assert largest[7] > 3.0
+
+
+def test_the_noise_that_is_said_is_the_likeliest_and_holds_the_rounding(noise: Noise) -> None:
+    rng, steps, fresh = np.random.default_rng(3), 40_000, 0.1
+    series = np.zeros(steps)
+    for row in range(1, steps):
+        series[row] = 0.95 * series[row - 1] + fresh * rng.normal()
+    assumed = replace(
+        noise, correlation=0.99, best_correlation=0.95, sigma_deg=fresh / np.sqrt(1 - 0.99**2)
+    )
+    assert assumed.likely_spread_deg == pytest.approx(np.std(series), rel=0.05)
+    assert assumed.spread_deg > 2.0 * assumed.likely_spread_deg
+    read = replace(noise, sigma_deg=0.2, step_deg=2.0)
+    exact = rng.uniform(0.0, 50.0, steps)
+    said = np.std(2.0 * np.round((exact + 0.2 * rng.normal(size=steps)) / 2.0) - exact)
+    assert read.likely_spread_deg == pytest.approx(said, rel=0.05)
+    assert read.with_model_error(10.0).likely_spread_deg == pytest.approx(said, rel=0.05)

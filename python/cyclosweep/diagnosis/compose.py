@@ -191,10 +191,10 @@ def _with_range(answer: Answer, change: DriveChange) -> Answer:
 
 
 def _noise(search: Search) -> NoiseEstimate:
-    """Noise that the search assumed."""
+    """Noise of the recording, by the likeliest estimate of its autocorrelation."""
     noise = search.noise
     return NoiseEstimate(
-        sigma_deg=noise.spread_deg,
+        sigma_deg=noise.likely_spread_deg,
         autocorrelation=noise.best_correlation,
         autocorrelation_upper=noise.correlation,
         tail_degrees_of_freedom=finite(noise.tail),

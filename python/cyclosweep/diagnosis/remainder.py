@@ -78,7 +78,7 @@ def _of_the_size_left(found: Remainder, named: FittedStructure) -> Remainder:
     Remainder
         A misfit without a shape where the shape is too small to be what is left.
     """
-    left, noise = named.residual_deg, named.noise.spread_deg
+    left, noise = named.residual_deg, named.noise.likely_spread_deg
     beyond = float(np.sqrt(max(float(np.mean(left**2)) - noise**2, 0.0)))
     if found.size_deg >= LEAST_OF_THE_REST * beyond:
         return no_larger_than_left(found, named)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from cyclosweep.recording.samples import Floats
 
-REGULAR = 0.8
+REGULAR = 0.95
 """Share of readings that go on by the same step from which an angle advances regularly."""
 
 

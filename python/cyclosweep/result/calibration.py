@@ -11,7 +11,7 @@ class NoiseEstimate(Part):
     """Noise of the measured angle, row by row where a recording was thinned."""
 
     sigma_deg: float | None = None
-    """Standard deviation [deg]."""
+    """Standard deviation by the likeliest autocorrelation, rounding included [deg]."""
     autocorrelation: float | None = None
     """Correlation of neighbouring samples."""
     autocorrelation_upper: float | None = None

@@ -85,6 +85,16 @@ class Noise:
         """Standard deviation of one row about the mean [deg]."""
         return self.sigma_deg if self.marginal_deg is None else self.marginal_deg
 
+    @property
+    def likely_spread_deg(self) -> float:
+        """The same by the likeliest correlation, not its upper estimate, and with rounding [deg]."""
+        spread = float(np.hypot(self.spread_deg, self.step_deg / np.sqrt(12.0)))
+        if self.white_share > 0.0 or self.marginal_deg is not None:
+            return spread
+        # The innovations are known; what they add up to depends on how long they last.
+        fresh = (1.0 - self.correlation**2) / (1.0 - self.best_correlation**2)
+        return spread * float(np.sqrt(fresh))
+
     @cached_property
     def _pair(self) -> Floats:
         """Correlation of each row after the first with the one before."""
@@ -246,17 +256,18 @@ class Noise:
         """
         if factor <= 1.0:
             return self
-        sigma, step = factor * self.sigma_deg, self.step_deg
+        sigma, step, alone = factor * self.sigma_deg, self.step_deg, self.spread_deg
         if step > 0 and sigma > step / COARSE_STEP:
             # Spread over several steps, a reading is as good as continuous.
-            sigma, step = float(np.hypot(sigma, step / np.sqrt(12.0))), 0.0
+            rounding = step / np.sqrt(12.0)
+            sigma, alone, step = float(np.hypot(sigma, rounding)), np.hypot(alone, rounding), 0.0
         slope, square = self.score_moments
         return replace(
             self,
             sigma_deg=sigma,
             step_deg=step,
             tail=self.tail * factor**2,
-            marginal_deg=self.spread_deg,
+            marginal_deg=float(alone),
             model_error_factor=factor * self.model_error_factor,
             score_moments=(1.0 + (slope - 1.0) / factor**2, 1.0 + (square - 1.0) / factor**2),
         )
