@@ -87,7 +87,7 @@ class Noise:
 
     @property
     def likely_spread_deg(self) -> float:
-        """The same by the likeliest correlation, not its upper estimate, and with rounding [deg]."""
+        """The same by the likeliest correlation, with the rounding of a coarse dial [deg]."""
         spread = float(np.hypot(self.spread_deg, self.step_deg / np.sqrt(12.0)))
         if self.white_share > 0.0 or self.marginal_deg is not None:
             return spread
