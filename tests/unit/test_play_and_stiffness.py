@@ -9,7 +9,15 @@ import cyclosweep as cs
 from cyclosweep.report import ReportData
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
 from cyclosweep.report.tables import play_table
-from cyclosweep.result import Answer, CalibratedParameter, PlayAndStiffness, Reading
+from cyclosweep.result import (
+    Answer,
+    CalibratedParameter,
+    Explanation,
+    FoundEffect,
+    PlayAndStiffness,
+    Reading,
+    Size,
+)
 from cyclosweep.result.calibration_words import play_words
 
 FITTED = {
@@ -87,10 +95,19 @@ def test_one_run_has_no_interval_and_a_missing_value_has_a_reason() -> None:
     assert "only one flank" in (alone.reason or "")
 
 
-def shown(read: PlayAndStiffness) -> dict[str, tuple[str, str]]:
-    """Rows of the table of play and stiffness, by their labels."""
+def shown(
+    read: PlayAndStiffness, named: tuple[str, ...] = (), possible: tuple[str, ...] = ()
+) -> dict[str, tuple[str, str]]:
+    """Rows of the table of play and stiffness, by their labels, beside named effects."""
     recording = loop("input")
-    answer = Answer(verdict="NOTHING_MISSING", play_and_stiffness=read)
+    answer = Answer(
+        verdict="IDENTIFIED" if named else "NOTHING_MISSING",
+        effects=tuple(
+            FoundEffect(name=name, size_deg=Size(estimate=1.0, ci95=(0.9, 1.1))) for name in named
+        ),
+        explanation_set=tuple(Explanation(effects=(name,), probability=0.3) for name in possible),
+        play_and_stiffness=read,
+    )
     table = play_table(ReportData(recording=recording, result=answer))
     assert table is not None
     return {label: (value, ends) for label, value, ends in table.rows}
@@ -115,6 +132,20 @@ def test_a_loop_without_friction_is_said_to_have_none() -> None:
     ):
         found = replace(read, friction_nm=Reading(estimate=estimate, ci95=ends))
         assert shown(found)[label] == words
+
+
+def test_the_width_of_a_loop_that_only_creep_opens_is_not_called_friction() -> None:
+    read = PlayAndStiffness(runs=2, friction_nm=Reading(estimate=0.9, ci95=(0.8, 1.0)))
+    friction = "friction at the input, half the loop's width"
+    of_creep = "half the loop's width at the input, of creep, not of friction"
+    for named, possible, label in (
+        ((), (), friction),
+        (("creep",), (), of_creep),
+        (("creep", "load_dependent_friction"), (), friction),
+        (("creep",), ("creep", "friction_hysteresis"), friction),
+        (("contact_stiffening",), (), friction),
+    ):
+        assert list(shown(read, named, possible)) == [label]
 
 
 def test_an_interval_has_the_digits_that_tell_its_ends_apart() -> None:

@@ -20,7 +20,11 @@ from cyclosweep.report.wording import (
     without_unit,
 )
 from cyclosweep.result import CalibratedParameter, Reading
-from cyclosweep.result.words import telling_digits
+from cyclosweep.result.words import listed, telling_digits
+
+FRICTIONS = {"friction_hysteresis", "load_dependent_friction"}
+OPEN_THE_LOOP = ("creep", "viscous_drag", "thermal_drift", "datum_drift")
+"""Effects by which a loop is open without friction."""
 
 
 def loop_table(data: ReportData) -> Table | None:
@@ -291,7 +295,7 @@ def play_table(data: ReportData) -> Table | None:
     rows = [
         (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, angle)),
         ("stiffness at the output", *_read(read.stiffness_at_output_nm_per_arcmin, _stiffnesses)),
-        (f"friction at the {side}, half the loop's width", *friction),
+        (_width_label(data), *friction),
     ]
     if side == "input":
         rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, angle)))
@@ -312,6 +316,17 @@ def _read(reading: Reading | None, write: Callable[[float, int], str]) -> tuple[
         return NOTHING, NOTHING
     digits = telling_digits(reading.estimate, reading.ci95)
     return write(reading.estimate, digits), interval(reading.ci95, digits)
+
+
+def _width_label(data: ReportData) -> str:
+    """What half the width of the loop is: friction, unless only something else opens it."""
+    answer, side = data.result, data.recording.side
+    named = {effect.name for effect in answer.effects}
+    possible = named.union(*(rival.effects for rival in answer.explanation_set))
+    others = [name for name in OPEN_THE_LOOP if name in named]
+    if possible & FRICTIONS or not others:
+        return f"friction at the {side}, half the loop's width"
+    return f"half the loop's width at the {side}, of {listed(others)}, not of friction"
 
 
 def _friction(reading: Reading | None, backwards: bool) -> tuple[str, str]:
