@@ -7,11 +7,12 @@ import numpy as np
 from scipy import stats
 
 from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.effect_chance import chance_of_effect
 from cyclosweep.diagnosis.elasticity import (
     added_twist,
     compliance_with_curve,
 )
-from cyclosweep.diagnosis.identify.alarm import DRAWS, probability
+from cyclosweep.diagnosis.identify.alarm import probability
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
@@ -93,7 +94,7 @@ def _effect(
     else:
         spread = spread_of_size(fitted, index, fitted.covariance_within_bounds)
     half = NORMAL_95 * spread
-    p_value = _p_value(search, accepted, effect.name)
+    p_value = chance_of_effect(search, accepted, index)
     if half >= size:  # the interval holds nothing at all: the same spread judges the probability
         p_value = max(p_value, 2.0 * float(stats.norm.sf(size / max(spread, 1e-300))))
     return FoundEffect(
@@ -130,30 +131,6 @@ def _found_law(fitted: FittedStructure, index: int) -> str:
         return ""
     found = fitted.beta[fitted.column_range(index)]
     return term.effect.found_law(fitted.history, term.shape, found)
-
-
-def _p_value(search: Search, accepted: Candidate, name: str) -> float:
-    """Probability of as much evidence for an effect by chance, all other accepted ones known.
-
-    Parameters
-    ----------
-    search : Search
-        Search of the recording.
-    accepted : Candidate
-        Structure that was accepted.
-    name : str
-        Name of the effect.
-
-    Returns
-    -------
-    float
-    """
-    without = search.visited.get(accepted.names - {name})
-    if without is None and len(accepted.names) == 1:
-        without = search.baseline
-    if without is None:
-        return 1.0 / (DRAWS + 1)
-    return search.alarm.p_value(without.excesses.get(name, 0.0))
 
 
 def _parameters(fitted: FittedStructure, index: int) -> Mapping[str, EffectParameter]:

@@ -1,0 +1,30 @@
+"""Probability of an effect by chance: it is small where the fit leaves no doubt."""
+
+import numpy as np
+import pytest
+
+import cyclosweep as cs
+
+
+def loops(step_deg: float, friction_nm: float, seed: int = 4) -> cs.Recording:
+    """Three loops of a drive with Coulomb friction, read on a dial of such steps."""
+    rng = np.random.default_rng(seed)
+    once = np.r_[np.linspace(0, 30, 100), np.linspace(30, -30, 200), np.linspace(-30, 0, 100)]
+    torque, carried = np.tile(once, 3), np.zeros(3 * len(once))
+    for row in range(1, len(torque)):
+        moved = carried[row - 1] + torque[row] - torque[row - 1]
+        carried[row] = np.clip(moved, -friction_nm, friction_nm)
+    elastic = torque - carried
+    angle = 28.0 * np.sign(elastic) + 2.7255 * elastic + 0.2 * rng.normal(size=len(torque))
+    run = np.repeat([1, 2, 3], len(once))
+    return cs.Recording.from_arrays(torque, step_deg * np.round(angle / step_deg), run=run,
+                                    angle_resolution_deg=step_deg)  # fmt: skip
+
+
+@pytest.mark.parametrize("step_deg", [0.5, 5.0])
+def test_an_effect_far_beyond_a_coarse_dial_is_no_chance(step_deg: float) -> None:
+    found = cs.diagnose(loops(step_deg, 1.5), cs.Drive.reference_87(), full=False)
+    assert [effect.name for effect in found.answer.effects] == ["friction_hysteresis"]
+    p_value = found.answer.effects[0].p_value
+    assert p_value is not None
+    assert p_value <= 0.002
