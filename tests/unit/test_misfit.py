@@ -68,4 +68,6 @@ def test_the_noise_that_is_said_is_the_likeliest_and_holds_the_rounding(noise: N
     exact = rng.uniform(0.0, 50.0, steps)
     said = np.std(2.0 * np.round((exact + 0.2 * rng.normal(size=steps)) / 2.0) - exact)
     assert read.likely_spread_deg == pytest.approx(said, rel=0.05)
+    assert read.spread_deg == pytest.approx(said, rel=0.05)
+    assert read.plain.sigma_deg == pytest.approx(said, rel=0.05)
     assert read.with_model_error(10.0).likely_spread_deg == pytest.approx(said, rel=0.05)

@@ -90,6 +90,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
         large = _mostly_friction(search, mismatch, begun)
         if large is not None:
+            search = _with_interval_noise(search, large)
             return _crossing_as_recorded(search_in_stages(search, flexible, say, large))
     given_up = False
     for _ in range(RESTARTS):
@@ -170,6 +171,30 @@ def _mostly_friction(
         alone = fit(search.problem, noise, slipping, found, rounds=CONVERGED)
     left = (alone.rmse_deg / search.baseline.fit.rmse_deg) ** 2
     return found if left <= 1.0 - MOST_OF_MISMATCH else None
+
+
+def _with_interval_noise(search: Search, known: FittedStructure) -> Search:
+    """Start over with the noise below a coarse dial's steps, where it shows only beside a friction.
+
+    Parameters
+    ----------
+    search : Search
+        Calibrated, with nothing visited.
+    known : FittedStructure
+        Friction that explains most of the mismatch.
+
+    Returns
+    -------
+    Search
+        The same one where the dial is fine, or its steps were in the noise already.
+    """
+    problem = search.problem
+    if problem.resolution_deg <= 0.0 or search.noise.step_deg > 0.0:
+        return search
+    noise = noise_beyond(problem, search.library, known)
+    if noise.step_deg == 0.0:
+        return search
+    return Search(problem, noise, search.library, search.seed)
 
 
 def _leaves_something(search: Search) -> bool:

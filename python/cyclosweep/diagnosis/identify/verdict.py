@@ -69,7 +69,7 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
     Decision
     """
     if search.baseline.largest_excess < search.threshold:
-        if search.baseline.fit.rmse_deg > BEYOND_NOISE * _scatter(search):
+        if search.baseline.fit.rmse_deg > BEYOND_NOISE * search.noise.spread_deg:
             return Decision("UNKNOWN_PHYSICS", None, [], True)
         clear = bool(bounds) and all(b.upper95_deg < tolerance_deg for b in bounds)
         return Decision("NOTHING_MISSING" if clear else "INSUFFICIENT_DATA", None, [], False)
@@ -301,13 +301,8 @@ def no_more_than_fits(
         The same where the verdict claims no more than the error allows.
     """
     claims = decision.verdict in ("IDENTIFIED", "AMBIGUOUS")
-    if not claims or accepted.fit.rmse_deg <= WITHIN_NOISE * _scatter(search):
+    if not claims or accepted.fit.rmse_deg <= WITHIN_NOISE * search.noise.spread_deg:
         return decision
     mostly = explained_share >= MOSTLY
     verdict: Verdict = "MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS"
     return replace(decision, verdict=verdict, unexplained=True)
-
-
-def _scatter(search: Search) -> float:
-    """Standard deviation of noise and rounding together [deg]."""
-    return float(np.hypot(search.noise.spread_deg, search.problem.resolution_deg / np.sqrt(12.0)))

@@ -77,23 +77,24 @@ class Noise:
 
     @property
     def plain(self) -> "Noise":
-        """The same noise as if Gaussian and read finely: nothing that is far off counts less."""
-        return replace(self, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
+        """The same noise as if Gaussian, rounding included: nothing that is far off counts less."""
+        sigma = float(np.hypot(self.sigma_deg, self.step_deg / np.sqrt(12.0)))
+        return replace(self, sigma_deg=sigma, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
 
     @property
     def spread_deg(self) -> float:
-        """Standard deviation of one row about the mean [deg]."""
-        return self.sigma_deg if self.marginal_deg is None else self.marginal_deg
+        """Standard deviation of one row about the mean, rounding included [deg]."""
+        rounded = float(np.hypot(self.sigma_deg, self.step_deg / np.sqrt(12.0)))
+        return rounded if self.marginal_deg is None else self.marginal_deg
 
     @property
     def likely_spread_deg(self) -> float:
-        """The same by the likeliest correlation, with the rounding of a coarse dial [deg]."""
-        spread = float(np.hypot(self.spread_deg, self.step_deg / np.sqrt(12.0)))
+        """The same by the likeliest correlation instead of its upper estimate [deg]."""
         if self.white_share > 0.0 or self.marginal_deg is not None:
-            return spread
+            return self.spread_deg
         # The innovations are known; what they add up to depends on how long they last.
         fresh = (1.0 - self.correlation**2) / (1.0 - self.best_correlation**2)
-        return spread * float(np.sqrt(fresh))
+        return self.spread_deg * float(np.sqrt(fresh))
 
     @cached_property
     def _pair(self) -> Floats:
@@ -256,18 +257,17 @@ class Noise:
         """
         if factor <= 1.0:
             return self
-        sigma, step, alone = factor * self.sigma_deg, self.step_deg, self.spread_deg
+        sigma, step = factor * self.sigma_deg, self.step_deg
         if step > 0 and sigma > step / COARSE_STEP:
             # Spread over several steps, a reading is as good as continuous.
-            rounding = step / np.sqrt(12.0)
-            sigma, alone, step = float(np.hypot(sigma, rounding)), np.hypot(alone, rounding), 0.0
+            sigma, step = float(np.hypot(sigma, step / np.sqrt(12.0))), 0.0
         slope, square = self.score_moments
         return replace(
             self,
             sigma_deg=sigma,
             step_deg=step,
             tail=self.tail * factor**2,
-            marginal_deg=float(alone),
+            marginal_deg=self.spread_deg,
             model_error_factor=factor * self.model_error_factor,
             score_moments=(1.0 + (slope - 1.0) / factor**2, 1.0 + (square - 1.0) / factor**2),
         )
