@@ -19,6 +19,7 @@ from cyclosweep.explore.influence import variance_share
 from cyclosweep.explore.tables import open_table
 from cyclosweep.study_report.aggregate import CELLS, Aggregate, aggregate
 from cyclosweep.study_report.gather import gather
+from cyclosweep.study_report.words import summary, why_not_robust
 
 OUTCOMES = ("output_stiffness_nm_per_arcmin", "hole_web_mm")
 
@@ -285,6 +286,22 @@ def test_pieces_are_solved_by_the_study_s_engine(solver: Engine, tmp_path: Path)
     row = cs.open_study(tmp_path / "s").row(1)
     robust = next(each for each in gather(tmp_path / "s").robust if each.variant == 1)
     assert robust.nominal["loaded_twist_arcmin"] == row["loaded_twist_arcmin"]
+
+
+def test_the_limits_of_a_report_count_in_all_of_it(folder: Path, found: Aggregate) -> None:
+    stored, rows = cs.open_study(folder), open_table(folder)
+    few = gather(folder, limits=["hole_web_mm > 4"])
+    kept = rows.frame.filter(pl.col("status").cast(pl.String) == "ok", pl.col("hole_web_mm") > 4)
+    count = kept.select(pl.len()).collect().item()
+    assert 0 < count < found.feasible
+    assert few.aggregate.feasible == count
+    assert few.aggregate.axes[0].feasible.sum() == count
+    assert few.statuses["ok"] == count
+    assert few.statuses["not hole_web_mm > 4"] == found.feasible - count
+    assert sum(few.statuses.values()) == stored.summary.rows
+    none = gather(folder, limits=["hole_web_mm > 4000"])
+    assert why_not_robust(none) == "None: no variant can be built and keeps the limits."
+    assert "Most of the others: not hole_web_mm > 4000" in summary(none)[0]
 
 
 def test_a_study_with_nothing_feasible_has_a_report(tmp_path: Path) -> None:

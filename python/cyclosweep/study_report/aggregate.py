@@ -11,7 +11,7 @@ import numpy.typing as npt
 import polars as pl
 
 from cyclosweep.explore.influence import variance_share
-from cyclosweep.explore.tables import Rows, batches
+from cyclosweep.explore.tables import Conditions, Rows, batches, conditions
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.stored import StoredStudy
 
@@ -39,7 +39,7 @@ class AxisBins:
     is_listed : bool
         Whether each stretch is one value.
     total, feasible : ndarray, shape (bins,)
-        Variants in each, and those that can be built.
+        Variants in each, and those that can be built and keep the limits.
     means, deviations : dict of str to ndarray, shape (bins,)
         Mean and standard deviation of each outcome over the feasible ones; NaN where none is.
     shares : dict of str to float
@@ -63,7 +63,7 @@ class Aggregate:
     Attributes
     ----------
     rows, feasible : int
-        Variants, and those that can be built.
+        Variants, and those that can be built and keep the limits.
     axes : list of AxisBins
         By input.
     ranges : dict of str to (float, float)
@@ -146,6 +146,7 @@ def aggregate(
     study: StoredStudy,
     rows: Rows,
     outcomes: Sequence[str],
+    limits: Conditions | None = None,
     *,
     progress: bool | None = None,
 ) -> Aggregate:
@@ -159,6 +160,8 @@ def aggregate(
         Its rows.
     outcomes : sequence of str
         Columns or expressions; the first two span the picture of all variants.
+    limits : mapping or sequence of str, optional
+        Conditions besides the study's own that a feasible variant keeps.
     progress : bool, optional
         Whether there is a bar.
 
@@ -186,7 +189,7 @@ def aggregate(
     cells = np.zeros(CELLS, np.int64) if len(outcomes) > 1 else None
     total = feasible = 0
     columns = [
-        (pl.col("status").cast(pl.String) == "ok").alias("__ok"),
+        pl.all_horizontal(conditions(limits, rows.schema)).fill_null(False).alias("__ok"),
         *(each.alias(f"__axis_{k}") for k, each in enumerate(numbers)),
         *(each.alias(f"__outcome_{k}") for k, each in enumerate(values)),
     ]

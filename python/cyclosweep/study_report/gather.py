@@ -102,6 +102,15 @@ class StudyFacts:
     tolerances: Tolerances | None
     are_assumed: bool
 
+    @property
+    def statuses(self) -> dict[str, int]:
+        """How many variants have each status; of those that are ok, the limits may refuse some."""
+        found = dict(self.study.summary.status)
+        beyond = found.get("ok", 0) - self.aggregate.feasible
+        if self.limits and beyond > 0:
+            found |= {"ok": self.aggregate.feasible, f"not {' and '.join(self.limits)}": beyond}
+        return {name: count for name, count in found.items() if count}
+
 
 def gather(
     folder: str | Path,
@@ -144,7 +153,7 @@ def gather(
     texts = [each.column for each in wanted]
     others = [name for name in OTHER_OUTCOMES if name in rows.schema and name not in texts]
     outcomes = [*texts, *others][: max(MOST_OUTCOMES, len(texts))]
-    found = aggregate(study, rows, outcomes, progress=progress)
+    found = aggregate(study, rows, outcomes, limits, progress=progress)
     front = _front(folder, wanted, limits, progress)
     chosen = choose_variants(front, wanted)
     chosen.update({variant: "asked for" for variant in variants if variant not in chosen})

@@ -332,7 +332,7 @@ def _feasibility(facts: StudyFacts) -> str:
         f"<tr><td>{broken(name)}</td><td>{count:,}</td>"
         f'<td class="share" style="--share:{100 * count / max(summary_.rows, 1):.1f}%">'
         f"{count / max(summary_.rows, 1):.1%}</td></tr>"
-        for name, count in summary_.status.items()
+        for name, count in facts.statuses.items()
     )
     drawn = "".join(feasible_svg(axis, label(axis.name)) for axis in facts.aggregate.axes)
     return (

@@ -113,7 +113,7 @@ def _size(facts: StudyFacts) -> str:
     )
     if not study.complete:
         text = text.replace("were computed", f"of {study.variants:,} are computed so far")
-    refused = {name: count for name, count in study.summary.status.items() if name != "ok"}
+    refused = {name: count for name, count in facts.statuses.items() if name != "ok"}
     if refused:
         name = max(refused, key=lambda each: refused[each])
         text += f" Most of the others: {name} ({refused[name]:,})."
