@@ -3,6 +3,7 @@
 import difflib
 import re
 from collections.abc import Collection, Iterable
+from importlib import import_module
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,6 +18,7 @@ __all__ = [
     "one_of",
     "path_of",
     "refuse_no_file",
+    "require_matplotlib",
 ]
 
 Name = TypeVar("Name", bound=object)
@@ -203,3 +205,17 @@ def refuse_no_file(path: Path) -> None:
         raise InputError(f"{path}: is a folder, expected a file")
     if not path.is_file():
         raise InputError(f"{path}: no such file")
+
+
+def require_matplotlib() -> None:
+    """Refuse to draw a picture where matplotlib is not installed.
+
+    Raises
+    ------
+    InputError
+        With the extra that brings it.
+    """
+    try:
+        import_module("matplotlib")
+    except ImportError:
+        raise InputError("pictures need matplotlib: pip install 'cyclosweep[report]'") from None

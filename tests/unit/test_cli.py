@@ -224,6 +224,17 @@ def test_a_failed_fact_without_a_number_is_still_json(tmp_path: Path) -> None:
     json.loads(result.stdout, parse_constant=refuse)
 
 
+def test_pictures_without_matplotlib_are_refused_before_the_diagnosis(tmp_path: Path) -> None:
+    (tmp_path / "matplotlib.py").write_text("raise ImportError('not here')")
+    (tmp_path / "loop.csv").write_text("torque_nm,angle_deg\n1,30\n2,33\n")
+    done = run(
+        "diagnose", "loop.csv", "--drive", "reference-87", "--out", "d", "--png", cwd=tmp_path
+    )
+    assert done.returncode == 2
+    assert "pip install 'cyclosweep[report]'" in done.stderr
+    assert not (tmp_path / "d").exists()
+
+
 def test_simulate_takes_the_least_programme_and_spares_what_it_reads(tmp_path: Path) -> None:
     programme = tmp_path / "programme.csv"
     programme.write_text("torque_nm\n0\n7.2575\n")

@@ -89,6 +89,16 @@ def test_labels_order_and_reasons() -> None:
     assert_frame_equal(cs.evaluate_table(DRIVE, found), found, check_exact=True)
 
 
+def test_a_label_with_the_name_of_a_result_is_said(caplog: pytest.LogCaptureFixture) -> None:
+    labelled = FRAME.with_columns(pl.Series("status", ["ordered"] * FRAME.height))
+    found = cs.evaluate_table(DRIVE, labelled)
+    assert found["status"][0] == "ok"
+    assert "status: replaced by the result" in caplog.text
+    caplog.clear()
+    cs.evaluate_table(DRIVE, found)
+    assert "replaced" not in caplog.text
+
+
 def test_pandas_text_and_missing_values_are_labels() -> None:
     table = pd.DataFrame({"label": ["a", None, "c"], **DESIGNS, "bush_wall_mm": [1.0, None, 2.0]})
     found = cs.evaluate_table(DRIVE, table)

@@ -53,6 +53,7 @@ def test_a_programme_beyond_the_recording_of_a_repaired_model_is_said(tmp_path: 
     angle = twist + 0.05 * np.random.default_rng(4).normal(size=len(loop))
     recording = cs.Recording.from_arrays(np.tile(loop, 2), np.tile(angle, 2))
     found = cs.diagnose(recording, cs.Drive.reference_87())
+    assert found.model is not None
     assert found.model.fitted_torque_nm == (-20.0, 20.0)
     model = tmp_path / "model.json"
     model.write_text(found.model.to_json())

@@ -21,7 +21,7 @@ from cyclosweep.cli.output import (
     refuse_folder,
 )
 from cyclosweep.display import shown_steps
-from cyclosweep.errors import DesignError, InputError
+from cyclosweep.errors import DesignError, InputError, require_matplotlib
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -108,6 +108,8 @@ def diagnose(
     from cyclosweep.recording.reading import stem
 
     refuse_folder(out)
+    if png:
+        require_matplotlib()
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError(f"tolerance: found {tolerance:g}, expected degrees above zero")
     options = {

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from cyclosweep.atomic import unfinished
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, require_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -141,10 +141,9 @@ def styled(draw: Callable[P, R]) -> Callable[P, R]:
 
 
 def _house() -> Any:
-    try:
-        from matplotlib import style
-    except ImportError:
-        raise InputError("pictures need matplotlib: pip install 'cyclosweep[report]'") from None
+    require_matplotlib()
+    from matplotlib import style
+
     return style.context(["default", _HOUSE])
 
 

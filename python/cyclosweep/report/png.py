@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cyclosweep.atomic import unfinished
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, require_matplotlib
 from cyclosweep.report.charts import (
     REGION,
     Band,
@@ -50,6 +50,11 @@ def write_png(data: ReportData, folder: str | Path) -> list[Path]:
     -------
     list of Path
         The files, the main picture first.
+
+    Raises
+    ------
+    InputError
+        matplotlib is not installed.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -69,7 +74,7 @@ def write_main_png(data: ReportData, path: str | Path) -> Path:
     Raises
     ------
     InputError
-        The recording has no samples to draw.
+        The recording has no samples to draw, or matplotlib is not installed.
     """
     figures = all_figures(data)
     if not figures:
@@ -79,6 +84,7 @@ def write_main_png(data: ReportData, path: str | Path) -> Path:
 
 def _write(figure: Figure, path: Path) -> Path:
     """Draw one figure without a display and without touching pyplot's state."""
+    require_matplotlib()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as Canvas
 

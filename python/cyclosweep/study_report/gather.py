@@ -156,7 +156,7 @@ def gather(
     found = aggregate(study, rows, outcomes, limits, progress=progress)
     front = _front(folder, wanted, limits, progress)
     chosen = choose_variants(front, wanted)
-    chosen.update({variant: "asked for" for variant in variants if variant not in chosen})
+    chosen.update({each: _asked_for(study, each) for each in variants if each not in chosen})
     drives = [study.drive_of(variant, name=f"variant {variant}") for variant in chosen]
     held = tolerances or assumed_tolerances(study)
     candidates = list(dict.fromkeys([*chosen, *spread(front, CANDIDATES)["variant"].to_list()]))
@@ -175,6 +175,12 @@ def gather(
         held,
         tolerances is None,
     )
+
+
+def _asked_for(study: StoredStudy, variant: int) -> str:
+    """Why a variant is shown that was asked for, and what speaks against it."""
+    status = study.row(variant)["status"]
+    return "asked for" if status == "ok" else f"asked for, not feasible: {status}"
 
 
 def _front(

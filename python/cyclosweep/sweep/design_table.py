@@ -104,8 +104,13 @@ _OWN = ("variant", "status", "reason")
 def _inputs(drive: Drive, rows: pl.DataFrame) -> list[str]:
     """Columns that are inputs; InputError for one that was meant to be."""
     known = drive.every_input()
-    was_evaluated = "status" in rows.columns
     results = Study.of(Space.grid(drive), model="components").schema()
+    was_evaluated = "status" in rows.columns and any(
+        name in results and name not in (*known, *_OWN) for name in rows.columns
+    )
+    for name in () if was_evaluated else _OWN:
+        if name in rows.columns:
+            logger.warning("%s: replaced by the result of this name; rename it to keep it", name)
     found = []
     for name, dtype in rows.schema.items():
         if name in known and not (was_evaluated and name in results):

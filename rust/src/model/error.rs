@@ -17,7 +17,7 @@ pub enum DesignError {
         parameter: &'static str,
     },
     /// A dimension, modulus or rating that must be above zero is not.
-    #[error("{parameter} must be above zero, found {value}")]
+    #[error("{parameter} must be above zero, found {value} in SI units")]
     NonPositive {
         /// Name of the input.
         parameter: &'static str,
@@ -25,7 +25,7 @@ pub enum DesignError {
         value: f64,
     },
     /// A dimension that may be zero is negative.
-    #[error("{parameter} must not be negative, found {value}")]
+    #[error("{parameter} must not be negative, found {value} in SI units")]
     Negative {
         /// Name of the input.
         parameter: &'static str,
