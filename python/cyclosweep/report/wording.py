@@ -155,6 +155,10 @@ def without_unit(name: str) -> str:
     return plain(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
 
 
+POOR = 3.0
+"""Half width of an interval, over the estimate, beyond which a value is poorly determined."""
+
+
 def with_error(estimate: float, std_error: float | None) -> str:
     """Write an estimate and the half width of its 95 % interval, as everywhere in a report.
 
@@ -173,6 +177,6 @@ def with_error(estimate: float, std_error: float | None) -> str:
     if not std_error:
         return number(estimate, 4)
     text = number(estimate, 3 if NORMAL_95 * std_error > 0.01 * abs(estimate) else 4)
-    if std_error > 10 * abs(estimate) > 0:
+    if NORMAL_95 * std_error > POOR * abs(estimate) > 0:
         return f"{text} (poorly determined)"
     return f"{text} ± {number(NORMAL_95 * std_error, 2)}"
