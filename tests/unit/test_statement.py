@@ -158,6 +158,14 @@ def test_forecasts_have_a_sentence_of_their_own() -> None:
     text = statement_of(replace(IDENTIFIED, repaired=with_block(forecast)))
     assert "errs by 0.25 deg (15 arcmin), before the repair by 1.5 deg" in text
     assert "Another run as the prediction leaves 0.125 deg" in text
+    first, second = (
+        replace(forecast, samples=n, before_deg=b, floor_deg=f)
+        for n, b, f in ((300, 1.0, None), (100, 3.0, 0.2))
+    )
+    whole = replace(IDENTIFIED.repaired, blocks=(first, block, second))
+    text = statement_of(replace(IDENTIFIED, repaired=whole))
+    assert "before the repair by 1.73 deg" in text  # the root of (300 + 100 * 9) / 400
+    assert "Another run as the prediction leaves 0.2 deg" in text
 
 
 def with_block(block: HeldOutBlock) -> Repair:

@@ -1,5 +1,6 @@
 """The answer in sentences that a test engineer can act on."""
 
+import math
 from collections.abc import Sequence
 
 from cyclosweep.result.answer import Answer
@@ -234,15 +235,41 @@ def _forecast_sentences(blocks: Sequence[HeldOutBlock]) -> str:
     forecasts = [block for block in blocks if block.is_forecast]
     if not forecasts:
         return ""
-    block = forecasts[0]
+    before, after, told, floor = (
+        _over_all(forecasts, name)
+        for name in ("before_deg", "after_deg", "told_after_deg", "floor_deg")
+    )
     text = (
         " As a forecast of what was not fitted, crossings of the dead zone included, the model "
-        f"errs by {degrees(block.after_deg)}, before the repair by {degrees(block.before_deg)}; "
-        f"with the recorded flank given, by {degrees(block.told_after_deg)}."
+        f"errs by {degrees(after)}, before the repair by {degrees(before)}; "
+        f"with the recorded flank given, by {degrees(told)}."
     )
-    if block.floor_deg is not None:
-        text += f" Another run as the prediction leaves {degrees(block.floor_deg)}."
+    if floor is not None:
+        text += f" Another run as the prediction leaves {degrees(floor)}."
     return text
+
+
+def _over_all(blocks: Sequence[HeldOutBlock], name: str) -> float | None:
+    """Root mean square of an error over all readings of the blocks that have it.
+
+    Parameters
+    ----------
+    blocks : sequence of HeldOutBlock
+        Blocks that were forecast.
+    name : str
+        Which error.
+
+    Returns
+    -------
+    float or None
+        In deg; None where no block has it.
+    """
+    given = [(block.samples or 1, getattr(block, name)) for block in blocks]
+    known = [(samples, error) for samples, error in given if error is not None]
+    if not known:
+        return None
+    total = sum(samples for samples, _ in known)
+    return math.sqrt(sum(samples * error**2 for samples, error in known) / total)
 
 
 def _largest_bound(answer: Answer) -> float:
