@@ -63,6 +63,8 @@ def test_the_noise_that_is_said_is_the_likeliest_and_holds_the_rounding(noise: N
         noise, correlation=0.99, best_correlation=0.95, sigma_deg=fresh / np.sqrt(1 - 0.99**2)
     )
     assert assumed.likely_spread_deg == pytest.approx(np.std(series), rel=0.05)
+    with_error = assumed.with_model_error(3.0)
+    assert with_error.likely_spread_deg == pytest.approx(assumed.likely_spread_deg)
     assert assumed.spread_deg > 2.0 * assumed.likely_spread_deg
     read = replace(noise, sigma_deg=0.2, step_deg=2.0)
     exact = rng.uniform(0.0, 50.0, steps)

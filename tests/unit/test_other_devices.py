@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.verdict import Decision
 from cyclosweep.diagnosis.identify_effects import FEWEST_PIECES, instead_of_slow_noise, pieces
 from cyclosweep.diagnosis.prepare.flanks import find_flanks
-from cyclosweep.diagnosis.remainder import no_larger_than_left
+from cyclosweep.diagnosis.remainder import no_larger_than_left, of_the_size_left
 from cyclosweep.report.summary import summary_of
 from cyclosweep.result import (
     Answer,
@@ -106,6 +106,10 @@ def test_what_is_left_is_no_larger_than_the_largest_residual() -> None:
     assert no_larger_than_left(huge, fitted).size_deg == largest
     small = replace(huge, size_deg=0.5 * largest)
     assert no_larger_than_left(small, fitted) == small
+    assert of_the_size_left(small, fitted) == small
+    hardly = replace(huge, size_deg=1e-3 * largest)
+    assert of_the_size_left(hardly, fitted).shape == "misfit of the model"
+    assert of_the_size_left(hardly, fitted).size_deg == pytest.approx(np.quantile(abs(left), 0.95))
 
 
 def test_the_calibrated_model_explains_nothing_where_something_is_left() -> None:

@@ -66,6 +66,12 @@ def test_a_programme_beyond_the_recording_of_a_repaired_model_is_said(tmp_path: 
         assert ("is extrapolated" in done.stderr) == said
 
 
+@pytest.mark.parametrize("ends", [(1.0,), (5.0, -5.0), (np.nan, 1.0)])
+def test_a_model_refuses_ends_that_are_none(ends: tuple[float, ...]) -> None:
+    with pytest.raises(cs.InputError, match="fitted_torque_nm"):
+        cs.Model(2.7, 28.0, fitted_torque_nm=ends)  # type: ignore[arg-type]
+
+
 def test_rows_of_a_programme_without_a_torque_are_said(tmp_path: Path) -> None:
     program, out = tmp_path / "program.csv", tmp_path / "out.csv"
     program.write_text("torque_nm,run\n0,1\nnan,1\n5,1\n")

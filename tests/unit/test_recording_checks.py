@@ -135,12 +135,17 @@ def test_an_angle_clipped_near_the_ends_of_both_flanks_is_said() -> None:
     assert kinds(clipped_on_both_flanks(74.0)) == {"saturation": None}
 
 
-def with_limited_torque(limit_nm: float, seed: int = 5) -> cs.Recording:
+def with_limited_torque(limit_nm: float, friction_nm: float = 0.0, seed: int = 5) -> cs.Recording:
     """Three loops to 30 N m, read by a torque sensor that ends earlier."""
     rng = np.random.default_rng(seed)
     once = np.r_[np.linspace(0.3, 30, 99), np.linspace(30, -30, 200), np.linspace(-30, -0.3, 99)]
     torque = np.tile(once, 3)
-    angle = 28.0 * np.sign(torque) + 2.73 * torque + 0.2 * rng.normal(size=len(torque))
+    carried = np.zeros(len(torque))
+    for row in range(1, len(torque)):
+        moved = carried[row - 1] + torque[row] - torque[row - 1]
+        carried[row] = np.clip(moved, -friction_nm, friction_nm)
+    elastic = torque - carried
+    angle = 28.0 * np.sign(elastic) + 2.73 * elastic + 0.2 * rng.normal(size=len(torque))
     run = np.repeat([1, 2, 3], len(once))
     clipped = np.clip(torque, -limit_nm, limit_nm)
     return cs.Recording.from_arrays(clipped, angle, run=run, drive="reference-87")
@@ -155,6 +160,60 @@ def test_a_clipped_torque_is_said_and_its_samples_do_not_count(limit_nm: float) 
     answer = cs.diagnose(recording, cs.Drive.load("reference-87"))
     assert answer.verdict == "NOTHING_MISSING"
     assert "the sensor is saturated" in answer.statement
+
+
+def test_friction_remembers_a_load_that_was_not_read() -> None:
+    clipped = with_limited_torque(25.0, friction_nm=1.0)
+    assert kinds(clipped) == {"saturation": None}
+    assert clipped.unscored is not None
+    # On the way down as far as the lower branch, twice the friction below the end.
+    lost = clipped.unscored & (clipped.torque_nm < 25.0) & (clipped.torque_nm > 0.0)
+    assert clipped.torque_nm[lost].min() == pytest.approx(23.0, abs=0.5)
+    answer = cs.diagnose(clipped, cs.Drive.load("reference-87"), full=False)
+    assert [effect["name"] for effect in answer.effects] == ["friction_hysteresis"]
+    assert answer.verdict == "IDENTIFIED"
+
+
+def test_samples_that_are_left_out_already_are_not_counted_as_saturated() -> None:
+    whole = with_limited_torque(8.0)
+    assert kinds(whole) == {"saturation": "DATA_FAULT"}
+    known = cs.Recording.from_arrays(
+        whole.torque_nm, whole.angle_deg, run=whole.run, unscored=np.abs(whole.torque_nm) == 8.0
+    )
+    assert kinds(known) == {}
+
+
+def test_too_little_left_without_saturated_samples_is_a_data_fault() -> None:
+    torque = [0, 0, 0, 0, 0, 1, 1, 1, 1, 1.0]
+    few = cs.Recording.from_arrays(torque, [0, 1, 2, 3, 4, 5, 6, 7, 6, 5.0])
+    assert cs.diagnose(few, cs.Drive.load("reference-87"), full=False).verdict in (
+        "DATA_FAULT",
+        "INSUFFICIENT_DATA",
+    )
+
+
+@pytest.mark.parametrize("case", ["breakaway", "coarse torque", "two loads", "coarse dial"])
+def test_what_stands_for_another_reason_is_not_saturated(case: str) -> None:
+    rng, run = np.random.default_rng(8), np.repeat(range(6), 50)
+    rise = np.tile(np.linspace(0, 30, 50), 6)
+    if case == "breakaway":
+        angle = 28 + 2.7 * np.clip(rise - 5, 0, None) + 0.1 * rng.normal(size=300)
+        torque, angle = rise, np.round(2 * angle) / 2
+    elif case == "coarse torque":
+        torque = 30 * np.abs(2 / np.pi * np.arcsin(np.sin(2 * np.pi * np.arange(300) / 150)))
+        angle = 28 + 2.7 * torque + 0.1 * rng.normal(size=300)
+        torque = 2 * np.round(torque / 2)
+    elif case == "two loads":
+        torque = np.tile(np.r_[np.full(25, 30.0), np.full(25, -30.0)], 6)
+        creep = np.tile(np.tile(1 - np.exp(-np.arange(25) / 8), 2), 6)
+        angle = torque * (3.6 + 0.4 * creep) + 0.1 * rng.normal(size=300)
+    else:
+        torque = np.tile(np.r_[np.linspace(0, 30, 25), np.linspace(30, 0, 25)], 6)
+        angle = 28 + 2.7 * (torque - 3.0 * np.sign(np.gradient(torque)))
+        angle = 5 * np.round(angle / 5)
+    found = kinds(cs.Recording.from_arrays(torque, angle, run=run))
+    assert "saturation" not in found
+    assert found.get("saturation_suspected") is None
 
 
 def test_a_hold_with_creep_and_runs_that_begin_at_one_torque_are_no_saturation() -> None:

@@ -311,6 +311,14 @@ def test_steps_of_an_angle_are_its_resolution(step: float, noise: float) -> None
     assert angle_lattice(step * np.rint(angle / step), torque) == pytest.approx(step, rel=1e-5)
 
 
+@pytest.mark.parametrize("readings", [1, 4])
+def test_angles_that_are_prescribed_have_no_resolution(readings: int) -> None:
+    rng, place = np.random.default_rng(3), np.repeat(np.arange(-4.0, 5.0), readings)
+    angle, run = np.tile(18.0 * place, 6), np.repeat(np.arange(6.0), len(place))
+    torque = angle / 2.7 + 0.05 * rng.normal(size=len(angle))
+    assert angle_lattice(angle, torque, run) == 0.0
+
+
 @pytest.mark.parametrize("step", [0.3, 0.9, 4.0])
 def test_even_steps_of_torque_on_a_straight_line_are_no_resolution(step: float) -> None:
     place = np.concatenate([np.arange(0, 40), np.arange(40, -40, -1), np.arange(-40, 0)])

@@ -38,7 +38,7 @@ def _by_fit(without: Candidate, accepted: Candidate, index: int) -> float:
 
     A scan of what is left sees little of an effect of many steps of a coarse dial, or far beyond
     the tails of the noise. Where the effect is absent, a Bayes factor of x has a probability of
-    1/x at most (Markov's inequality), for each hypothesis that was tried.
+    1/x at most (Markov's inequality), for each hypothesis that was tried in each of two ways.
 
     Parameters
     ----------
@@ -60,5 +60,5 @@ def _by_fit(without: Candidate, accepted: Candidate, index: int) -> float:
         noise.misfit(without.fit.residual_deg, exact) - noise.misfit(fitted.residual_deg, exact)
     )
     parameters = len(fitted.amplitude_places(index)) + len(fitted.terms[index].shape)
-    cost = 0.5 * parameters * np.log(len(exact)) + np.log(len(without.scan.groups))
+    cost = 0.5 * parameters * np.log(len(exact)) + np.log(2 * len(without.scan.groups))
     return float(np.exp(min(cost - gained, 0.0)))

@@ -53,17 +53,17 @@ def remainder(
     if verified.decision.best is None:
         return _of_event(concluded, regions) or _strongest(concluded.accepted)
     if concluded.naming.withdrawn and concluded.naming.shown:
-        return _of_the_size_left(_of_class(concluded), concluded.naming.part.fit)
+        return of_the_size_left(_of_class(concluded), concluded.naming.part.fit)
     if verified.drift is not None:
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
         found = _step(concluded.accepted.fit)
         return found or _staircase(concluded.accepted, concluded.repetition)
     found = _unnamed_term(concluded.best) or _unfitted(concluded)
-    return _of_the_size_left(found, concluded.accepted.fit)
+    return of_the_size_left(found, concluded.accepted.fit)
 
 
-def _of_the_size_left(found: Remainder, named: FittedStructure) -> Remainder:
+def of_the_size_left(found: Remainder, named: FittedStructure) -> Remainder:
     """Say no more of a shape than the residual holds, and nothing of one that hardly shows in it.
 
     Parameters

@@ -27,6 +27,7 @@ from cyclosweep.recording.columns import (
 from cyclosweep.recording.decimation import merge_neighbours
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import Metadata
+from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import angle_lattice
 
 __all__ = ["read", "stem"]
@@ -70,7 +71,7 @@ def read(path: Path, meta_path: Path | None, meta: Metadata | None = None) -> di
             f"{np.count_nonzero(unscored)} of {len(unscored)} samples lie beyond the limits of "
             "[score]: simulated for what they do to the drive, neither fitted nor scored."
         )
-    resolution = _resolution(meta, columns, notes)
+    resolution = _resolution(meta, columns, run, notes)
     if meta.side is None and columns["angle_deg"] is not None:
         notes.append("Side not given: taken as the input shaft.")
     return {
@@ -141,7 +142,7 @@ def _clean_columns(
     return columns, (*faults, *remarks)
 
 
-def _resolution(meta: Metadata, columns: Columns, notes: list[str]) -> float:
+def _resolution(meta: Metadata, columns: Columns, run: Floats, notes: list[str]) -> float:
     """Step of the angle reading: the metadata's, or one that all readings are multiples of.
 
     Parameters
@@ -150,6 +151,8 @@ def _resolution(meta: Metadata, columns: Columns, notes: list[str]) -> float:
         What the metadata file says.
     columns : dict of str to ndarray of float, shape (n,), or None
         Canonical columns.
+    run : ndarray of float, shape (n,)
+        Trial each sample belongs to.
     notes : list of str
         A step that was recognised is added to it.
 
@@ -161,7 +164,7 @@ def _resolution(meta: Metadata, columns: Columns, notes: list[str]) -> float:
     angle, torque = columns["angle_deg"], columns["torque_nm"]
     if meta.angle_resolution_deg or angle is None or torque is None:
         return meta.angle_resolution_deg
-    resolution = angle_lattice(angle, torque)
+    resolution = angle_lattice(angle, torque, run)
     if resolution:
         notes.append(f"Angles lie on steps of {resolution:g} deg: taken as the resolution.")
     return resolution

@@ -235,7 +235,10 @@ class Recording(Samples):
         found = find_faults(
             self, conditioning_runs=self.conditioning_runs, holdout_runs=self.holdout_runs
         )
-        saturation, lost = find_saturation(self)
+        counts = self.counts
+        saturation, lost_of_them = find_saturation(self.take(counts))
+        lost = np.zeros(len(self), dtype=np.bool_)
+        lost[counts] = lost_of_them
         modulo = self.modulo_fault(self._play_deg())
         found = (*found, *saturation, *(() if modulo is None else (modulo,)))
         unscored = lost if self.unscored is None else self.unscored | lost

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cyclosweep.recording.checks import MIN_SAMPLES
 from cyclosweep.recording.faults import Fault, FaultVerdict
 from cyclosweep.recording.samples import Flags, Floats, Ints, Samples
 
@@ -22,12 +23,12 @@ GOES_ON = 0.08
 STEPS = 4.0
 """if it is so many times what a step of the reading's resolution takes, or its scatter."""
 MOST = 0.6
-"""Share of the samples above which a recording without them is none any more."""
+"""Share of the samples without which a recording is none any more."""
 SECOND_DIFFERENCE = 0.6745 * 6.0**0.5
 """Median magnitude of the second differences of white noise, over its standard deviation."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Pinned:
     """A reading at one end of its range.
 
@@ -57,46 +58,59 @@ def find_saturation(recording: Samples) -> tuple[list[Fault], Flags]:
     """Find saturated readings, and the samples that say nothing because of it.
 
     An angle that stops while the load still grows is saturated, and so is a torque at which the
-    angle goes on and comes back: creep at a constant load never comes back. Where the other
-    reading only goes far, a sensor may be saturated; nothing is left out then.
+    angle goes on and comes back: creep at a constant load never comes back. Where the angle only
+    goes far while the torque stands, its sensor may be saturated; nothing is left out then.
 
     Parameters
     ----------
     recording : Samples
-        The samples, all of them finite.
+        The samples that count, all of them finite.
 
     Returns
     -------
     faults : list of Fault
-        ``DATA_FAULT`` where more than half of the samples are lost.
+        ``DATA_FAULT`` where more than `MOST` of the samples are lost, or all but a few of one load.
     lost : ndarray of bool, shape (n,)
-        Samples of a reading that is saturated for certain.
+        Samples of a reading that is saturated for certain, and those after a saturated torque in
+        which friction still remembers a load that was not read.
+
+    Notes
+    -----
+    Friction that takes up more than what the sensor cuts off keeps the angle from coming back: the
+    torque is then only suspected, or not noticed.
     """
-    faults: list[Fault] = []
     lost = np.zeros(len(recording), dtype=np.bool_)
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < FEWEST_PINNED or not np.ptp(torque) or not np.ptp(angle):
-        return faults, lost
+        return [], lost
+    said: list[tuple[str, str, list[_Pinned], bool]] = []
     for name, values, other, unit in (
         ("angle", angle, torque, "deg"),
         ("torque", torque, angle, "N m"),
     ):
-        goes_on = _stops_on_loading if name == "angle" else _goes_there_and_back
-        certain, suspected = [], []
-        for upper in (False, True):
-            end = _pinned(values, other, recording.run, upper)
-            if np.count_nonzero(end.rows) < FEWEST_PINNED:
-                continue
-            if goes_on(angle, torque, end):
-                certain.append(end)
-                lost |= end.rows
-            elif end.moved > MOVED:
-                suspected.append(end)
-        if certain:
-            faults.append(_fault(name, unit, certain, True))
-        if suspected:
-            faults.append(_fault(name, unit, suspected, False))
-    return faults, lost
+        ends = [_pinned(values, other, recording.run, upper) for upper in (False, True)]
+        ends = [end for end in ends if np.count_nonzero(end.rows) >= FEWEST_PINNED]
+        if name == "angle":
+            certain = [end for end in ends if _stops_on_loading(angle, torque, end)]
+            suspected = list[_Pinned]()  # while the load falls, friction holds the angle
+        else:
+            loaded = ON_LOADING * float(np.abs(torque).max())
+            ends = [end for end in ends if abs(end.level) > loaded]
+            certain = [end for end in ends if _goes_there_and_back(recording, angle, end)]
+            suspected = [end for end in ends if end.moved > MOVED and end not in certain]
+        for end in certain:
+            lost |= end.rows
+            if name == "torque":
+                lost |= _remembering(angle, recording.run, end)
+        said += [(name, unit, some, some is certain) for some in (certain, suspected) if some]
+    left = ~lost
+    useless = bool(
+        np.mean(lost) > MOST
+        or np.count_nonzero(left) < MIN_SAMPLES
+        or not np.ptp(torque[left])
+        or not np.ptp(angle[left])
+    )
+    return [_fault(name, unit, ends, sure, useless) for name, unit, ends, sure in said], lost
 
 
 def _pinned(values: Floats, other: Floats, run: Ints, upper: bool) -> _Pinned:
@@ -124,7 +138,7 @@ def _pinned(values: Floats, other: Floats, run: Ints, upper: bool) -> _Pinned:
     return _Pinned(upper, level, pinned, stretches, moved)
 
 
-def _fault(name: str, unit: str, ends: list[_Pinned], certain: bool) -> Fault:
+def _fault(name: str, unit: str, ends: list[_Pinned], certain: bool, useless: bool) -> Fault:
     """Say that a reading is, or may be, saturated.
 
     Parameters
@@ -135,6 +149,8 @@ def _fault(name: str, unit: str, ends: list[_Pinned], certain: bool) -> Fault:
         One or both ends of its range.
     certain : bool
         Whether it is saturated for certain.
+    useless : bool
+        Whether too little is left without the samples that are lost.
 
     Returns
     -------
@@ -144,15 +160,14 @@ def _fault(name: str, unit: str, ends: list[_Pinned], certain: bool) -> Fault:
     levels = " and ".join(f"{end.level:g}" for end in ends)
     seen = (
         f"The {name} stands at the {'ends' if len(ends) > 1 else 'end'} of its readings, {levels} "
-        f"{unit}, for {100 * share:.2g} % of the samples while the other reading goes over "
-        f"{100 * max(end.moved for end in ends):.2g} % of its range: "
+        f"{unit}, for {100 * share:.3g} % of the samples while the other reading goes over "
+        f"{100 * max(end.moved for end in ends):.3g} % of its range: "
     )
-    verdict: FaultVerdict | None = "DATA_FAULT" if share > MOST else None
-    if certain:
-        return Fault(
-            "saturation", verdict, f"{seen}the sensor is saturated, and these samples do not count."
-        )
-    return Fault("saturation_suspected", verdict, f"{seen}the sensor may be saturated.")
+    if not certain:
+        return Fault("saturation_suspected", None, f"{seen}the sensor may be saturated.")
+    then = "too little is left without them." if useless else "these samples do not count."
+    verdict: FaultVerdict | None = "DATA_FAULT" if useless else None
+    return Fault("saturation", verdict, f"{seen}the sensor is saturated, and {then}")
 
 
 def _stops_on_loading(angle: Floats, torque: Floats, end: _Pinned) -> bool:
@@ -177,22 +192,22 @@ def _stops_on_loading(angle: Floats, torque: Floats, end: _Pinned) -> bool:
     levels = np.unique(angle)
     last = levels[-2:] if end.upper else levels[:2]
     of_a_step = float(np.ptp(last) / np.ptp(angle) * np.ptp(torque))
-    load = np.abs(torque)
+    load = np.maximum(torque if end.upper else -torque, 0.0)
     least = max(ON_LOADING * float(load.max()), STEPS * of_a_step)
     return max(float(load[part].max() - load[part[0]]) for part in end.stretches) > least
 
 
-def _goes_there_and_back(angle: Floats, torque: Floats, end: _Pinned) -> bool:
+def _goes_there_and_back(recording: Samples, angle: Floats, end: _Pinned) -> bool:
     """Whether the angle goes on and comes back while a torque stands at the end of its range.
 
-    Near no load a drive with play is free to do so.
+    Within a step of the torque's own resolution it does so at every turn.
 
     Parameters
     ----------
+    recording : Samples
+        With the reading that may be saturated.
     angle : ndarray, shape (n,)
         The other reading [deg].
-    torque : ndarray, shape (n,)
-        Reading that may be saturated [N m].
     end : _Pinned
         Samples at one end of the torque's range.
 
@@ -200,21 +215,52 @@ def _goes_there_and_back(angle: Floats, torque: Floats, end: _Pinned) -> bool:
     -------
     bool
     """
-    if abs(end.level) < ON_LOADING * float(np.abs(torque).max()):
-        return False
+    torque, run = recording.torque_nm, recording.run
+    levels = np.unique(torque)
+    last = levels[-2:] if end.upper else levels[:2]
+    of_a_step = float(np.ptp(last) / np.ptp(torque) * np.ptp(angle))
     outward = angle if end.upper else -angle
     scatter = float(np.median(np.abs(np.diff(angle, 2)))) / SECOND_DIFFERENCE
     step = float(np.diff(np.unique(angle)).min())
+    run_starts = np.flatnonzero(np.r_[True, np.diff(run) != 0])
     far = []
     for part in end.stretches:
-        count = len(part)
-        before = part[0] - count
-        if count < FEWEST_PINNED or before < 0:
+        count, start = len(part), int(np.searchsorted(run_starts, part[0], "right"))
+        rising = min(count, int(part[0] - run_starts[start - 1]))
+        if min(count, rising) < FEWEST_PINNED:
             continue
         third = count // 3
         ends = max(float(outward[part[:third]].mean()), float(outward[part[-third:]].mean()))
         height = float(outward[part[third:-third]].mean()) - ends
-        approach = float(outward[part[0]] - outward[before])
-        noise = max(STEPS * scatter / np.sqrt(third), step)
+        approach = float(outward[part[0]] - outward[part[0] - rising]) * count / rising
+        noise = max(STEPS * scatter / np.sqrt(third), step, of_a_step)
         far.append(height if height > max(noise, GOES_ON * approach) else 0.0)
     return bool(far) and float(np.median(far)) > THERE_AND_BACK * float(np.ptp(angle))
+
+
+def _remembering(angle: Floats, run: Ints, end: _Pinned) -> Flags:
+    """Samples after a saturated torque until the angle is back where the torque came to stand.
+
+    There friction has turned around; before, it still remembers the load that was not read.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        The other reading [deg].
+    run : ndarray of int, shape (n,)
+        Trial each sample belongs to.
+    end : _Pinned
+        Samples at one end of the torque's range.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    outward = angle if end.upper else -angle
+    found = np.zeros(len(angle), dtype=np.bool_)
+    for part in end.stretches:
+        after = np.arange(part[-1] + 1, len(angle))
+        after = after[run[after] == run[part[0]]]
+        back = np.flatnonzero(outward[after] <= outward[part[0]])
+        found[after[: back[0] if len(back) else len(after)]] = True
+    return found

@@ -6,7 +6,9 @@ from numpy.typing import NDArray
 from cyclosweep.recording.samples import Floats
 
 REGULAR = 0.95
-"""Share of readings that go on by the same step from which an angle advances regularly."""
+"""Share of readings that go on by the same step from which an angle advances regularly,"""
+REPEATED = 0.25
+"""without those at which the torque goes less than this share of what it does between others."""
 
 
 def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
@@ -110,7 +112,7 @@ def sign_is_reversed(torque_nm: Floats, angle_deg: Floats, run: NDArray[np.gener
     return bool(spread > 0 and np.mean(torque * angle) < -0.5 * spread)
 
 
-def angle_lattice(angle_deg: Floats, torque_nm: Floats) -> float:
+def angle_lattice(angle_deg: Floats, torque_nm: Floats, run: Floats | None = None) -> float:
     """Step of the angle reading [deg] where all values are multiples of one; else 0.
 
     Steps below a thousandth of the range, as the printing of decimals makes them, do not matter
@@ -123,6 +125,8 @@ def angle_lattice(angle_deg: Floats, torque_nm: Floats) -> float:
         Angle as read [deg], in file order.
     torque_nm : ndarray of float, shape (n,)
         Torque [N m].
+    run : ndarray of float, shape (n,), optional
+        Trial each sample belongs to; by default all are one run.
 
     Returns
     -------
@@ -139,9 +143,11 @@ def angle_lattice(angle_deg: Floats, torque_nm: Floats) -> float:
     if np.abs(places - np.rint(places)).max() > 1e-3:
         return 0.0
     step = float(f"{span / np.rint(places[-1]):.6g}")
-    if _is_graduation(step) or not _advances_regularly(angle_deg, torque_nm, step):
+    if _is_graduation(step):
         return step
-    return 0.0
+    within = np.ones(len(angle_deg) - 1, bool) if run is None else np.diff(run) == 0
+    moves = np.abs(np.diff(angle_deg))[within] / step, np.abs(np.diff(torque_nm))[within]
+    return 0.0 if _advances_regularly(*moves) else step
 
 
 def _is_graduation(step_deg: float) -> bool:
@@ -152,28 +158,29 @@ def _is_graduation(step_deg: float) -> bool:
     return dial or bool(abs(power - np.rint(power)) < 1e-5)
 
 
-def _advances_regularly(angle_deg: Floats, torque_nm: Floats, step_deg: float) -> bool:
+def _advances_regularly(steps: Floats, torque_nm: Floats) -> bool:
     """Whether the angle goes by the same number of steps between most readings.
 
-    So it does where it is prescribed, or where even steps of torque meet a straight line.
+    So it does where it is prescribed, read once or several times, or where even steps of torque
+    meet a straight line.
 
     Parameters
     ----------
-    angle_deg : ndarray of float, shape (n,)
-        Angle as read [deg].
-    torque_nm : ndarray of float, shape (n,)
-        Torque [N m].
-    step_deg : float
-        Step of the reading [deg].
+    steps : ndarray of float, shape (m,)
+        How far the angle goes from reading to reading, in steps of the reading.
+    torque_nm : ndarray of float, shape (m,)
+        How far the torque goes [N m].
 
     Returns
     -------
     bool
     """
-    moves = np.rint(np.abs(np.diff(angle_deg)) / step_deg).astype(np.int64)
-    moves = moves[(moves > 0) | (np.diff(torque_nm) != 0.0)]
-    counts = np.bincount(moves[moves > 0])
-    return bool(counts.max() >= REGULAR * len(moves))
+    whole = np.rint(steps).astype(np.int64)
+    if not whole.any():
+        return True
+    loaded = torque_nm > REPEATED * np.median(torque_nm[whole > 0])
+    whole = whole[(whole > 0) | loaded]
+    return bool(np.bincount(whole[whole > 0]).max() >= REGULAR * len(whole))
 
 
 def merge_same_time(

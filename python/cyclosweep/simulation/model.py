@@ -1,6 +1,7 @@
 """A calibrated model of a drive: the published line, what it leaves out, and its file."""
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
@@ -95,7 +96,9 @@ class Model:
         instance_of("effects", self.effects, tuple)
         instance_of("one_history", self.one_history, bool)
         if self.fitted_torque_nm is not None:
-            real_numbers("fitted_torque_nm", list(self.fitted_torque_nm))
+            ends = real_numbers("fitted_torque_nm", list(self.fitted_torque_nm))
+            if len(ends) != 2 or not -math.inf < ends[0] <= ends[1] < math.inf:
+                raise InputError(f"fitted_torque_nm: found {ends}, expected least and greatest")
         for value in self.effects:
             instance_of("effects", value, EffectValue)
 

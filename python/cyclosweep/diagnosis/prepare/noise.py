@@ -90,7 +90,7 @@ class Noise:
     @property
     def likely_spread_deg(self) -> float:
         """The same by the likeliest correlation instead of its upper estimate [deg]."""
-        if self.white_share > 0.0 or self.marginal_deg is not None:
+        if self.white_share > 0.0 or self.correlation < self.best_correlation:
             return self.spread_deg
         # The innovations are known; what they add up to depends on how long they last.
         fresh = (1.0 - self.correlation**2) / (1.0 - self.best_correlation**2)
