@@ -47,7 +47,7 @@ def test_nothing_missing_is_not_said_beside_a_misfit(
     assert decision.verdict == "UNKNOWN_PHYSICS"
     assert decision.unexplained
     # On a dial so coarse the same misfit is rounding.
-    monkeypatch.setattr(bent, "problem", replace(bent.problem, resolution_deg=100.0))
+    monkeypatch.setattr(bent, "noise", replace(bent.noise, step_deg=100.0))
     assert decide(bent, [], 0.0).verdict == "INSUFFICIENT_DATA"
 
 

@@ -43,8 +43,8 @@ def test_a_steady_drift_is_no_step_and_its_size_is_that_of_the_drift() -> None:
 
 def test_places_of_equal_misfit_have_equal_shares() -> None:
     reach = np.abs(TWIST).max()
-    clipped = np.clip(TWIST + NOISE, -reach + 2.5, reach - 2.5) - TWIST - NOISE
-    first, second = diagnosed(clipped).answer.mismatch.regions[:2]
+    bent = -np.sign(TWIST) * np.maximum(np.abs(TWIST) - (reach - 2.5), 0.0)
+    first, second = diagnosed(bent).answer.mismatch.regions[:2]
     assert first.torque_nm is not None
     assert first.torque_nm == tuple(-limit for limit in reversed(second.torque_nm or ()))
     assert first.direction == second.direction
