@@ -4,18 +4,15 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
+from tests.support.dry_friction import twist_with_friction
 
 
 def loops(step_deg: float, friction_nm: float, seed: int = 4) -> cs.Recording:
     """Three loops of a drive with Coulomb friction, read on a dial of such steps."""
     rng = np.random.default_rng(seed)
     once = np.r_[np.linspace(0, 30, 100), np.linspace(30, -30, 200), np.linspace(-30, 0, 100)]
-    torque, carried = np.tile(once, 3), np.zeros(3 * len(once))
-    for row in range(1, len(torque)):
-        moved = carried[row - 1] + torque[row] - torque[row - 1]
-        carried[row] = np.clip(moved, -friction_nm, friction_nm)
-    elastic = torque - carried
-    angle = 28.0 * np.sign(elastic) + 2.7255 * elastic + 0.2 * rng.normal(size=len(torque))
+    torque = np.tile(once, 3)
+    angle = twist_with_friction(torque, friction_nm, 2.7255) + 0.2 * rng.normal(size=len(torque))
     run = np.repeat([1, 2, 3], len(once))
     return cs.Recording.from_arrays(torque, step_deg * np.round(angle / step_deg), run=run,
                                     angle_resolution_deg=step_deg)  # fmt: skip

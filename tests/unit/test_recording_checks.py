@@ -8,6 +8,7 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.recording.inspection import inspect
 from cyclosweep.recording.proposed import Known
+from tests.support.dry_friction import twist_with_friction
 
 TORQUE = np.r_[np.linspace(0.5, 20, 40), np.linspace(20, 0.5, 40), np.linspace(-0.5, -20, 40)]
 ANGLE = 28 * np.sign(TORQUE) + 2.73 * TORQUE
@@ -140,12 +141,7 @@ def with_limited_torque(limit_nm: float, friction_nm: float = 0.0, seed: int = 5
     rng = np.random.default_rng(seed)
     once = np.r_[np.linspace(0.3, 30, 99), np.linspace(30, -30, 200), np.linspace(-30, -0.3, 99)]
     torque = np.tile(once, 3)
-    carried = np.zeros(len(torque))
-    for row in range(1, len(torque)):
-        moved = carried[row - 1] + torque[row] - torque[row - 1]
-        carried[row] = np.clip(moved, -friction_nm, friction_nm)
-    elastic = torque - carried
-    angle = 28.0 * np.sign(elastic) + 2.73 * elastic + 0.2 * rng.normal(size=len(torque))
+    angle = twist_with_friction(torque, friction_nm, 2.73) + 0.2 * rng.normal(size=len(torque))
     run = np.repeat([1, 2, 3], len(once))
     clipped = np.clip(torque, -limit_nm, limit_nm)
     return cs.Recording.from_arrays(clipped, angle, run=run, drive="reference-87")

@@ -170,6 +170,26 @@ def _fault(name: str, unit: str, ends: list[_Pinned], certain: bool, useless: bo
     return Fault("saturation", verdict, f"{seen}the sensor is saturated, and {then}")
 
 
+def _of_a_step(values: Floats, other: Floats, end: _Pinned) -> float:
+    """How far one reading goes over the last step of another at an end of its range.
+
+    Parameters
+    ----------
+    values, other : ndarray, shape (n,)
+        The reading that has the step, and the one that goes on.
+    end : _Pinned
+        Which end.
+
+    Returns
+    -------
+    float
+        In the other reading's unit.
+    """
+    levels = np.unique(values)
+    last = levels[-2:] if end.upper else levels[:2]
+    return float(np.ptp(last) / np.ptp(values) * np.ptp(other))
+
+
 def _stops_on_loading(angle: Floats, torque: Floats, end: _Pinned) -> bool:
     """Whether an angle stops at the end of its range while the load still grows.
 
@@ -189,9 +209,7 @@ def _stops_on_loading(angle: Floats, torque: Floats, end: _Pinned) -> bool:
     -------
     bool
     """
-    levels = np.unique(angle)
-    last = levels[-2:] if end.upper else levels[:2]
-    of_a_step = float(np.ptp(last) / np.ptp(angle) * np.ptp(torque))
+    of_a_step = _of_a_step(angle, torque, end)
     load = np.maximum(torque if end.upper else -torque, 0.0)
     least = max(ON_LOADING * float(load.max()), STEPS * of_a_step)
     return max(float(load[part].max() - load[part[0]]) for part in end.stretches) > least
@@ -216,9 +234,7 @@ def _goes_there_and_back(recording: Samples, angle: Floats, end: _Pinned) -> boo
     bool
     """
     torque, run = recording.torque_nm, recording.run
-    levels = np.unique(torque)
-    last = levels[-2:] if end.upper else levels[:2]
-    of_a_step = float(np.ptp(last) / np.ptp(torque) * np.ptp(angle))
+    of_a_step = _of_a_step(torque, angle, end)
     outward = angle if end.upper else -angle
     scatter = float(np.median(np.abs(np.diff(angle, 2)))) / SECOND_DIFFERENCE
     step = float(np.diff(np.unique(angle)).min())

@@ -78,13 +78,13 @@ class Noise:
     @property
     def plain(self) -> "Noise":
         """The same noise as if Gaussian, rounding included: nothing that is far off counts less."""
-        sigma = float(np.hypot(self.sigma_deg, self.step_deg / np.sqrt(12.0)))
+        sigma = with_rounding(self.sigma_deg, self.step_deg)
         return replace(self, sigma_deg=sigma, tail=np.inf, step_deg=0.0, score_moments=(1.0, 1.0))
 
     @property
     def spread_deg(self) -> float:
         """Standard deviation of one row about the mean, rounding included [deg]."""
-        rounded = float(np.hypot(self.sigma_deg, self.step_deg / np.sqrt(12.0)))
+        rounded = with_rounding(self.sigma_deg, self.step_deg)
         return rounded if self.marginal_deg is None else self.marginal_deg
 
     @property
@@ -201,8 +201,7 @@ class Noise:
         -------
         float
         """
-        size = float(np.hypot(self.sigma_deg, self.step_deg / np.sqrt(12.0)))
-        white = self.whiten((angle - mean) / size)
+        white = self.whiten((angle - mean) / with_rounding(self.sigma_deg, self.step_deg))
         if np.isfinite(self.tail):
             white = student_deviance(white, self.tail)[0]
         return float(white @ white)
@@ -260,7 +259,7 @@ class Noise:
         sigma, step = factor * self.sigma_deg, self.step_deg
         if step > 0 and sigma > step / COARSE_STEP:
             # Spread over several steps, a reading is as good as continuous.
-            sigma, step = float(np.hypot(sigma, step / np.sqrt(12.0))), 0.0
+            sigma, step = with_rounding(sigma, step), 0.0
         slope, square = self.score_moments
         return replace(
             self,
@@ -271,6 +270,11 @@ class Noise:
             model_error_factor=factor * self.model_error_factor,
             score_moments=(1.0 + (slope - 1.0) / factor**2, 1.0 + (square - 1.0) / factor**2),
         )
+
+
+def with_rounding(sigma_deg: float, step_deg: float) -> float:
+    """Standard deviation of noise and of rounding to steps together [deg]."""
+    return float(np.hypot(sigma_deg, step_deg / np.sqrt(12.0)))
 
 
 def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
