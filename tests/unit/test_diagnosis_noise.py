@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.prepare.noise import Noise, interval_score, orthonormal
+from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
+from cyclosweep.diagnosis.prepare.row_score import interval_score
 from tests.support.arrays import Floats
 
 

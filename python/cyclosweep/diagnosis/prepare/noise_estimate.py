@@ -7,15 +7,9 @@ import numpy as np
 from scipy.stats import t as student_t
 
 from cyclosweep.diagnosis.prepare.autocorrelation import autocorrelation
-from cyclosweep.diagnosis.prepare.noise import (
-    COARSE_STEP,
-    Noise,
-    bin_score,
-    interval_score,
-    orthonormal,
-    student_score,
-)
+from cyclosweep.diagnosis.prepare.noise import COARSE_STEP, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.rounding import MUCH_LIKELIER, noise_with_rounding
+from cyclosweep.diagnosis.prepare.row_score import bin_score, interval_score, student_score
 from cyclosweep.simulation.effects.history import Floats
 
 MODEL_ERROR = 0.9
