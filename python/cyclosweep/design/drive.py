@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import tomli_w
-from pydantic import ValidationError
 
 from cyclosweep.atomic import write_text
 from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion
@@ -21,7 +20,7 @@ from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.design.parts import TRAIN_INPUTS
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import Cylinder, Frustum, Keyway
-from cyclosweep.design.toml_files import one_line, read_toml
+from cyclosweep.design.toml_files import read_as, read_toml
 from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import InputError, did_you_mean, path_of
 
@@ -159,10 +158,7 @@ class Drive(PublishedDrive):
 
     @classmethod
     def _from_table(cls, table: dict[str, Any], source: str) -> Drive:
-        try:
-            return cls.model_validate(table)
-        except ValidationError as error:
-            raise InputError(f"{source}: {one_line(error, cls)}") from None
+        return read_as(cls, "a drive file", table, source)
 
     def to_toml(self, path: str | Path) -> None:
         """Write the drive file that reads back as this drive.

@@ -9,11 +9,11 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 import numpy.typing as npt
 import polars as pl
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.design.shaft import NonNegative, Positive
-from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
+from cyclosweep.design.toml_files import TomlTable, read_as, read_toml
 from cyclosweep.dynamics.spring import Brake, SlipElement
 from cyclosweep.dynamics.torques import Torques
 from cyclosweep.dynamics.train import Train
@@ -137,10 +137,7 @@ class Event(TomlTable):
             name = table.get(key)
             if isinstance(name, str) and (key == "recording" or name.endswith(".json")):
                 table[key] = str(beside / name)
-        try:
-            return cls.model_validate(table)
-        except ValidationError as error:
-            raise InputError(f"{path}: {one_line(error, cls)}") from None
+        return read_as(cls, "an event", table, path)
 
     def of_drive(self, drive: PublishedDrive) -> Self:
         """Return this event with a drive's ratings where it states none.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic.fields import FieldInfo
@@ -15,7 +15,10 @@ from pydantic_core import ErrorDetails
 from cyclosweep.design.numbers import plain
 from cyclosweep.errors import InputError, did_you_mean, path_of
 
-__all__ = ["TomlTable", "one_line", "read_toml"]
+__all__ = ["TomlTable", "one_line", "read_as", "read_toml"]
+
+
+Table = TypeVar("Table", bound=BaseModel)
 
 
 class TomlTable(BaseModel):
@@ -51,6 +54,54 @@ class TomlTable(BaseModel):
             else:
                 kind = type(self).__name__
                 raise InputError(f"{name}: a {kind} does not change, expected a new {kind}")
+
+
+_KINDS = {
+    "a drive file": {"eccentricity_mm", "ring_pin_circle_radius_mm", "output_pin_count"},
+    "a study": {"axes", "sample", "objective", "limits", "constraints"},
+    "an event": {"kind", "duration_s"},
+    "tolerances": {"tolerances"},
+    "metadata of a recording": {"columns", "history", "merge", "score", "select", "side", "table"},
+}
+"""Keys at the top of a file that tell its kind from the others."""
+
+
+def _kind_of(keys: Collection[str]) -> str | None:
+    """Kind of a file by its keys, where only one has any of them."""
+    kinds = [kind for kind, own in _KINDS.items() if not own.isdisjoint(keys)]
+    return kinds[0] if len(kinds) == 1 else None
+
+
+def read_as(table: type[Table], expected: str, found: dict[str, Any], source: str | Path) -> Table:
+    """Make a table of what a file holds, or say in one line why it is none.
+
+    Parameters
+    ----------
+    table : type
+        What the file is to be.
+    expected : str
+        Its kind in words; one of those by which files are told apart.
+    found : dict
+        What the file holds.
+    source : str or Path
+        Name of the file.
+
+    Returns
+    -------
+    TomlTable
+
+    Raises
+    ------
+    InputError
+        A key is wrong, or the whole file is one of another kind.
+    """
+    try:
+        return table.model_validate(found)
+    except ValidationError as error:
+        kind = _kind_of(found)
+        if kind not in (None, expected):
+            raise InputError(f"{source}: this is {kind}, expected {expected}") from None
+        raise InputError(f"{source}: {one_line(error, table)}") from None
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:

@@ -9,13 +9,11 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    ValidationError,
     field_validator,
     model_validator,
 )
 
-from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
-from cyclosweep.errors import InputError
+from cyclosweep.design.toml_files import TomlTable, read_as, read_toml
 from cyclosweep.recording.units import QUANTITIES, UNIT_EXAMPLES, find_unit
 
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
@@ -303,7 +301,4 @@ class Metadata(_Strict):
         InputError
             The file is missing, is not TOML, or has a key or value that is not known.
         """
-        try:
-            return cls.model_validate(read_toml(path))
-        except ValidationError as error:
-            raise InputError(f"{path}: {one_line(error, cls)}") from None
+        return read_as(cls, "metadata of a recording", read_toml(path), path)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import Field, ValidationError
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.design.toml_files import TomlTable, one_line, read_toml
+from cyclosweep.design.toml_files import TomlTable, one_line, read_as, read_toml
 from cyclosweep.errors import InputError
 from cyclosweep.plugins import Column
 from cyclosweep.sweep.axes import Linspace, is_count
@@ -38,11 +38,7 @@ def read_study_file(path: str | Path) -> StudyFile:
     InputError
         One line that names the file, the key, what was found and what was expected.
     """
-    table = read_toml(path)
-    try:
-        return StudyFile.model_validate(table)
-    except ValidationError as error:
-        raise InputError(f"{path}: {one_line(error, StudyFile)}") from None
+    return read_as(StudyFile, "a study", read_toml(path), path)
 
 
 class _Sample(TomlTable):
