@@ -21,6 +21,7 @@ from cyclosweep.diagnosis.identify.verdict import (
     named_if_close,
     no_more_than_fits,
 )
+from cyclosweep.diagnosis.identify.worth import without_unseen_friction
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import repetition
 from cyclosweep.result import Explained, Verdict
@@ -130,7 +131,8 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
     # What was accepted in stages has been given its freedom there.
     freer = with_freer_laws(search, accepted) if staged is None else accepted
-    decision, accepted = _with_structure(decision, accepted, freer), freer
+    needed = without_unseen_friction(search, freer)
+    decision, accepted = _with_structure(decision, accepted, needed), needed
     naming = names_that_hold(search, accepted, decision.best or accepted)
     if staged is not None and naming.withdrawn and _is_enough(search, naming.part):
         # What was withdrawn explains nothing that the others do not explain.

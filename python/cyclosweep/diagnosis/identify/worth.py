@@ -4,6 +4,8 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.testability import strength_of
+from cyclosweep.result.part import NORMAL_95
 
 INDISPENSABLE = 10.0
 """Log likelihood that a named effect must be worth beside an unnamed shape to be accepted [nat]."""
@@ -58,3 +60,35 @@ def still_needed(search: Search, best: Candidate, accepted: tuple[Term, ...]) ->
     return tuple(
         term for term in kept if not term.slips or worth(search, term.name, best) >= INDISPENSABLE
     )
+
+
+def without_unseen_friction(search: Search, candidate: Candidate) -> Candidate:
+    """Leave out frictions that are not seen beside the other terms, which fit as well alone.
+
+    Such a one stood in for what was found after it.
+
+    Parameters
+    ----------
+    search : Search
+        Search by whose noise it is counted.
+    candidate : Candidate
+        The structure.
+
+    Returns
+    -------
+    Candidate
+        The same one where there is none, or nothing but friction.
+    """
+    terms = candidate.fit.terms
+    if not any(term.slips for term in terms) or all(term.slips for term in terms):
+        return candidate
+    unseen = {
+        term.name
+        for k, term in enumerate(terms)
+        if term.slips and strength_of(search, candidate.fit, k) < NORMAL_95
+    }
+    if not unseen:
+        return candidate
+    part = search.refit(tuple(t for t in terms if t.name not in unseen), candidate.fit)
+    as_well = search.gain(part.fit, candidate.fit) < NORMAL_95**2
+    return part if as_well and part.all_recognised else candidate

@@ -19,6 +19,12 @@ LEAST_LOADS = 6
 """Different torques that are needed for these orders: with fewer, a wave along the travel is the
 same as one of the locking position and a pulsating compliance."""
 
+PLACES_A_CYCLE = 8
+"""Recorded positions a cycle from which an order beyond the usual ones is looked for: so many there
+are where the shaft was turned under load, not locked at a few places."""
+HIGHEST_TURNED_ORDER = 12
+"""Highest order of the position that is looked for where the shaft was turned under load."""
+
 
 def short_way_deg(turned_deg: Floats) -> Floats:
     """Angle between two positions the short way round, from -180 to 180.
@@ -41,6 +47,25 @@ def position_count(history: History) -> int:
     if history.crank_deg is None:
         return 0
     return len(np.unique(np.round(history.crank_deg % 360.0, 1)))
+
+
+def turned_orders(history: History, above: int) -> range:
+    """Orders beyond the usual ones that a shaft which was turned under load shows.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+    above : int
+        Highest of the usual orders.
+
+    Returns
+    -------
+    range
+        Empty where the mesh was locked at a few positions.
+    """
+    seen = position_count(history) // PLACES_A_CYCLE
+    return range(above + 1, 1 + min(HIGHEST_TURNED_ORDER, seen))
 
 
 def _positions_span_deg(history: History) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.mesh_range import turned_orders
 from cyclosweep.simulation.effects.order_names import (
     LOAD_POWER,
     ORDER,
@@ -90,6 +91,8 @@ class PhaseDependentCompliance(MeshPeriodic):
         """Single orders, the low ones together, and the pin orders."""
         pins = history.output_pin_count
         sets = [(1,), (2,), (3,), (4,), (pins,), (2 * pins,), (1, 2), (2, 4), (1, 2, 3)]
+        turned = turned_orders(history, above=4)
+        sets += [(order,) for order in turned if order not in (pins, 2 * pins)]
         return order_shapes([*sets, (1, 2, 3, 4), (pins, 2 * pins), (2, 4, pins)])
 
     def largest(self, history: History) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from cyclosweep.simulation.effects.base import Parameter, Shape
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.mesh_range import turned_orders
 from cyclosweep.simulation.effects.order_names import order_amplitudes, order_shapes
 from cyclosweep.simulation.effects.orders import MeshPeriodic, harmonics
 
@@ -11,8 +12,9 @@ from cyclosweep.simulation.effects.orders import MeshPeriodic, harmonics
 class TransmissionError(MeshPeriodic):
     """Offset periodic in the position of the mesh zone.
 
-    Orders 1 to 3 of a recorded position, where it was locked or to which it has travelled since;
-    any order where it travels and no position was recorded.
+    Orders 1 to 3 of a recorded position, where it was locked or to which it has travelled since,
+    and up to 12 where the shaft was turned under load past many; any order where it travels and no
+    position was recorded.
     """
 
     name = "transmission_error"
@@ -29,7 +31,8 @@ class TransmissionError(MeshPeriodic):
 
     def locked_shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, and the first few together."""
-        return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3)])
+        turned = [(order,) for order in turned_orders(history, above=3)]
+        return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3), *turned])
 
     def largest(self, history: History) -> float:
         """A hundredth of the largest twist with its play."""
