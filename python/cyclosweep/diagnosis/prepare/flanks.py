@@ -15,6 +15,9 @@ LIGHT = 0.2
 """Share of that torque up to which a shaft may stand where it was turned to by hand: a twentieth of
 the largest torque is more than the zero of a torque sensor is off."""
 
+LEAST_COMPLIANCE = 1e-12
+"""Compliance that stands for none [deg/(N m)]."""
+
 FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
@@ -61,6 +64,22 @@ class Flanks:
     turned: TurnedPlay | None = None
     only_direction: float | None = None
 
+    @property
+    def _is_hidden(self) -> bool:
+        """Whether a loop wider than the play hides on which flank a reading lies."""
+        return self.loop_width_deg > self.free_play_deg
+
+    @property
+    def _pushed_nm(self) -> float:
+        """Torque that pushes the shaft to its own flank, where the angle does not tell [N m].
+
+        What holds a shaft on the other one is friction, and that is no more than the loop is wide.
+        """
+        if not self._is_hidden:
+            return self.loaded_nm
+        friction_nm = self.loop_width_deg / max(self.compliance_deg_per_nm, LEAST_COMPLIANCE)
+        return min(max(friction_nm, LIGHT * self.loaded_nm), self.loaded_nm)
+
     def at(
         self, torque: Floats, angle: Floats, scored: Flags | None = None
     ) -> tuple[Floats, Flags]:
@@ -96,9 +115,12 @@ class Flanks:
         if scored is not None:
             far = np.abs(torque) > self.loaded_scored_nm
             side[far] = sign[far]
+        pushed = np.abs(torque) > self._pushed_nm
+        if self._is_hidden:
+            side = _last_pushed(sign, pushed)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
-        contact = loaded | (depth < margin)
+        contact = loaded | pushed | (depth < margin)
         # A shaft may have been turned against the other flank without load. Where readings lie
         # there under a torque that pushes it away, the law is curved and all are in contact.
         one_way = sign == self.only_direction if self.only_direction is not None else loaded
@@ -107,6 +129,28 @@ class Flanks:
             side[one_way] = sign[one_way]
             return side, contact | one_way
         return side, contact & ~_on_the_way(depth, contact, loaded)
+
+
+def _last_pushed(sign: Floats, pushed: Flags) -> Floats:
+    """Flank to which the shaft was pushed last, shape (n,); before the first time that one.
+
+    Parameters
+    ----------
+    sign : ndarray, shape (n,)
+        +1 or -1, direction of the torque.
+    pushed : ndarray of bool, shape (n,)
+        Readings whose torque pushes the shaft to its own flank.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        The sign itself where no reading is pushed.
+    """
+    places = np.flatnonzero(pushed)
+    if len(places) == 0:
+        return sign
+    last = np.maximum(np.cumsum(pushed) - 1, 0)
+    return np.asarray(sign[places[last]])
 
 
 def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
