@@ -132,6 +132,32 @@ def test_a_wrong_study_is_one_line(tmp_path: Path, line: str, words: tuple[str, 
     assert not (tmp_path / "out").exists()
 
 
+def test_a_file_of_another_kind_is_said_to_be_one(study: Path, tmp_path: Path) -> None:
+    kinds = {
+        "a study": study,
+        "a drive file": tmp_path / "drive.toml",
+        "an event": tmp_path / "event.toml",
+        "metadata of a recording": tmp_path / "loop.toml",
+    }
+    cs.Drive.reference_87().to_toml(kinds["a drive file"])
+    kinds["an event"].write_text('kind = "reversal"\nduration_s = 0.3\n')
+    kinds["metadata of a recording"].write_text('side = "input"\nhistory = "continuous"\n')
+    recording = tmp_path / "loop.csv"
+    recording.write_text("torque_nm,angle_deg\n1,2\n")
+    out = ("--out", str(tmp_path / "out"))
+    asked = {
+        "a study": ("sweep", "FILE", *out),
+        "a drive file": ("show", "FILE"),
+        "an event": ("shock", "reference-87", "FILE", *out),
+        "metadata of a recording": ("diagnose", str(recording), "--meta", "FILE", *out),
+    }
+    for expected, command in asked.items():
+        for kind, path in kinds.items():
+            if kind != expected:
+                found = run(*(str(path) if word == "FILE" else word for word in command))
+                assert_one_line(found, 2, f"{path}: this is {kind}, expected {expected}")
+
+
 def test_a_wrong_drive_is_one_line(study: Path, tmp_path: Path) -> None:
     drive = tmp_path / "drive.toml"
     cs.Drive.reference_87().to_toml(drive)

@@ -67,3 +67,19 @@ def test_a_steep_curve_at_small_torque_sampled_closely_is_in_contact() -> None:
     angle = twist(torque, curve + 0.05 * np.random.default_rng(4).normal(size=len(torque)))
     angle[torque == 0.0] = 0.0
     np.testing.assert_array_equal(contact(torque, angle), torque != 0.0)
+
+
+def test_a_held_load_is_on_its_own_flank_where_a_loop_wider_than_the_play_hides_it() -> None:
+    # Creep widens the loop beyond a small play: readings at a quarter of the load lie anywhere.
+    play = 0.4
+    level = [3.0, 6.0, 9.0, 12.0, 9.0, 6.0, 3.0, 0.0, -3.0, -6.0, -9.0, -12.0, -6.0, -3.0, 0.0]
+    torque = np.repeat(level, 120)
+    late = np.zeros(len(torque))
+    for k in range(1, len(torque)):
+        late[k] = late[k - 1] + 0.05 * (0.08 * torque[k - 1] - late[k - 1])
+    late += 2e-4 * np.cumsum(torque)
+    flank = np.sign(torque)
+    flank[7 * 120 : 8 * 120], flank[-120:] = 1.0, -1.0
+    angle = 1.8 * torque + play * flank + late
+    side, _ = find_flanks(torque, angle, Line(play, 1.8)).at(torque, angle)
+    np.testing.assert_array_equal(side, flank)
