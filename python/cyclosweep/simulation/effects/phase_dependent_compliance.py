@@ -32,10 +32,11 @@ class PhaseDependentCompliance(MeshPeriodic):
     """Compliance periodic in the mesh position: orders 1-4, and those of the output pins.
 
     It multiplies the twist of all elastic parts that carry what friction leaves, a stiffening or a
-    side load among them. Orders 1 to 3 where it travels from recorded positions, any order where
-    none was recorded. With `load_power` it grows with another power of the load, as where contacts
-    alone pulsate that stiffen under load, and the rest of the compliance does not; below a
-    twentieth of `reference_nm` it grows in proportion to it, as contacts that are preloaded.
+    side load among them. Up to order 12 where the shaft was turned under load past many positions,
+    orders 1 to 3 where it travels from recorded positions, any order where none was recorded. With
+    `load_power` it grows with another power of the load, as where contacts alone pulsate that
+    stiffen under load, and the rest of the compliance does not; below a twentieth of `reference_nm`
+    it grows in proportion to it, as contacts that are preloaded.
     """
 
     name = "phase_dependent_compliance"
