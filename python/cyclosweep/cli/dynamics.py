@@ -78,7 +78,8 @@ def modes(
     found = modes_of(chosen, springs, **options)
     moved = dimension_sensitivities(chosen, named, **options) if springs is model else None
     orders = excitation_orders(chosen)
-    meetings = campbell(found, orders, speed or chosen.input_speed_rpm)
+    fastest = chosen.input_speed_rpm if speed is None else speed
+    meetings = campbell(found, orders, fastest)
     if as_json:
         print_json(
             {
@@ -99,7 +100,7 @@ def modes(
             titled("natural frequencies and shapes", found.table()),
             titled("who holds the energy; percent per percent of it", found.summary()),
             *[titled("percent per percent of a dimension", table) for table in dimensions],
-            titled(f"excited below {speed or chosen.input_speed_rpm:g} rpm", meetings),
+            titled(f"excited below {fastest:g} rpm", meetings),
         ]
     )
 

@@ -10,6 +10,7 @@ import polars as pl
 from cyclosweep.design.loaded import loaded_state
 from cyclosweep.design.published import PublishedDrive
 from cyclosweep.dynamics.modes import Modes
+from cyclosweep.errors import InputError
 
 __all__ = ["campbell", "excitation_orders"]
 
@@ -100,7 +101,14 @@ def campbell(modes: Modes, orders: pl.DataFrame, largest_speed_rpm: float) -> pl
     polars.DataFrame
         ``speed_rpm``, ``mode``, ``frequency_hz``, ``source``, ``order``, ``adds_up``, the slowest
         first.
+
+    Raises
+    ------
+    InputError
+        For a speed that is not above zero.
     """
+    if not largest_speed_rpm > 0.0:
+        raise InputError(f"speed: found {largest_speed_rpm:g} rpm, expected a number above zero")
     rows = [
         (60 * float(frequency) / order, mode, float(frequency), source, order, adds_up)
         for mode, frequency in enumerate(modes.frequencies_hz, 1)
