@@ -222,7 +222,7 @@ def test_orders_of_the_transmission_error_are_those_of_the_pins() -> None:
     meetings = campbell(drive.train(load_inertia_kg_m2=5.0).modes(), orders, 1500.0)
     row = meetings.filter(pl.col("order") == largest["order"]).row(0, named=True)
     assert row["speed_rpm"] * row["order"] / 60 == pytest.approx(row["frequency_hz"])
-    with pytest.raises(InputError, match="speed: found 0 rpm, expected a number above zero"):
+    with pytest.raises(cs.InputError, match="speed: found 0 rpm, expected a number above zero"):
         campbell(drive.train(load_inertia_kg_m2=5.0).modes(), orders, 0.0)
 
 
