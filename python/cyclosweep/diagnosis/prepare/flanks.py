@@ -65,20 +65,22 @@ class Flanks:
     only_direction: float | None = None
 
     @property
-    def _is_hidden(self) -> bool:
-        """Whether a loop wider than the play hides on which flank a reading lies."""
-        return self.loop_width_deg > self.free_play_deg
-
-    @property
     def _pushed_nm(self) -> float:
-        """Torque that pushes the shaft to its own flank, where the angle does not tell [N m].
+        """Torque that pushes the shaft to its own flank [N m].
 
         What holds a shaft on the other one is friction, and that is no more than the loop is wide.
         """
-        if not self._is_hidden:
-            return self.loaded_nm
         friction_nm = self.loop_width_deg / max(self.compliance_deg_per_nm, LEAST_COMPLIANCE)
-        return min(max(friction_nm, LIGHT * self.loaded_nm), self.loaded_nm)
+        return max(friction_nm, LIGHT * self.loaded_nm)
+
+    @property
+    def _is_hidden(self) -> bool:
+        """Whether a loop hides on which flank a light reading lies, and the torque tells it.
+
+        The loop is wider than the play then, and the friction that it may be too small to hold the
+        shaft against the load from which the line was taken.
+        """
+        return self.loop_width_deg > self.free_play_deg and self._pushed_nm < self.loaded_nm
 
     def at(
         self, torque: Floats, angle: Floats, scored: Flags | None = None
@@ -115,8 +117,9 @@ class Flanks:
         if scored is not None:
             far = np.abs(torque) > self.loaded_scored_nm
             side[far] = sign[far]
-        pushed = np.abs(torque) > self._pushed_nm
+        pushed = loaded
         if self._is_hidden:
+            pushed = np.abs(torque) > self._pushed_nm
             side = _last_pushed(sign, pushed)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
