@@ -48,3 +48,8 @@ def test_the_error_of_a_mesh_that_is_turned_under_load_is_named_with_its_orders(
     (effect,) = found.effects
     assert effect["name"] == "transmission_error"
     assert set(effect["parameters"]) == {"cos_2", "sin_2", "cos_5", "sin_5"}
+    # One position of hundreds is no place: it is said in which part of a turn the error is largest.
+    parts = [region["crank_deg"] for region in found.mismatch["regions"] if region["crank_deg"]]
+    assert parts
+    assert all(last - first == 30.0 for first, last in parts)
+    assert f"mesh positions {parts[0][0]:.4g} to {parts[0][1]:.4g} deg" in found.statement

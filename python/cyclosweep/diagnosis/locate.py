@@ -29,7 +29,9 @@ BANDS = 8
 MOST_RUNS = 60
 """Runs up to which each run is a cell."""
 MOST_POSITIONS = 40
-"""Mesh positions that are cells."""
+"""Mesh positions up to which each is a cell."""
+SECTORS = 12
+"""Parts of a turn that are cells where the mesh was turned past more positions."""
 LEAST_CHANCE = 0.002
 """Probability that is stated of an event: noise of the size of the others makes none."""
 STRETCHES = (10, 30)
@@ -273,11 +275,18 @@ def _run_cells(problem: Problem) -> Iterator[_Cell]:
 
 
 def _position_cells(problem: Problem) -> Iterator[_Cell]:
-    """Each mesh position."""
+    """Each mesh position, or parts of a turn where these are many."""
     crank = problem.history.crank_deg
     if crank is None:
         return
-    for place in np.unique(np.round(crank, 1))[:MOST_POSITIONS]:
+    places = np.unique(np.round(crank, 1))
+    if len(places) > MOST_POSITIONS:
+        width = 360.0 / SECTORS
+        sector = (crank % 360.0) // width
+        for k in range(SECTORS):
+            yield _Cell(rows=sector == k, crank=(k * width, (k + 1) * width))
+        return
+    for place in places:
         yield _Cell(rows=np.abs(crank - place) < 0.06, crank=(float(place), float(place)))
 
 

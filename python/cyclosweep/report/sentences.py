@@ -249,5 +249,6 @@ def _percent(share: float) -> str:
 
 
 def _range(ends: tuple[float, float]) -> str:
-    """Write two ends of a range."""
-    return f"{number(ends[0])} to {number(ends[1])}"
+    """Write two ends of a range, or the one place that both are."""
+    first, last = map(number, ends)
+    return first if ends[0] == ends[1] else f"{first} to {last}"

@@ -26,7 +26,10 @@ def place_of(regions: Sequence[Region]) -> str:
     if region.time_s is not None:
         parts.append(f"t = {region.time_s[0]:.5g} to {region.time_s[1]:.5g} s")
     if region.crank_deg is not None:
-        parts.append(f"mesh position {region.crank_deg[0]:.4g} deg")
+        first_deg, last_deg = (f"{place:.4g}" for place in region.crank_deg)
+        one = first_deg == last_deg
+        where = f"position {first_deg}" if one else f"positions {first_deg} to {last_deg}"
+        parts.append(f"mesh {where} deg")
     return ", ".join(parts) or "everywhere"
 
 
