@@ -78,9 +78,12 @@ class Flanks:
         """Whether a loop hides on which flank a light reading lies, and the torque tells it.
 
         The loop is wider than the play then, and the friction that it may be too small to hold the
-        shaft against the load from which the line was taken.
+        shaft against the load from which the line was taken. Of a load in one direction the play is
+        not known from the recording.
         """
-        return self.loop_width_deg > self.free_play_deg and self._pushed_nm < self.loaded_nm
+        both = self.only_direction is None
+        wide = self.loop_width_deg > self.free_play_deg
+        return both and wide and self._pushed_nm < self.loaded_nm
 
     def at(
         self, torque: Floats, angle: Floats, scored: Flags | None = None
