@@ -80,7 +80,7 @@ def without_unseen_friction(search: Search, candidate: Candidate) -> Candidate:
         The same one where there is none, or nothing but friction.
     """
     terms = candidate.fit.terms
-    if not any(term.slips for term in terms) or all(term.slips for term in terms):
+    if all(term.slips for term in terms):
         return candidate
     unseen = {
         term.name

@@ -23,6 +23,11 @@ def with_rounding(sigma_deg: float, step_deg: float) -> float:
     return float(np.hypot(sigma_deg, step_deg / np.sqrt(12.0)))
 
 
+def _squared_scale(tail: float) -> float:
+    """Square of the scale at which Student's distribution of this tail has unit variance."""
+    return (tail - 2.0) / tail if tail > 2.05 else 0.09
+
+
 def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
     """Score of rows of unit variance under Student's distribution, and its slope.
 
@@ -36,7 +41,7 @@ def student_score(white: Floats, tail: float) -> tuple[Floats, Floats]:
     -------
     score, slope : ndarray, shape (n,)
     """
-    scale2 = (tail - 2.0) / tail if tail > 2.05 else 0.09
+    scale2 = _squared_scale(tail)
     spread = tail * scale2 + white**2
     score = (tail + 1.0) * white / spread
     return score, (tail + 1.0) * (tail * scale2 - white**2) / spread**2
@@ -58,7 +63,7 @@ def student_deviance(white: Floats, tail: float) -> tuple[Floats, Floats]:
     -------
     deviance, slope : ndarray, shape (n,)
     """
-    scale2 = (tail - 2.0) / tail if tail > 2.05 else 0.09
+    scale2 = _squared_scale(tail)
     root = np.sqrt((tail + 1.0) * np.log1p(white**2 / (tail * scale2)))
     score = student_score(white, tail)[0]
     slope = np.divide(np.abs(score), root, out=np.ones_like(root), where=root > 1e-12)
