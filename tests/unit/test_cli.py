@@ -138,10 +138,12 @@ def test_a_file_of_another_kind_is_said_to_be_one(study: Path, tmp_path: Path) -
         "a drive file": tmp_path / "drive.toml",
         "an event": tmp_path / "event.toml",
         "metadata of a recording": tmp_path / "loop.toml",
+        "tolerances": tmp_path / "tolerances.toml",
     }
     cs.Drive.reference_87().to_toml(kinds["a drive file"])
     kinds["an event"].write_text('kind = "reversal"\nduration_s = 0.3\n')
     kinds["metadata of a recording"].write_text('side = "input"\nhistory = "continuous"\n')
+    kinds["tolerances"].write_text("[tolerances]\neccentricity_mm = 0.01\n")
     recording = tmp_path / "loop.csv"
     recording.write_text("torque_nm,angle_deg\n1,2\n")
     out = ("--out", str(tmp_path / "out"))
@@ -156,6 +158,16 @@ def test_a_file_of_another_kind_is_said_to_be_one(study: Path, tmp_path: Path) -
             if kind != expected:
                 found = run(*(str(path) if word == "FILE" else word for word in command))
                 assert_one_line(found, 2, f"{path}: this is {kind}, expected {expected}")
+    with pytest.raises(cs.InputError, match="this is a study, expected tolerances"):
+        cs.Tolerances.from_toml(study)
+
+
+@pytest.mark.skipif(not Path("/proc/version").exists(), reason="there is no /proc here")
+def test_a_folder_in_which_nothing_can_be_made_is_refused_at_once(tmp_path: Path) -> None:
+    recording = tmp_path / "loop.csv"
+    recording.write_text("torque_nm,angle_deg\n1,2\n")
+    result = run("diagnose", str(recording), "--out", "/proc/diagnosed")
+    assert_one_line(result, 2, "--out: found /proc, expected a folder that can be written to")
 
 
 def test_a_wrong_drive_is_one_line(study: Path, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import json
 import os
 import signal
 import sys
+import tempfile
 import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -150,8 +151,13 @@ def refuse_folder(folder: Path) -> None:
     nearest = next(each for each in (folder, *folder.absolute().parents) if each.exists())
     if not nearest.is_dir():
         raise InputError(f"--out: found {nearest}, which is a file, expected a folder")
-    if not os.access(nearest, os.W_OK | os.X_OK):
-        raise InputError(f"--out: found {nearest}, expected a folder that can be written to")
+    try:
+        # Rights alone do not tell: nothing can be made in /proc, and the administrator passes all.
+        with tempfile.TemporaryFile(dir=nearest):
+            pass
+    except OSError:
+        line = f"--out: found {nearest}, expected a folder that can be written to"
+        raise InputError(line) from None
 
 
 def fail(error: object, status: int) -> NoReturn:

@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails
 from cyclosweep.design.numbers import plain
 from cyclosweep.errors import InputError, did_you_mean, path_of
 
-__all__ = ["TomlTable", "one_line", "read_as", "read_toml"]
+__all__ = ["TomlTable", "one_line", "read_as", "read_toml", "refuse_other_kind"]
 
 
 Table = TypeVar("Table", bound=BaseModel)
@@ -72,6 +72,28 @@ def _kind_of(keys: Collection[str]) -> str | None:
     return kinds[0] if len(kinds) == 1 else None
 
 
+def refuse_other_kind(found: Collection[str], expected: str, source: str | Path) -> None:
+    """Refuse a file whose keys say that it is one of another kind.
+
+    Parameters
+    ----------
+    found : collection of str
+        Keys at the top of the file.
+    expected : str
+        The kind it is to be, in words; one of those by which files are told apart.
+    source : str or Path
+        Name of the file.
+
+    Raises
+    ------
+    InputError
+        With both kinds.
+    """
+    kind = _kind_of(found)
+    if kind not in (None, expected):
+        raise InputError(f"{source}: this is {kind}, expected {expected}")
+
+
 def read_as(table: type[Table], expected: str, found: dict[str, Any], source: str | Path) -> Table:
     """Make a table of what a file holds, or say in one line why it is none.
 
@@ -98,10 +120,9 @@ def read_as(table: type[Table], expected: str, found: dict[str, Any], source: st
     try:
         return table.model_validate(found)
     except ValidationError as error:
-        kind = _kind_of(found)
-        if kind not in (None, expected):
-            raise InputError(f"{source}: this is {kind}, expected {expected}") from None
-        raise InputError(f"{source}: {one_line(error, table)}") from None
+        line = f"{source}: {one_line(error, table)}"
+    refuse_other_kind(found, expected, source)
+    raise InputError(line)
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:

@@ -15,7 +15,7 @@ import polars as pl
 import cyclosweep._core as _core
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
-from cyclosweep.design.toml_files import read_toml
+from cyclosweep.design.toml_files import read_toml, refuse_other_kind
 from cyclosweep.errors import InputError, did_you_mean
 from cyclosweep.sweep.axes import is_count, known_input
 from cyclosweep.sweep.distributions import Distribution, distribution_from, uniform
@@ -90,9 +90,11 @@ class Tolerances:
         Raises
         ------
         InputError
-            One line that names the file, the key, what was found and what was expected.
+            One line that names the file, the key or the kind of file that was found, and what was
+            expected.
         """
         table = read_toml(path)
+        refuse_other_kind(table, "tolerances", path)
         try:
             for key in table:
                 if key not in _KEYS:
