@@ -55,7 +55,6 @@ def make(runs: int = 6, samples: int = 400) -> ReportData:
         after_deg=after,
         rated_torque_nm=RATED,
         ratio=87.0,
-        compliance_deg_per_nm=C,
         hypotheses=(
             hypothesis("friction_hysteresis", "accepted", 0.55, 0.0005, 1.2e6, 0.02),
             hypothesis("overload_softening", "accepted", 0.9, 0.0005, 310.0, 0.41),
@@ -132,7 +131,7 @@ def result(before: np.ndarray, after: np.ndarray, angle: np.ndarray) -> Answer:
              "way up and keeps it on the way down. Slip sets in over a presliding distance.",
              "parameters": {"friction_torque": {"estimate": 0.2, "std_error": 0.004,
                                                 "unit": "N m"}},
-             "size_deg": {"estimate": 0.55, "ci95": [0.51, 0.59]},
+             "size_deg": {"estimate": 0.55, "ci95": [0.51, 0.59]}, "size_nm": 0.31,
              "p_value": 0.0005, "e_value": 1.2e6, "detectability": 71.0},
             {"name": "overload_softening",
              "physics": "Compliance grows above a load, as contacts at the edge of their seats do.",

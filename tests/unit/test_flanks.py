@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.prepare.flanks import find_flanks
+from cyclosweep.diagnosis.prepare.play_jumps import sides_by_jumps
 from cyclosweep.simulation.effects.history import Flags
 from tests.support.arrays import Floats
 
@@ -83,3 +84,32 @@ def test_a_held_load_is_on_its_own_flank_where_a_loop_wider_than_the_play_hides_
     angle = 1.8 * torque + play * flank + late
     side, _ = find_flanks(torque, angle, Line(play, 1.8)).at(torque, angle)
     np.testing.assert_array_equal(side, flank)
+
+
+def test_the_flank_changes_where_the_angle_jumps() -> None:
+    # Friction of 1.5 N m holds the shaft on its flank beyond zero torque, and the play is small.
+    torque = crossings(80)
+    elastic, held = np.empty_like(torque), 0.0
+    for row, applied in enumerate(torque):
+        held = min(max(held, applied - 1.5), applied + 1.5)
+        elastic[row] = held
+    rng = np.random.default_rng(4)
+    angle = 0.8 * np.sign(elastic) + COMPLIANCE * elastic + 0.05 * rng.normal(size=len(torque))
+    side, known = find_flanks(torque, angle, Line(0.5)).at(torque, angle)
+    clear = known & (np.abs(elastic) > 1e-9)
+    np.testing.assert_array_equal(side[clear], np.sign(elastic[clear]))
+    assert np.sum(clear & (np.sign(torque) != side)) > 10
+
+
+def test_no_jump_is_looked_for_across_runs_or_where_the_play_is_crossed_slowly() -> None:
+    torque = crossings(80)
+    angle = twist(torque, 0.05 * np.random.default_rng(5).normal(size=len(torque)))
+    loaded, side = np.abs(torque) > 5.0, np.where(torque >= -2.0, 1.0, -1.0)
+    line = (COMPLIANCE, PLAY)
+    none = np.zeros(len(torque), dtype=bool)
+    moved = sides_by_jumps(torque, angle, side, loaded, none, line)
+    assert np.array_equal(moved[torque != 0.0], np.sign(torque)[torque != 0.0])
+    apart = np.r_[True, np.diff(np.sign(torque)) != 0]
+    np.testing.assert_array_equal(sides_by_jumps(torque, angle, side, loaded, apart, line), side)
+    slow = np.clip(20.0 * torque, -PLAY, PLAY) + COMPLIANCE * torque
+    np.testing.assert_array_equal(sides_by_jumps(torque, slow, side, loaded, none, line), side)

@@ -6,10 +6,12 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.friction_first import friction_first
-from cyclosweep.diagnosis.identify.loop_check import is_curve_of_torque
+from cyclosweep.diagnosis.identify.loop_check import is_curve_of_torque, is_without_loop
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import COMPLIANCE, friction, long_recording
 from tests.support.searches import search_of_recording
 
 TOP, PLAY, C = 20.0, 28.0, 2.7
@@ -61,3 +63,19 @@ def test_what_a_friction_adds(recording: cs.Recording, is_curve: bool) -> None:
     first = friction_first(search, search.noise.with_model_error(10.0))
     assert (first is None) == is_curve
     assert not is_curve_of_torque(search.baseline.fit)
+
+
+def test_a_curve_of_the_elastic_torque_is_no_curve_without_the_loop() -> None:
+    # The elastic torque is what friction leaves of the applied one, and holds the loop.
+    shape = {"first_nm": 0.01, "range_nm": 0.02}
+    recording = long_recording(
+        1_500, [friction(3.0), EffectValue("clearance_takeup", shape, (0.5,))]
+    )
+    search = search_of_recording(recording)
+    terms = (
+        Term(find("friction_hysteresis"), friction(3.0).shape, None, 3.0 / COMPLIANCE),
+        Term(find("clearance_takeup"), shape),
+    )
+    fitted = fit(search.problem, search.noise, terms, search.baseline.fit, rounds=20)
+    assert fitted.rmse_deg < 0.06
+    assert not is_without_loop(fitted, 0)

@@ -262,6 +262,11 @@ def test_plus_minus_is_the_interval_of_95_percent_everywhere(whole: ReportData) 
     assert "behind ± stands the half width of the 95 % interval" in text
 
 
+def test_an_effect_is_worth_the_torque_that_the_answer_says(whole: ReportData) -> None:
+    assert page(whole).count("; worth 0.31 N m") == 1
+    assert page(whole).count("; worth ") == 1  # the other effect has no torque
+
+
 def test_a_place_without_a_clock_is_said_in_readings(whole: ReportData) -> None:
     region = Region(run=(1, 1), readings=(7, 10), mean_residual_deg=1.1, share_of_excess=0.004)
     result = replace(whole.result, mismatch=Mismatch(p_value=0.001, regions=(region,)))

@@ -73,6 +73,22 @@ def test_a_folder_s_recordings_are_all_that_can_be_read(tmp_path: Path) -> None:
     assert {path.name for path in recordings_in(tmp_path)} == wanted
 
 
+def test_tables_that_a_series_left_are_no_recordings(tmp_path: Path) -> None:
+    write_loop(tmp_path / "loop.csv", 0.5, 25.0, 1)
+    (tmp_path / "table.csv").write_text("torque_nm,angle_deg\n1,2\n")
+    assert len(recordings_in(tmp_path)) == 2
+    for name in ("table.parquet", "index.html"):
+        (tmp_path / name).touch()
+    assert recordings_in(tmp_path) == [tmp_path / "loop.csv"]
+
+
+def test_recordings_of_one_name_are_both_said(tmp_path: Path) -> None:
+    paths = [tmp_path / place / "loop.csv" for place in ("a", "b")]
+    with pytest.raises(cs.InputError, match=r"found .*a/loop\.csv and .*b/loop\.csv, expected"):
+        cs.diagnose_folder(paths, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_bad_file_keeps_its_row_and_does_not_stop_the_rest(folder: Path) -> None:
     out = folder.parent / "out"
     said: list[str] = []

@@ -142,14 +142,13 @@ def diagnose(
 
 def _folders(recordings: list[Path], out: Path) -> dict[Path, Path]:
     """Folder of the results of each recording: of its name where there are several."""
+    from cyclosweep.diagnosis.folder import refuse_same_names
     from cyclosweep.recording.reading import stem
 
     if len(recordings) == 1:
         return {recordings[0]: out}
-    folders = {path: out / stem(path) for path in recordings}
-    if len(set(folders.values())) < len(recordings):
-        raise InputError("recordings: two of one name, expected a folder for each in DIR")
-    return folders
+    refuse_same_names(recordings)
+    return {path: out / stem(path) for path in recordings}
 
 
 def _diagnose_one(path: Path, folder: Path, job: _Job) -> dict[str, Any]:

@@ -196,7 +196,7 @@ def _noise(search: Search) -> NoiseEstimate:
     return NoiseEstimate(
         sigma_deg=noise.likely_spread_deg,
         autocorrelation=noise.best_correlation,
-        autocorrelation_upper=noise.correlation,
+        autocorrelation_upper=None if noise.structured else noise.correlation,
         tail_degrees_of_freedom=finite(noise.tail),
         resolution_deg=search.problem.resolution_deg,
         torque_nm=search.problem.torque_noise_nm,

@@ -38,6 +38,8 @@ from cyclosweep.simulation.effects import effects
 
 _LOG = logging.getLogger(__name__)
 
+OF_A_SERIES = ("table.csv", "table.parquet", "index.html")
+"""Files that compare the recordings of a folder."""
 ROW_FILE = "row.json"
 """File of a finished recording's row, with the hash of all that it was made from."""
 
@@ -68,7 +70,7 @@ class Series:
 
 
 def recordings_in(folder: str | Path) -> list[Path]:
-    """List the recordings of a folder, by name.
+    """List the recordings of a folder, by name; tables that a series left there are none.
 
     Raises
     ------
@@ -78,13 +80,34 @@ def recordings_in(folder: str | Path) -> list[Path]:
     folder = path_of("recordings", folder)
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder, expected recordings in it")
+    own = OF_A_SERIES if all((folder / name).is_file() for name in OF_A_SERIES) else ()
     found = sorted(
-        path for path in folder.iterdir() if is_recording_name(path.name) and path.is_file()
+        path
+        for path in folder.iterdir()
+        if is_recording_name(path.name) and path.is_file() and path.name not in own
     )
     if not found:
         endings = ", ".join(f".{ending}" for ending in sorted(ENDINGS))
         raise InputError(f"{folder}: found no recording, expected files that end in {endings}")
     return found
+
+
+def refuse_same_names(paths: Sequence[Path]) -> None:
+    """Refuse recordings whose results would be written into one folder.
+
+    Raises
+    ------
+    InputError
+        With two of them.
+    """
+    by_name: dict[str, Path] = {}
+    for path in paths:
+        other = by_name.setdefault(stem(path), path)
+        if other is not path:
+            raise InputError(
+                f"recordings: found {other} and {path}, expected names that differ, as each has a "
+                "folder of its name in DIR"
+            )
 
 
 def diagnose_folder(
@@ -141,8 +164,7 @@ def diagnose_folder(
     else:
         instance_of("recordings", recordings, Sequence)
         paths = [path_of("recordings", path) for path in recordings]
-    if len({stem(path) for path in paths}) < len(paths):
-        raise InputError("recordings: two of one name, expected a folder for each in DIR")
+    refuse_same_names(paths)
     workers = whole_number("workers", workers, least=1)
     target = path_of("out", out)
     target.mkdir(parents=True, exist_ok=True)
@@ -279,8 +301,9 @@ def _series(rows: list[Row], named: set[str]) -> Series:
 
 def _write(series: Series, out: Path) -> None:
     """Write the table and its page, each whole or not at all."""
-    write_text(out / "table.csv", series.table.write_csv())
-    with unfinished(out / "table.parquet") as file:
+    csv, parquet, page = (out / name for name in OF_A_SERIES)
+    write_text(csv, series.table.write_csv())
+    with unfinished(parquet) as file:
         series.table.write_parquet(file)
     rows = series.table.to_dicts()
-    write_series_page(out / "index.html", rows, series.conditions, series.trends)
+    write_series_page(page, rows, series.conditions, series.trends)

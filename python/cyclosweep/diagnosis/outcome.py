@@ -154,7 +154,6 @@ class Diagnosis:
             after_deg=self.after_deg,
             rated_torque_nm=self.rated_torque_nm,
             ratio=self.ratio,
-            compliance_deg_per_nm=None if self.model is None else self.model.compliance_deg_per_nm,
             hypotheses=self.hypotheses,
             provenance=self.provenance,
         )

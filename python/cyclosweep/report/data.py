@@ -86,8 +86,6 @@ class ReportData:
         Rated torque at the measured shaft [N m].
     ratio : float or None
         Reduction of the drive.
-    compliance_deg_per_nm : float or None
-        Calibrated compliance at the measured shaft, to express sizes in N m.
     hypotheses : tuple of Hypothesis
         Rows of the hypothesis table.
     held_out : tuple of HeldOut
@@ -102,7 +100,6 @@ class ReportData:
     after_deg: Floats | None = None
     rated_torque_nm: float | None = None
     ratio: float | None = None
-    compliance_deg_per_nm: float | None = None
     hypotheses: tuple[Hypothesis, ...] = ()
     held_out: tuple[HeldOut, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)

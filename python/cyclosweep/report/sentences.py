@@ -35,7 +35,7 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
     return [
         (
             plain(effect.name),
-            _size(effect, data),
+            _size(effect),
             _evidence(effect),
             effect.physics,
             LOOK_AT.get(effect.name, ""),
@@ -53,13 +53,13 @@ def look_at(data: ReportData) -> list[str]:
     ]
 
 
-def _size(effect: FoundEffect, data: ReportData) -> str:
+def _size(effect: FoundEffect) -> str:
     """Size of an effect with its interval, and the torque that it is worth."""
     size = effect.size_deg
     digits = telling_digits(size.estimate, size.ci95)
     text = f"{angle(size.estimate, digits)}, 95 % interval {interval(size.ci95, digits)} deg"
-    if data.compliance_deg_per_nm:
-        text += f"; worth {number(abs(size.estimate / data.compliance_deg_per_nm))} N m"
+    if effect.size_nm is not None:
+        text += f"; worth {number(effect.size_nm)} N m"
     return text
 
 

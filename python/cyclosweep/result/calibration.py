@@ -15,7 +15,8 @@ class NoiseEstimate(Part):
     autocorrelation: float | None = None
     """Correlation of neighbouring samples."""
     autocorrelation_upper: float | None = None
-    """Upper estimate of that correlation, with which all tests are made."""
+    """Upper estimate of that correlation, with which all tests are made; null where they count
+    independent pieces of a loop instead, as what is left repeats itself along it."""
     tail_degrees_of_freedom: float | None = None
     """Degrees of freedom of Student's t where the noise has heavy tails; null where Gaussian."""
     resolution_deg: float | None = None

@@ -298,7 +298,7 @@ def _check(
         # is not named where another class explains more than its own, and the law no more.
         ahead = max(loops) - max(every[name].evidence for name in family)
         clear = max(CLEAR, CLOSE_LOOP_SHARE * beyond)
-        replaced |= ahead > clear and by_law <= max(loops) + room
+        replaced |= ahead > clear and by_law <= max(loops) + close
     # A law is judged by its class no closer than to the error that much larger ones leave there.
     error = ERROR_OF_OTHERS * size_of_others
     little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))

@@ -86,9 +86,15 @@ def is_without_loop(fitted: FittedStructure, index: int) -> bool:
     size = float(np.linalg.norm(size_of(fitted, index)))
     if size < VISIBLE * fitted.noise.spread_deg:
         return False
-    line = line_design(history, history.applied_nm, one_sided=problem.one_sided)
-    load = np.clip(history.load_nm / history.largest_torque_nm, 0.0, 1.0)
-    others = [fitted.contribution(k) for k, term in enumerate(fitted.terms) if not term.slips]
-    columns = np.column_stack([line, history.side[:, None] * smooth_columns(load), *others])[use]
+    # The elastic torque is what friction leaves of the applied one: its curves hold the loop.
+    applied = history.under_applied_torque
+    line = line_design(applied, applied.applied_nm, one_sided=problem.one_sided)
+    load = np.clip(applied.load_nm / applied.largest_torque_nm, 0.0, 1.0)
+    others = [
+        term.columns(applied) @ fitted.beta[fitted.column_range(k)]
+        for k, term in enumerate(fitted.terms)
+        if not term.slips
+    ]
+    columns = np.column_stack([line, applied.side[:, None] * smooth_columns(load), *others])[use]
     left = _left(columns, problem.angle_deg[use])
     return float(np.sqrt(np.mean(left**2))) <= NOISE_ALONE * fitted.noise.spread_deg

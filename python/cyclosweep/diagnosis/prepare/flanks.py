@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from cyclosweep.diagnosis.prepare.play_jumps import sides_by_jumps
 from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
 from cyclosweep.simulation.effects.history import Flags, Floats
 
@@ -86,7 +87,11 @@ class Flanks:
         return both and wide and self._pushed_nm < self.loaded_nm
 
     def at(
-        self, torque: Floats, angle: Floats, scored: Flags | None = None
+        self,
+        torque: Floats,
+        angle: Floats,
+        scored: Flags | None = None,
+        begins: Flags | None = None,
     ) -> tuple[Floats, Flags]:
         """Flank of every reading, and whether it is in contact.
 
@@ -96,6 +101,8 @@ class Flanks:
             Torque [N m] and twist [deg].
         scored : ndarray of bool, shape (n,), optional
             Readings that are scored; default: all.
+        begins : ndarray of bool, shape (n,), optional
+            First reading of each run; default: all are one run.
 
         Returns
         -------
@@ -124,6 +131,10 @@ class Flanks:
         if self._is_hidden:
             pushed = np.abs(torque) > self._pushed_nm
             side = _last_pushed(sign, pushed)
+        if begins is None:
+            begins = np.zeros(len(torque), dtype=bool)
+        line = (self.compliance_deg_per_nm, play)
+        side = sides_by_jumps(torque, angle, side, loaded, begins, line)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
         contact = loaded | pushed | (depth < margin)

@@ -7,6 +7,7 @@ import numpy as np
 from cyclosweep.diagnosis.prepare.flanks import Flanks, NominalLine, find_flanks
 from cyclosweep.diagnosis.prepare.neighbours import angle_by_neighbours
 from cyclosweep.diagnosis.prepare.pieces import find_pieces
+from cyclosweep.diagnosis.prepare.play_jumps import begins_of
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
@@ -165,10 +166,12 @@ def prepare(
     scored = None if recording.unscored is None else ~recording.unscored[first]
     flanks = find_flanks(torque, angle, line, scored)
     piece = find_pieces(recording).of_sample[first]
+    begins = begins_of(run)
+    off_lines_deg = _off_lines(flanks, torque, angle, begins)
     torque, torque_noise = torque_without_noise(
-        torque, angle, piece, flanks.compliance_deg_per_nm, _off_lines(flanks, torque, angle), time
+        torque, angle, piece, flanks.compliance_deg_per_nm, off_lines_deg, time
     )
-    side, contact = flanks.at(torque, angle, scored)
+    side, contact = flanks.at(torque, angle, scored, begins)
     datum, compliance = flanks.datum_deg, flanks.compliance_deg_per_nm
     play = flanks.free_play_deg
     if rows.on_one_flank is not None:
@@ -242,7 +245,7 @@ def _since_first_contact(contact: Flags, restart: Flags) -> Flags:
     return np.asarray(so_far > before[np.cumsum(restart) - 1])
 
 
-def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats) -> float:
+def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, begins: Flags) -> float:
     """Root mean square of what straight lines on both flanks leave of the twist [deg].
 
     Parameters
@@ -251,12 +254,14 @@ def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats) -> float:
         The lines.
     torque_nm, angle_deg : ndarray, shape (n,)
         Torque [N m] and twist [deg].
+    begins : ndarray of bool, shape (n,)
+        First reading of each run.
 
     Returns
     -------
     float
     """
-    side, contact = flanks.at(torque_nm, angle_deg)
+    side, contact = flanks.at(torque_nm, angle_deg, begins=begins)
     line = flanks.datum_deg + side * flanks.free_play_deg
     line = line + flanks.compliance_deg_per_nm * torque_nm
     left = (angle_deg - line)[contact]
