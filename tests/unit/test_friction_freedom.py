@@ -133,7 +133,7 @@ def test_friction_is_looked_for_in_noise_that_is_slow_or_has_heavy_tails(
     monkeypatch.setattr(friction_in_noise, "friction_first", capture)
     search = calibrated_search(EffectValue("creep", {"time_constant_s": 20.0}, (6.0,)))
     flexible = flexible_basis(search.problem, search.library)
-    search.noise = replace(search.noise, best_correlation=correlation, tail=tail)
+    search.noise = replace(search.noise, best_correlation=correlation, tail=tail, structured=False)
     found = friction_in_noise.without_hidden_friction(search, flexible)
     assert found == (search, flexible, None)
     assert (len(tried) > 0) == looked_for

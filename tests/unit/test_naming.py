@@ -1,5 +1,6 @@
 """Which laws of a simulation of whole loops may be named where another of them may not."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -103,3 +104,19 @@ def test_what_is_known_of_each_parameter_adds_to_what_whole_loops_tell(whole: Wh
         more[place, place] += 1.0
         found = whole.covariance_given(information) / np.outer(scale, scale)
         np.testing.assert_allclose(found, np.linalg.inv(more), rtol=1e-4, atol=1e-6)
+
+
+def test_a_friction_has_one_interval_wherever_it_is_said(whole: WholeLoopFit) -> None:
+    (text,) = (
+        each.text
+        for each in whole.findings(None, unsteady=False)
+        if each.topic == "friction hysteresis"
+    )
+    said = re.search(r"friction of (\S+) ± (\S+) N m", text)
+    assert said is not None
+    place = next(k for k, each in enumerate(whole.fit_parameters) if each.name == "amplitude")
+    error = np.sqrt(
+        whole.covariance_within_bounds[len(whole.beta) + place, len(whole.beta) + place]
+    )
+    assert float(said[2]) == pytest.approx(1.96 * error, rel=0.06)
+    assert float(said[1]) == pytest.approx(whole.terms[0].amplitude, rel=0.01)

@@ -80,7 +80,7 @@ def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_mode
     rows = len(search.noise.gap)
     one_run = np.where(np.arange(rows) > 0, 1.0, 0.0)
     slow = 1.0 - 1.0 / rows
-    search.noise = replace(search.noise, best_correlation=slow, gap=one_run)
+    search.noise = replace(search.noise, best_correlation=slow, gap=one_run, structured=False)
     slow_noise = search.noise
     assert pieces(slow_noise) < FEWEST_PIECES
     assert instead_of_slow_noise(search, flexible) is not None

@@ -95,7 +95,14 @@ def _study(path: Path, rows: int | None) -> Study:
     from cyclosweep.sweep.study import Study
 
     study = Study.from_toml(path)
-    return study if rows is None else dataclasses.replace(study, space=study.space[:rows])
+    if rows is None:
+        return study
+    if rows > len(study.space):
+        print(
+            f"cyclosweep: --rows: {rows:,} asked for, {path} has {len(study.space):,}",
+            file=sys.stderr,
+        )
+    return dataclasses.replace(study, space=study.space[:rows])
 
 
 def _say_size(study: Study, out: Path, *, fresh: bool, yes: bool) -> None:

@@ -93,15 +93,20 @@ def _effect(
         spread = size / max(strength, 1e-9)
     else:
         spread = spread_of_size(fitted, index, fitted.covariance_within_bounds)
-    half = NORMAL_95 * spread
     p_value = chance_of_effect(search, accepted, index)
-    if half >= size:  # the interval holds nothing at all: the same spread judges the probability
+    if NORMAL_95 * spread >= size:  # it may be nothing at all: the same spread judges the chance
         p_value = max(p_value, 2.0 * float(stats.norm.sf(size / max(spread, 1e-300))))
+    parameters = _parameters(fitted, index)
+    if effect.slips:
+        # Two frictions may be certain together, and neither of them by itself.
+        limit = parameters[effect.amplitudes(fitted.terms[index].shape)[0].name]
+        spread = max(spread, size * (limit.std_error or 0.0) / max(abs(limit.estimate), 1e-300))
+    half = NORMAL_95 * spread
     return FoundEffect(
         name=effect.name,
         physics=f"{effect.physics} {_found_law(fitted, index)}".rstrip(),
         source=effect.source,
-        parameters=_parameters(fitted, index),
+        parameters=parameters,
         size_deg=Size(estimate=size, ci95=(max(size - half, 0.0), size + half)),
         size_arcmin=60.0 * size,
         size_nm=finite(size / compliance_with_curve(fitted)[0]),

@@ -1,5 +1,7 @@
 """What a test engineer sees in a measured loop, in figures."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from scipy import stats
 
@@ -25,7 +27,11 @@ MOST_FRICTION = 0.35
 
 
 def findings(
-    forecast: Forecast, repeats: Repetition | None, *, unsteady: bool
+    forecast: Forecast,
+    repeats: Repetition | None,
+    limit_errors: Mapping[str, float],
+    *,
+    unsteady: bool,
 ) -> tuple[Finding, ...]:
     """Topics and sentences, in the order in which a loop is read.
 
@@ -35,6 +41,8 @@ def findings(
         The simulation fitted to the loops.
     repeats : Repetition or None
         How well the residual of one run predicts that of another.
+    limit_errors : mapping of str to float
+        Standard error of the limit of each friction, by its name, in the limit's unit.
     unsteady : bool
         Whether the loops drift from run to run.
 
@@ -47,9 +55,9 @@ def findings(
     hidden = hidden_by_friction(problem, forecast)
     found = [_play(problem, forecast, hidden)]
     if "friction_hysteresis" in known:
-        found.append(_friction(forecast))
+        found.append(_friction(forecast, limit_errors["friction_hysteresis"]))
     if "load_dependent_friction" in known:
-        found.append(_load_friction(forecast))
+        found.append(_load_friction(forecast, limit_errors["load_dependent_friction"]))
     if hidden is None:
         if known & {"contact_stiffening", "clearance_takeup"}:
             found.append(_stiffening(problem, forecast))
@@ -110,48 +118,23 @@ def _finding(topic: str, text: str) -> Finding:
     return Finding(topic=topic, text=text)
 
 
-def _half_interval(forecast: Forecast, kind: str, effect: str = "") -> float:
-    """Half width of the 95 % interval of a parameter, in its own unit.
-
-    ``effect`` is the one whose amplitude is asked for; empty for a parameter of the model itself.
+def _half_width_of_play(forecast: Forecast) -> float:
+    """Half width of the 95 % interval of the play each side [deg]; NaN where it is not fitted.
 
     Parameters
     ----------
     forecast : Forecast
-    kind : str
-        Kind of the `ModelParameter`.
-    effect : str
-        Effect whose amplitude it is; empty where it is none.
 
     Returns
     -------
     float
     """
     for k, parameter in enumerate(forecast.parameters):
-        if parameter.kind == kind and (not effect or _amplitude_of(forecast, k) == effect):
+        if parameter.kind == "play":
             error = float(np.sqrt(max(forecast.covariance[k, k], 0.0)))
             value = float(np.exp(forecast.values[k])) if parameter.logarithmic else 1.0
             return NORMAL_95 * error * value
     return float("nan")
-
-
-def _amplitude_of(forecast: Forecast, place: int) -> str:
-    """Effect whose amplitude a parameter is; empty where it is none.
-
-    Parameters
-    ----------
-    forecast : Forecast
-    place : int
-        Index of the parameter.
-
-    Returns
-    -------
-    str
-    """
-    parameter = forecast.parameters[place]
-    if parameter.term < 0 or parameter.name != "amplitude":
-        return ""
-    return forecast.terms[parameter.term].name
 
 
 def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
@@ -173,7 +156,7 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     if problem.one_sided:
         return _finding("play", "Not reported: only one flank was loaded.")
     dead = 2.0 * forecast.model.free_play_deg
-    half = 2 * _half_interval(forecast, "play")
+    half = 2 * _half_width_of_play(forecast)
     text = (
         f"Dead zone of the fitted simulation: {angle_in_words(dead)} ± {half:.2g} deg (95 %) from "
         f"flank to flank at the {problem.recording.side} shaft, a parameter of that model."
@@ -187,10 +170,21 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     return _finding("play", text)
 
 
-def _friction(forecast: Forecast) -> Finding:
-    """Coulomb friction and the width of the loop."""
+def _friction(forecast: Forecast, error_nm: float) -> Finding:
+    """Coulomb friction and the width of the loop.
+
+    Parameters
+    ----------
+    forecast : Forecast
+    error_nm : float
+        Standard error of that friction [N m].
+
+    Returns
+    -------
+    Finding
+    """
     limit = next(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
-    half = _half_interval(forecast, "nonlinear", "friction_hysteresis")
+    half = NORMAL_95 * error_nm
     return _finding(
         "friction hysteresis",
         f"Coulomb friction of {limit:.3g} ± {half:.2g} N m (95 %) at the measured shaft: the "
@@ -198,10 +192,21 @@ def _friction(forecast: Forecast) -> Finding:
     )
 
 
-def _load_friction(forecast: Forecast) -> Finding:
-    """Friction in proportion to the transmitted torque."""
+def _load_friction(forecast: Forecast, error: float) -> Finding:
+    """Friction in proportion to the transmitted torque.
+
+    Parameters
+    ----------
+    forecast : Forecast
+    error : float
+        Standard error of its share of that torque.
+
+    Returns
+    -------
+    Finding
+    """
     share = next(t.amplitude for t in forecast.terms if t.name == "load_dependent_friction")
-    half = _half_interval(forecast, "nonlinear", "load_dependent_friction")
+    half = NORMAL_95 * error
     return _finding(
         "friction that grows with load",
         f"{100 * share:.0f} ± {100 * half:.0f} % (95 %) of the transmitted torque on top of "

@@ -173,7 +173,13 @@ class WholeLoopFit(FittedStructure):
         -------
         tuple of Finding
         """
-        return findings(self.forecast, repeats, unsteady=unsteady)
+        errors = np.sqrt(np.maximum(np.diag(self.covariance_within_bounds), 0.0))
+        limits = {
+            self.terms[each.term].name: float(errors[len(self.beta) + k])
+            for k, each in enumerate(self.fit_parameters)
+            if each.name == "amplitude"
+        }
+        return findings(self.forecast, repeats, limits, unsteady=unsteady)
 
     @cached_property
     def _in_order(self) -> tuple[list[int], Floats]:
