@@ -12,6 +12,7 @@ import polars as pl
 from scipy.optimize import brentq
 
 from cyclosweep.cad.fitting import checked_chord_error, points_within
+from cyclosweep.design.disc_profile import unit_vectors
 
 __all__ = ["DiscProfile", "FlankPoints"]
 
@@ -240,7 +241,7 @@ class DiscProfile:
     def _unturned(self, psi: Reals) -> FlankPoints:
         """The profile without the turn of its flanks."""
         many = self.lobes + 1
-        pin, crank = _unit(psi), _unit(many * psi)
+        pin, crank = unit_vectors(psi), unit_vectors(many * psi)
         path = self.ring_radius_mm * pin - self.eccentricity_mm * crank
         slope = self.ring_radius_mm * _across(pin) - self.eccentricity_mm * many * _across(crank)
         tangent = slope / self._path_speed(psi)[:, None]
@@ -252,10 +253,6 @@ class DiscProfile:
 def turning(angle: float) -> Reals:
     """Matrix that turns vectors by an angle [rad]."""
     return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-
-
-def _unit(angle: Reals) -> Reals:
-    return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _across(vectors: Reals) -> Reals:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cyclosweep.cli.exploring import check_out, say_if_unfinished
+from cyclosweep.cli.exploring import check_out, plain_rows, say_if_unfinished
 from cyclosweep.cli.frames import titled
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
@@ -75,7 +74,7 @@ def best(
     shown = [each.split(" ", 1)[1] for each in goals]
     columns = list(dict.fromkeys(["variant", *shown, *stored.axes]))
     if as_json:
-        content = [{k: _plain(v) for k, v in row.items()} for row in table.head(rows).to_dicts()]
+        content = plain_rows(table.head(rows))
         print_json(
             {
                 "schema": "cyclosweep.best/1",
@@ -132,10 +131,6 @@ def _split(text: str) -> list[str]:
         else:
             parts[-1] += sign
     return [part for part in parts if part.strip()]
-
-
-def _plain(value: object) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _with_units(table: pl.DataFrame, stored: StoredStudy) -> pl.DataFrame:

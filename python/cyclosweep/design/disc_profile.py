@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["disc_profile"]
+__all__ = ["disc_profile", "unit_vectors"]
 
 Reals = npt.NDArray[np.float64]
 
@@ -54,13 +54,14 @@ def disc_profile(
     """
     pins = lobes + 1
     s = np.linspace(0.0, math.tau, lobes * points_per_lobe + 1)
-    pin = ring_pin_circle_radius_mm * _unit(s)
-    to_pitch_point = eccentricity_mm * pins * _unit(pins * s) - pin
+    pin = ring_pin_circle_radius_mm * unit_vectors(s)
+    to_pitch_point = eccentricity_mm * pins * unit_vectors(pins * s) - pin
     normal = to_pitch_point / np.linalg.norm(to_pitch_point, axis=1, keepdims=True)
-    outline = pin - eccentricity_mm * _unit(pins * s) + ring_pin_radius_mm * normal
+    outline = pin - eccentricity_mm * unit_vectors(pins * s) + ring_pin_radius_mm * normal
     closed: Reals = np.vstack([outline[:-1], outline[:1]])
     return closed
 
 
-def _unit(angle: Reals) -> Reals:
+def unit_vectors(angle: Reals) -> Reals:
+    """Vectors of length one in the direction of angles, shape (n,) [rad]; shape (n, 2)."""
     return np.column_stack([np.cos(angle), np.sin(angle)])
