@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.verify.experiment import MENU, USUAL, rig_programme
+from cyclosweep.diagnosis.verify.experiment import (
+    MENU,
+    USUAL,
+    largest_torque_nm,
+    rig_programme,
+)
 from cyclosweep.simulation.effects import VOCABULARY
+from tests.support.searches import search_of_recording
 from tests.unit.test_diagnosis_answer import found
 
 
@@ -48,3 +54,12 @@ def test_the_usual_programmes_are_those_of_the_menu() -> None:
     made = [plan.make for plan in MENU]
     assert all(programme in made for programme in USUAL.values())
     assert set(USUAL) <= {effect.name for effect in VOCABULARY}
+
+
+def test_torques_that_do_not_count_are_not_asked_for_again() -> None:
+    up = np.linspace(0.0, 10.0, 50)
+    torque = np.concatenate([up, up[::-1], -up, -up[::-1]])
+    beyond = np.abs(torque) > 8.0  # the motor was at its limit
+    angle = 28.0 * np.sign(torque) + 2.7 * torque
+    search = search_of_recording(cs.Recording.from_arrays(torque, angle, unscored=beyond))
+    assert largest_torque_nm(search) == pytest.approx(np.abs(torque[~beyond]).max())

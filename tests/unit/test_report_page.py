@@ -19,12 +19,13 @@ from cyclosweep.report.figures import main_figure
 from cyclosweep.report.html import page
 from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.regions import located
-from cyclosweep.report.sentences import headline
+from cyclosweep.report.sentences import headline, next_experiment
 from cyclosweep.report.wording import number
 from cyclosweep.result import (
     Answer,
     Bound,
     Mismatch,
+    NextExperiment,
     PlayAndStiffness,
     Reading,
     Region,
@@ -265,6 +266,15 @@ def test_plus_minus_is_the_interval_of_95_percent_everywhere(whole: ReportData) 
 def test_an_effect_is_worth_the_torque_that_the_answer_says(whole: ReportData) -> None:
     assert page(whole).count("; worth 0.31 N m") == 1
     assert page(whole).count("; worth ") == 1  # the other effect has no torque
+
+
+def test_loads_of_the_next_experiment_beyond_the_rated_torque_are_said(whole: ReportData) -> None:
+    plan = NextExperiment(program="two loops", loads_nm=(0.0, 30.0, -30.0, 0.0))
+    data = replace(whole, result=replace(whole.result, next_experiment=plan))
+    text = next_experiment(replace(data, rated_torque_nm=7.5))
+    assert "0, 30, −30, 0 N m. The largest is 4 times the rated torque" in text
+    for rated in (30.0, None):
+        assert "rated" not in next_experiment(replace(data, rated_torque_nm=rated))
 
 
 def test_a_place_without_a_clock_is_said_in_readings(whole: ReportData) -> None:

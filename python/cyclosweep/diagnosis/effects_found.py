@@ -100,7 +100,8 @@ def _effect(
     if effect.slips:
         # Two frictions may be certain together, and neither of them by itself.
         limit = parameters[effect.amplitudes(fitted.terms[index].shape)[0].name]
-        spread = max(spread, size * (limit.std_error or 0.0) / max(abs(limit.estimate), 1e-300))
+        unknown = 1.0 if limit.std_error is None else limit.std_error / max(limit.estimate, 1e-300)
+        spread = max(spread, size * unknown)
     half = NORMAL_95 * spread
     return FoundEffect(
         name=effect.name,

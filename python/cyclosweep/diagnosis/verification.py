@@ -9,7 +9,7 @@ from cyclosweep.diagnosis.change import find_change
 from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.identify.class_check import candidates_of
 from cyclosweep.diagnosis.identify.verdict import MOSTLY, Decision
-from cyclosweep.diagnosis.verify.experiment import next_experiment, rig_programme
+from cyclosweep.diagnosis.verify.experiment import next_experiment
 from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
@@ -92,9 +92,7 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
     checked = _self_check(concluded)
     say("choosing the next experiment")
     if drift is not None or change is not None:
-        following = NextExperiment(
-            program=SETTLE, rig_programme=rig_programme(concluded.search.problem.recording)
-        )
+        following = NextExperiment(program=SETTLE)
     else:
         following = _next_experiment(concluded, decision)
     return Verification(decision, held, drift, change, checked, following)
@@ -165,8 +163,7 @@ def _next_experiment(concluded: Conclusion, decision: Decision) -> NextExperimen
     elif decision.verdict in ("UNKNOWN_PHYSICS", "MOSTLY_EXPLAINED"):
         weakest = _least_known(concluded)
         if weakest is None:
-            recording = concluded.search.problem.recording
-            return NextExperiment(program=ONCE_MORE, rig_programme=rig_programme(recording))
+            return NextExperiment(program=ONCE_MORE)
     return next_experiment(concluded.search, rivals, weakest, concluded.tolerance_deg)
 
 

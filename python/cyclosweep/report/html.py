@@ -119,7 +119,8 @@ def _verdict(data: ReportData) -> str:
         evidence.append(f"mismatch of the calibrated model: p {p}")
     if data.result.sufficiency.p_value is not None:
         p = probability(data.result.sufficiency.p_value)
-        evidence.append(f"mismatch left after the repair: p {p}")
+        left = "after the repair" if data.result.unknown is None else "beside what has no name"
+        evidence.append(f"mismatch left {left}: p {p}")
     if data.result.tolerance_deg is not None:
         evidence.append(f"tolerance {number(data.result.tolerance_deg)} deg")
     said = do_now(data.result)

@@ -193,6 +193,7 @@ def next_experiment(data: ReportData) -> str:
     text = text[:1].upper() + text[1:]
     if plan.loads_nm:
         text += f" Loads in order: {', '.join(number(load) for load in plan.loads_nm)} N m."
+        text += _beyond_rated(max(map(abs, plan.loads_nm)), data.rated_torque_nm)
     if plan.rig_programme:
         text += (
             f" Programme to start from: examples/rigs/{plan.rig_programme}.csv (docs/rigs.md)"
@@ -202,10 +203,30 @@ def next_experiment(data: ReportData) -> str:
         text += f" It would {'show or rule out' if len(plan.separates) == 1 else 'separate'} "
         text += " from ".join(map(plain, plan.separates)) + "."
     if plan.detectability:
-        text += f" What it is about would then be {number(plan.detectability, 2)} times the noise."
+        text += f" It would show at {number(plan.detectability, 2)} times the noise."
     if plan.minutes:
         text += f" Takes about {number(plan.minutes, 2)} minutes."
     return text
+
+
+def _beyond_rated(largest_nm: float, rated_nm: float | None) -> str:
+    """Sentence on loads beyond the rated torque [N m]; empty where they are not, or none is known.
+
+    Parameters
+    ----------
+    largest_nm : float
+        Largest load of a programme [N m].
+    rated_nm : float or None
+        Rated torque at the same shaft [N m].
+
+    Returns
+    -------
+    str
+    """
+    if not rated_nm or largest_nm <= 1.01 * rated_nm:
+        return ""
+    times = number(largest_nm / rated_nm, 2)
+    return f" The largest is {times} times the rated torque: less, where the drive may not bear it."
 
 
 def regions(data: ReportData) -> list[str]:

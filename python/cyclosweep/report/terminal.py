@@ -131,7 +131,8 @@ def _facts(data: ReportData) -> list[tuple[str, str]]:
     if data.result.mismatch.p_value is not None:
         rows.append(("mismatch before, p", probability(data.result.mismatch.p_value)))
     if data.result.sufficiency.p_value is not None:
-        rows.append(("mismatch after, p", probability(data.result.sufficiency.p_value)))
+        left = "after" if data.result.unknown is None else "beside what has no name"
+        rows.append((f"mismatch {left}, p", probability(data.result.sufficiency.p_value)))
     if (play := play_table(data)) is not None:
         rows += [(label, f"{value}  {ends}") for label, value, ends in play.rows]
     return rows

@@ -16,7 +16,8 @@ class Sufficiency(Part):
     """Whether the accepted effects leave anything beyond noise."""
 
     p_value: float | None = None
-    """Probability of as large a remainder by noise; null where the residual is model error."""
+    """Probability of as large a remainder by noise, what has no name taken out as well; null where
+    the residual is model error."""
     residual_repeats_between_runs: float | None = field(default=None, metadata=LEFT_OUT)
     """Correlation of the residuals of two runs, where the residual is model error."""
     cells: int | None = field(default=None, metadata=LEFT_OUT)
