@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 
 import cyclosweep as cs
@@ -153,3 +154,14 @@ def test_an_interrupted_write_leaves_the_answer_that_was_there(
     with pytest.raises(OSError, match="no space"):
         found("identified").write(tmp_path)
     assert {path.name: path.read_text("utf-8") for path in tmp_path.iterdir()} == before
+
+
+def test_a_model_of_a_recording_that_was_turned_round_says_so(tmp_path: Path) -> None:
+    recording = straight()
+    for sign in (1.0, -1.0):
+        table = recording.to_frame().with_columns(pl.col("angle_deg") * sign)
+        table.select("torque_nm", "angle_deg").write_csv(tmp_path / "loop.csv")
+        read = cs.Recording.read(tmp_path / "loop.csv")
+        model = cs.diagnose(read, cs.Drive.reference_87(), full=False).model
+        assert model is not None
+        assert any("the other sign" in note for note in model.notes) == (sign < 0)

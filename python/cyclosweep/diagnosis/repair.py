@@ -8,12 +8,18 @@ from cyclosweep.diagnosis.decide import Conclusion
 from cyclosweep.diagnosis.elasticity import compliance_with_curve
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.recording.cleaning import REVERSED
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.result import Baseline, CalibratedParameter, LearnedError
 from cyclosweep.result.part import finite
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
 
+TURNED_ROUND = (
+    "The angle of the recording fell where its torque rose. Angles of this model have the other "
+    "sign: they rise with the torque."
+)
+"""Note of a model on a recording whose angle was turned round when it was read."""
 FALLING = (
     "A straight line with free play, fitted to all readings in contact, would fall with the "
     "torque, as no drive does; the calibrated stiffness is that of the line read off the flanks, "
@@ -75,6 +81,8 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
         model = replace(model, notes=(ONE_HISTORY, *model.notes))
     if base.beta[1] <= 0.0:
         model = replace(model, notes=(*model.notes, FALLING))
+    if REVERSED in problem.recording.notes:
+        model = replace(model, notes=(*model.notes, TURNED_ROUND))
     unnamed = [check for check in concluded.naming.withdrawn if check.name in fitted.names]
     notes = tuple(
         f"{check.name} is a stand-in for this class: {check.behaviour or 'without a name'}; "

@@ -17,6 +17,7 @@ from cyclosweep.recording.signals import merge_same_time, sign_is_reversed, unwr
 
 __all__ = [
     "MISSING_SHARE",
+    "REVERSED",
     "beyond_limits",
     "drop_missing",
     "drop_repeated",
@@ -25,6 +26,8 @@ __all__ = [
     "put_angle_right",
 ]
 
+REVERSED = "Angle falls where torque rises: its sign is reversed."
+"""Note on a recording whose angle was turned round when it was read."""
 MISSING_SHARE = 1 / 3
 """Share of samples without a value above which a recording is faulty."""
 
@@ -256,7 +259,7 @@ def put_angle_right(columns: Columns, meta: Metadata, notes: list[str]) -> Float
         notes.append(f"Dial wraps at 360 deg: {count} wraps undone.")
     if sign_is_reversed(torque, angle, run):
         angle = -angle
-        notes.append("Angle falls where torque rises: its sign is reversed.")
+        notes.append(REVERSED)
     return angle
 
 
