@@ -7,7 +7,6 @@ import cyclosweep as cs
 from cyclosweep.diagnosis.verify.experiment import (
     MENU,
     USUAL,
-    largest_torque_nm,
     rig_programme,
 )
 from cyclosweep.simulation.effects import VOCABULARY
@@ -62,4 +61,4 @@ def test_torques_that_do_not_count_are_not_asked_for_again() -> None:
     beyond = np.abs(torque) > 8.0  # the motor was at its limit
     angle = 28.0 * np.sign(torque) + 2.7 * torque
     search = search_of_recording(cs.Recording.from_arrays(torque, angle, unscored=beyond))
-    assert largest_torque_nm(search) == pytest.approx(np.abs(torque[~beyond]).max())
+    assert search.problem.largest_torque_nm == pytest.approx(np.abs(torque[~beyond]).max())

@@ -5,9 +5,9 @@ from typing import Protocol
 
 import numpy as np
 
-from cyclosweep.diagnosis.prepare.play_jumps import sides_by_jumps
+from cyclosweep.diagnosis.prepare.play_jumps import FEW_STEPS, sides_by_jumps
 from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
-from cyclosweep.simulation.effects.history import Flags, Floats
+from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 
 LOADED = 0.25
 """Share of the largest torque beyond which a flank is taken to be in contact."""
@@ -22,8 +22,6 @@ LEAST_COMPLIANCE = 1e-12
 FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
-FEW_STEPS = 20
-"""Steps under load below which the largest of a hundred is not known."""
 
 
 class NominalLine(Protocol):
@@ -91,7 +89,7 @@ class Flanks:
         torque: Floats,
         angle: Floats,
         scored: Flags | None = None,
-        begins: Flags | None = None,
+        run: Ints | None = None,
     ) -> tuple[Floats, Flags]:
         """Flank of every reading, and whether it is in contact.
 
@@ -101,8 +99,8 @@ class Flanks:
             Torque [N m] and twist [deg].
         scored : ndarray of bool, shape (n,), optional
             Readings that are scored; default: all.
-        begins : ndarray of bool, shape (n,), optional
-            First reading of each run; default: all are one run.
+        run : ndarray of int, shape (n,), optional
+            Run of each reading; default: all are one run.
 
         Returns
         -------
@@ -131,10 +129,9 @@ class Flanks:
         if self._is_hidden:
             pushed = np.abs(torque) > self._pushed_nm
             side = _last_pushed(sign, pushed)
-        if begins is None:
-            begins = np.zeros(len(torque), dtype=bool)
+        run = np.zeros(len(torque), dtype=np.int64) if run is None else run
         line = (self.compliance_deg_per_nm, play)
-        side = sides_by_jumps(torque, angle, side, loaded, begins, line)
+        side = sides_by_jumps(torque, angle, side, loaded, run, line)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
         contact = loaded | pushed | (depth < margin)

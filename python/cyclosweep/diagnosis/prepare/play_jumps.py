@@ -20,17 +20,12 @@ FEW_STEPS = 20
 """Steps under load below which the usual one is not known."""
 
 
-def begins_of(run: Ints) -> Flags:
-    """Whether a reading is the first of its run, from the labels of the runs, shape (n,)."""
-    return np.asarray(np.r_[True, run[1:] != run[:-1]])
-
-
 def sides_by_jumps(
     torque_nm: Floats,
     angle_deg: Floats,
     side: Floats,
     loaded: Flags,
-    begins: Flags,
+    run: Ints,
     line: tuple[float, float],
 ) -> Floats:
     """Move each change of the flank to the step in which the whole play was crossed.
@@ -43,8 +38,8 @@ def sides_by_jumps(
         Flank as far as it is known, +1 or -1; right under load.
     loaded : ndarray of bool, shape (n,)
         Readings that are in contact whatever the angle says.
-    begins : ndarray of bool, shape (n,)
-        First reading of each run; from one run to the next no step was recorded.
+    run : ndarray of int, shape (n,)
+        Run of each reading; from one run to the next no step was recorded.
     line : tuple of float
         Compliance [deg/(N m)], and half of the play [deg].
 
@@ -55,13 +50,14 @@ def sides_by_jumps(
     """
     compliance, play = line
     jump = np.diff(angle_deg) - compliance * np.diff(torque_nm)
+    begins = np.r_[True, run[1:] != run[:-1]]
     usual = np.abs(jump[loaded[1:] & loaded[:-1] & ~begins[1:]])
     if len(usual) < FEW_STEPS:
         return side
     least = max(LEAST_JUMP * play, FASTER * float(np.median(usual)))
-    found, run = side.copy(), np.cumsum(begins)
+    found, stretch = side.copy(), np.cumsum(begins)
     places = np.flatnonzero(loaded)
-    crossed = (side[places[1:]] != side[places[:-1]]) & (run[places[1:]] == run[places[:-1]])
+    crossed = (np.diff(side[places]) != 0) & (np.diff(stretch[places]) == 0)
     for first, last in zip(places[:-1][crossed], places[1:][crossed], strict=True):
         steps = jump[first:last] * side[last]
         largest = int(np.argmax(steps))

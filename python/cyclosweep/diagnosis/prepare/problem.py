@@ -7,7 +7,6 @@ import numpy as np
 from cyclosweep.diagnosis.prepare.flanks import Flanks, NominalLine, find_flanks
 from cyclosweep.diagnosis.prepare.neighbours import angle_by_neighbours
 from cyclosweep.diagnosis.prepare.pieces import find_pieces
-from cyclosweep.diagnosis.prepare.play_jumps import begins_of
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
@@ -79,6 +78,15 @@ class Problem:
     def line_columns(self) -> int:
         """Number of linear parameters of the baseline: datum, compliance, maybe free play."""
         return 2 if self.one_sided else 3
+
+    @property
+    def largest_torque_nm(self) -> float:
+        """Largest torque of the rows that count, fitted or held out [N m].
+
+        Rows that do not, as where a motor was at its limit, show no torque that the rig can apply.
+        """
+        counts = self.whole_fitted | self.whole_held_out
+        return float(np.abs(self.history.applied_nm[counts]).max(initial=0.0))
 
     def rms_error(self, angle_deg: Floats, rows: Flags) -> float:
         """Root mean square of measured less modelled twist; NaN without rows [deg].
@@ -166,12 +174,11 @@ def prepare(
     scored = None if recording.unscored is None else ~recording.unscored[first]
     flanks = find_flanks(torque, angle, line, scored)
     piece = find_pieces(recording).of_sample[first]
-    begins = begins_of(run)
-    off_lines_deg = _off_lines(flanks, torque, angle, begins)
+    off_lines_deg = _off_lines(flanks, torque, angle, run)
     torque, torque_noise = torque_without_noise(
         torque, angle, piece, flanks.compliance_deg_per_nm, off_lines_deg, time
     )
-    side, contact = flanks.at(torque, angle, scored, begins)
+    side, contact = flanks.at(torque, angle, scored, run)
     datum, compliance = flanks.datum_deg, flanks.compliance_deg_per_nm
     play = flanks.free_play_deg
     if rows.on_one_flank is not None:
@@ -245,7 +252,7 @@ def _since_first_contact(contact: Flags, restart: Flags) -> Flags:
     return np.asarray(so_far > before[np.cumsum(restart) - 1])
 
 
-def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, begins: Flags) -> float:
+def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, run: Ints) -> float:
     """Root mean square of what straight lines on both flanks leave of the twist [deg].
 
     Parameters
@@ -254,14 +261,14 @@ def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, begins: Fla
         The lines.
     torque_nm, angle_deg : ndarray, shape (n,)
         Torque [N m] and twist [deg].
-    begins : ndarray of bool, shape (n,)
-        First reading of each run.
+    run : ndarray of int, shape (n,)
+        Run of each reading.
 
     Returns
     -------
     float
     """
-    side, contact = flanks.at(torque_nm, angle_deg, begins=begins)
+    side, contact = flanks.at(torque_nm, angle_deg, run=run)
     line = flanks.datum_deg + side * flanks.free_play_deg
     line = line + flanks.compliance_deg_per_nm * torque_nm
     left = (angle_deg - line)[contact]

@@ -17,7 +17,6 @@ from scipy.ndimage import median_filter
 from cyclosweep.diagnosis.prepare.crossings import cut_at_crossings
 from cyclosweep.diagnosis.prepare.flanks import Flanks, NominalLine, find_flanks
 from cyclosweep.diagnosis.prepare.pieces import Pieces, find_pieces
-from cyclosweep.diagnosis.prepare.play_jumps import begins_of
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects.history import Flags, Floats
@@ -62,7 +61,7 @@ def thin(recording: Recording, line: NominalLine, most_rows: int = MOST_ROWS) ->
     assert angle is not None
     flanks = _flanks(recording, line, most_rows)
     scored = None if recording.unscored is None else ~recording.unscored
-    side, contact = flanks.at(torque, angle, scored, begins_of(recording.run))
+    side, contact = flanks.at(torque, angle, scored, recording.run)
     curve = angle - flanks.compliance_deg_per_nm * torque - side * flanks.free_play_deg
     curve = _without_outliers(curve)
     pieces = cut_at_crossings(find_pieces(recording), torque, angle, flanks, contact)

@@ -229,7 +229,7 @@ def next_experiment(
         value, plan, rows = 0.0, MENU[0], 900
     else:
         value, plan, rows = best
-    top = largest_torque_nm(search)
+    top = search.problem.largest_torque_nm
     return NextExperiment(
         program=plan.words,
         separates=tuple(names),
@@ -238,16 +238,6 @@ def next_experiment(
         detectability=None if best is None else round(float(value), 2),
         minutes=int(np.ceil(rows * STEP_S / 60.0)) + 5,
     )
-
-
-def largest_torque_nm(search: Search) -> float:
-    """Largest torque of the readings that count [N m].
-
-    Those that do not, as where a motor was at its limit, show no torque that the rig can apply.
-    """
-    problem = search.problem
-    counts = problem.whole_fitted | problem.whole_held_out
-    return float(np.abs(problem.history.applied_nm[counts]).max(initial=0.0))
 
 
 def rig_programme(recording: Recording) -> str:
@@ -296,7 +286,7 @@ def _history(search: Search, plan: Plan) -> History:
     History
     """
     base = search.baseline.fit.history
-    torque, run, crank, warm = plan.make(largest_torque_nm(search))
+    torque, run, crank, warm = plan.make(search.problem.largest_torque_nm)
     side = np.where(torque < 0, -1.0, 1.0)
     angle = base.datum_deg + side * base.free_play_deg + base.compliance_deg_per_nm * torque
     index = run.astype(np.int64)

@@ -90,7 +90,7 @@ def hidden_by_friction(problem: Problem, forecast: Forecast) -> str | None:
     rows = problem.whole_fitted | problem.whole_held_out
     moved = float(np.ptp(problem.angle_deg[rows]))
     nominal = 2.0 * problem.nominal_free_play
-    largest = float(np.abs(problem.history.applied_nm[rows]).max())
+    largest = problem.largest_torque_nm
     limit = sum(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
     if limit > MOST_FRICTION * largest:
         sign = f"Coulomb friction of {limit:.3g} N m takes {100 * limit / largest:.0f} % of"
