@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-import cyclosweep.diagnosis.identify.staged_search as staged_search
+import cyclosweep.diagnosis.identify.acceptance as acceptance
 import cyclosweep.diagnosis.identify_effects as identify_effects
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
@@ -24,7 +24,8 @@ from cyclosweep.diagnosis.identify.model_error_terms import (
     without_model_error,
 )
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.staged_search import FAINT, search_in_stages, visibility
+from cyclosweep.diagnosis.identify.stage import FAINT, visibility
+from cyclosweep.diagnosis.identify.staged_search import search_in_stages
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_left, size_of
@@ -306,11 +307,11 @@ def test_a_structure_that_is_accepted_whole_stands_for_one_that_holds_too_much(
     def kept(fitted: SimpleNamespace, *_: object) -> tuple[SimpleNamespace, ...]:
         return tuple(term for term in fitted.terms if term.name != "wave")
 
-    monkeypatch.setattr(staged_search, "without_model_error", kept)
-    found = staged_search._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0)
+    monkeypatch.setattr(acceptance, "without_model_error", kept)
+    found = acceptance._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0)
     assert found == [whole]
     search.suffices = lambda each: each is not whole
-    assert staged_search._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0) == []
+    assert acceptance._accepted_whole(cast("Search", search), cast("Candidate", best), 1.0) == []
 
 
 def test_one_of_two_laws_that_cancel_is_accepted_and_not_none() -> None:
@@ -323,12 +324,12 @@ def test_one_of_two_laws_that_cancel_is_accepted_and_not_none() -> None:
     best = search.visited[both.names]
 
     def found() -> frozenset[str] | None:
-        part = staged_search._without_cancelling(search, best, mismatch(search))
+        part = acceptance._without_cancelling(search, best, mismatch(search))
         return None if part is None else part.names
 
     laws = {"cancel": True}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(staged_search, "cancels", lambda *_: laws["cancel"])
+        patch.setattr(acceptance, "cancels", lambda *_: laws["cancel"])
         assert found() == one.names
         laws["cancel"] = False
         assert found() is None

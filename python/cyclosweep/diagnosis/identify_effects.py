@@ -17,11 +17,8 @@ from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
 from cyclosweep.diagnosis.identify.other_laws import visit_rivals
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.staged_search import (
-    error_factor,
-    search_in_stages,
-    visibility,
-)
+from cyclosweep.diagnosis.identify.stage import error_factor, visibility
+from cyclosweep.diagnosis.identify.staged_search import search_in_stages
 from cyclosweep.diagnosis.identify.verdict import decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise

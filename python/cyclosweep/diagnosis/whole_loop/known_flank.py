@@ -19,7 +19,7 @@ from cyclosweep.diagnosis.identify.prediction import (
     TorqueZero,
 )
 from cyclosweep.diagnosis.identify.repetition import Repetition
-from cyclosweep.diagnosis.identify.staged_search import FAINT
+from cyclosweep.diagnosis.identify.stage import FAINT
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
