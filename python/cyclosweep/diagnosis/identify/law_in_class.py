@@ -294,7 +294,11 @@ class LawBeside:
 
     @classmethod
     def of(
-        cls, fitted: FittedStructure, classes: ClassColumns, indices: Collection[int]
+        cls,
+        fitted: FittedStructure,
+        classes: ClassColumns,
+        indices: Collection[int],
+        taken: Collection[str] = (),
     ) -> "LawBeside":
         """Take laws of a structure together.
 
@@ -306,6 +310,8 @@ class LawBeside:
             Columns of every class.
         indices : collection of int
             Which of the structure's terms.
+        taken : collection of str
+            Classes that are fitted whole beside them.
 
         Returns
         -------
@@ -313,6 +319,8 @@ class LawBeside:
         """
         places = [place for index in indices for place in law_places(fitted, index)]
         known = basis_of_others(fitted, places)
+        for name in taken:
+            known = classes.beside(known, name)
         single = [fitted.whitened_contribution(index, fitted.noise) for index in indices]
         law = classes.scale * np.sum(single, axis=0)
         residual = classes.scale * fitted.residual + law

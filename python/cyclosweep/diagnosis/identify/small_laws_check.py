@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.class_check import most_missed
+from cyclosweep.diagnosis.identify.class_comparison import most_missed
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
