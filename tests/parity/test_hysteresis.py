@@ -68,6 +68,25 @@ def test_slip_in_the_angle(
     np.testing.assert_allclose(friction, force, atol=1e-6)
 
 
+@pytest.mark.parametrize("forgetting", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("growth", [0.0, 0.7])
+def test_states_follow_the_solved_angle(growth: float, forgetting: float) -> None:
+    # Along a fine history the last step of Newton's method is taken without a look at the states.
+    torque = 10.0 * np.sin(np.linspace(0.0, 40.0, 4001)) * np.linspace(0.3, 1.0, 4001)
+    none, zeros = np.zeros(4001, dtype=bool), np.zeros(4001)
+    slip, share = np.geomspace(0.02, 4.0, 14), np.full(14, 1.0 / 14)
+    limit, load, reference = 0.6, 0.2, 9.0
+    angle, friction = core.solve_slip(
+        torque, zeros, none, zeros, slip, share, free_play=0.0, compliance=2.0, limit=limit,
+        load_factor=load, growth=growth, reference_torque=reference, forgetting=forgetting,
+    )  # fmt: skip
+    limits = limit + load * np.abs(torque - friction)
+    stretch = (limits / (limit + load * reference)) ** growth
+    state = core.slip_state(angle, none, zeros, stretch, slip, share, forgetting=forgetting)
+    np.testing.assert_allclose(friction, limits * state, atol=1e-10)
+    np.testing.assert_allclose(angle, 2.0 * (torque - friction), atol=1e-10)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_state_along_an_angle(seed: int) -> None:
     angle, _, restart, start = random_history(seed, 3.0)
