@@ -330,6 +330,26 @@ def test_a_wrong_option_is_one_line(arguments: list[str], word: str) -> None:
     assert_one_line(run(*arguments), 2, word)
 
 
+@pytest.mark.parametrize(
+    ("cells", "option", "words"),
+    [
+        ("0,1\n2,3\n4,5", [], ("mine.csv: drive: missing", "--drive", "mine.toml")),
+        (
+            "0,\n2,\n4,",
+            ["--drive", "reference-87"],
+            ("mine.csv: column angle_deg: missing or without numbers",),
+        ),
+    ],
+)
+def test_what_a_recording_lacks_is_one_line(
+    tmp_path: Path, cells: str, option: list[str], words: tuple[str, ...]
+) -> None:
+    (tmp_path / "mine.csv").write_text(f"torque_nm,angle_deg\n{cells}\n")
+    found = run("diagnose", "mine.csv", *option, "--out", "out", cwd=tmp_path)
+    assert_one_line(found, 2, *words)
+    assert not (tmp_path / "out" / "diagnosis.json").exists()
+
+
 def test_without_a_command_there_is_help() -> None:
     result = run()
     assert result.returncode == 0

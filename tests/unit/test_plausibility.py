@@ -61,6 +61,21 @@ def test_the_angle_unit_is_not_mistaken_for_another(
     assert not_said not in found.statement or unit == "rad"
 
 
+def _exchanged(zero_deg: float) -> cs.Diagnosis:
+    """Diagnose a loop about a zero of the angle, its two columns exchanged."""
+    rng = np.random.default_rng(6)
+    torque = np.tile(np.r_[0:9:60j, 9:0:60j, 0:-9:60j, -9:0:60j], 2)
+    angle = zero_deg + 2.8 * torque + 0.05 * rng.normal(size=len(torque))
+    return cs.diagnose(cs.Recording.from_arrays(angle, torque), cs.Drive.reference_87(), full=False)
+
+
+def test_exchanged_columns_are_remarked_on() -> None:
+    (doubt, *_) = _exchanged(60.0).answer.plausibility
+    assert doubt.suggests[0].startswith("torque and angle were read from each other's column")
+    # A zero of the angle within its range looks like a torque that is unloaded.
+    assert not any("each other's" in text for text in _exchanged(0.0).statement.split(";"))
+
+
 def test_whole_turns_of_the_datum_are_remarked_on() -> None:
     found = recorded(offset_deg=3 * 360 + 2.0)
     (doubt,) = found.answer.plausibility

@@ -16,7 +16,7 @@ def check_measured(recording: Recording) -> None:
     instance_of("recording", recording, Recording)
     if recording.angle_deg is None:
         raise InputError(
-            f"{recording.path or recording.name}: column angle_deg: missing, "
+            f"{recording.path or recording.name}: column angle_deg: missing or without numbers, "
             "expected in a recording"
         )
 
@@ -59,7 +59,10 @@ def drive_of(recording: Recording) -> Drive:
         No drive is named, or it cannot be loaded.
     """
     if recording.drive is None:
-        raise InputError(f"{recording.name}: drive: missing, expected in the metadata or as option")
+        where = recording.path or recording.name
+        raise InputError(
+            f"{where}: drive: missing, expected as --drive (drive=) or in {recording.name}.toml"
+        )
     beside = None if recording.path is None else Path(recording.path).parent
     return Drive.load(recording.drive, beside)
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import log
 
+from cyclosweep.diagnosis.exchanged_columns import EXCHANGED, are_exchanged
 from cyclosweep.recording import Recording
 from cyclosweep.recording.units import factor_of
 from cyclosweep.result import CalibratedParameter, Doubt
@@ -222,6 +223,8 @@ def doubts(
             suggested = likely_mistakes(factor, play_factor, ratio)
         elif play_factor is None or abs(log(max(play_factor, 1e-9))) < SAME_PLAY:
             suggested = likely_mistakes(factor, play_factor, ratio, CLEAR)
+        if compliance_is_far and are_exchanged(recording, compliance.estimate, abs(nominal)):
+            suggested = (EXCHANGED,)
     found = []
     if compliance_is_far or suggested:
         found.append(_compliance(compliance, nominal, factor, suggested, play_is_far))
