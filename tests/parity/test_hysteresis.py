@@ -69,22 +69,41 @@ def test_slip_in_the_angle(
 
 
 @pytest.mark.parametrize("forgetting", [0.0, 0.4, 1.0])
-@pytest.mark.parametrize("growth", [0.0, 0.7])
-def test_states_follow_the_solved_angle(growth: float, forgetting: float) -> None:
+@pytest.mark.parametrize("growth", [0.0, 0.7, 1.0])
+@pytest.mark.parametrize("limit", [0.6, 0.0])
+def test_states_follow_the_solved_angle(limit: float, growth: float, forgetting: float) -> None:
     # Along a fine history the last step of Newton's method is taken without a look at the states.
+    # Where there is no torque, a limit in proportion to the load is what rounding leaves.
     torque = 10.0 * np.sin(np.linspace(0.0, 40.0, 4001)) * np.linspace(0.3, 1.0, 4001)
-    none, zeros = np.zeros(4001, dtype=bool), np.zeros(4001)
+    torque[::400] = 0.0
+    none, datum = np.zeros(4001, dtype=bool), np.full(4001, 160.97732793)
     slip, share = np.geomspace(0.02, 4.0, 14), np.full(14, 1.0 / 14)
-    limit, load, reference = 0.6, 0.2, 9.0
+    load, reference = 0.2, 9.0
     angle, friction = core.solve_slip(
-        torque, zeros, none, zeros, slip, share, free_play=0.0, compliance=2.0, limit=limit,
+        torque, datum, none, datum, slip, share, free_play=0.0, compliance=3.48, limit=limit,
         load_factor=load, growth=growth, reference_torque=reference, forgetting=forgetting,
     )  # fmt: skip
     limits = limit + load * np.abs(torque - friction)
-    stretch = (limits / (limit + load * reference)) ** growth
-    state = core.slip_state(angle, none, zeros, stretch, slip, share, forgetting=forgetting)
+    stretch = np.maximum(limits / (limit + load * reference), 1e-9) ** growth
+    state = core.slip_state(angle, none, datum, stretch, slip, share, forgetting=forgetting)
     np.testing.assert_allclose(friction, limits * state, atol=1e-10)
-    np.testing.assert_allclose(angle, 2.0 * (torque - friction), atol=1e-10)
+    np.testing.assert_allclose(angle - datum, 3.48 * (torque - friction), atol=1e-10)
+
+
+def test_a_limit_that_rounding_leaves_is_no_limit_of_the_way() -> None:
+    # Unloaded, a limit in proportion to the load is what rounding leaves, and so is each element's
+    # way; a first step of Newton's then ends where the balance is, but for that.
+    datum, start = np.full(3, 160.9773279329358), np.full(3, 161.38253679326212)
+    slip = 12.0 * np.exp(np.linspace(-0.5, 0.5, 14))
+    angle, friction = core.solve_slip(
+        np.array([0.0, 0.8015, 1.6021]), datum, np.array([True, False, False]), start, slip,
+        np.full(14, 1 / 14), free_play=0.0, compliance=3.4799939786852354, limit=0.0,
+        load_factor=0.038203541909725254, growth=1.0, reference_torque=3.60072, forgetting=1.0,
+    )  # fmt: skip
+    np.testing.assert_allclose(
+        angle - datum, 3.48 * (np.array([0.0, 0.8015, 1.6021]) - friction), rtol=1e-4
+    )
+    assert abs(friction[0]) < 1e-12
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -87,10 +87,10 @@ impl SlipElements<'_> {
         (limit / reference).max(1e-9).powf(self.growth)
     }
 
-    /// Slope of the stretch in the angle.
+    /// Slope of the stretch in the angle; no number where the limit is zero.
     #[inline(always)]
     pub(super) fn stretch_slope(&self, stretch: f64, limit: f64, limit_slope: f64) -> f64 {
-        if self.growth == 0.0 || self.load_factor == 0.0 || limit <= 0.0 {
+        if self.growth == 0.0 || self.load_factor == 0.0 {
             return 0.0;
         }
         self.growth * stretch * limit_slope / limit

@@ -134,6 +134,12 @@ struct Balance {
 }
 
 impl Balance {
+    /// Whether a step hardly changes the stretch; without load the limit may be zero, and it does.
+    #[inline(always)]
+    fn goes_on_in_a_line(&self, step: f64) -> bool {
+        (self.stretch_slope * step).abs() <= 1e-4 * self.stretch
+    }
+
     /// The state a small step further, to first order.
     #[inline(always)]
     fn stepped(self, step: f64) -> Self {
@@ -224,7 +230,8 @@ impl<'a> Solver<'a> {
             }
             let step = -best.excess / best.slope;
             let newton = best.angle + step;
-            if best.excess.abs() <= NEAR * (1e-3 + torque.abs()) && newton > low && newton < high {
+            let near = best.excess.abs() <= NEAR * (1e-3 + torque.abs());
+            if near && newton > low && newton < high && best.goes_on_in_a_line(step) {
                 let stepped = best.stepped(step);
                 self.states.step(stepped.angle, stepped.stretch);
                 return stepped;
