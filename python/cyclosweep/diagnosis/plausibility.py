@@ -38,6 +38,7 @@ RIVAL = log(1.12)
 REMARKS: dict[str, Quantity] = {
     "columns_swapped": "columns",
     "unit_contradicted": "columns",
+    "column_unread": "columns",
     "saturation": "range",
 }
 """Remarks of reading to be settled first, and what each is about."""
@@ -236,15 +237,20 @@ def doubts(
     modulo = recording.modulo_fault(2.0 * nominal_play)
     if modulo is not None:
         found.append(Doubt(quantity="angle_modulo", text=modulo.reason))
-    found += [
+    # How the file was read decides what everything else means.
+    return (*_remarks_of_reading(recording), *found)
+
+
+def _remarks_of_reading(recording: Recording) -> tuple[Doubt, ...]:
+    """Remarks on how a file was read, to be settled before anything else."""
+    return tuple(
         Doubt(
             quantity=REMARKS[fault.kind],
             text=fault.reason[0].lower() + fault.reason[1:].rstrip("."),
         )
         for fault in recording.faults
         if fault.kind in REMARKS
-    ]
-    return tuple(found)
+    )
 
 
 def _nearer(

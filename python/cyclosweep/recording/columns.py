@@ -14,6 +14,7 @@ from cyclosweep.recording.opening import open_table
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
 from cyclosweep.recording.stated_units import take_stated_units
+from cyclosweep.recording.unread_columns import unread_columns
 from cyclosweep.recording.wrapping import unwrap_with_torque
 
 __all__ = ["Columns", "canonical_columns", "file_columns", "load", "refuse_missing_columns", "stem"]
@@ -105,6 +106,7 @@ def load(
     frame = table.read(sorted(numbers), sorted(words))
     notes = list(table.notes)
     remarks = take_stated_units((path, meta_path), meta, table, sources, notes)
+    remarks += unread_columns(meta, sources, table)
     return frame, notes, remarks
 
 
