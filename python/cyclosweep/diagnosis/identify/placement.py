@@ -45,7 +45,7 @@ def better_placed(term: Term, parent: FittedStructure) -> tuple[Term, float]:
 
 
 def _tells_places(fitted: FittedStructure) -> bool:
-    """Whether there is friction, and more than one run to tell the two places apart.
+    """Whether there is friction, and more than one run or loop to tell the two places apart.
 
     Of one loop, a line of the elastic torque and a curve of the applied one make any loop.
 
@@ -58,7 +58,9 @@ def _tells_places(fitted: FittedStructure) -> bool:
     -------
     bool
     """
-    return fitted.problem.run_count > 1 and any(term.slips for term in fitted.terms)
+    problem = fitted.problem
+    several = problem.run_count > 1 or problem.has_several_loops
+    return several and any(term.slips for term in fitted.terms)
 
 
 def _explained(term: Term, parent: FittedStructure) -> float:

@@ -220,7 +220,7 @@ class Search:
             if joint is None or joint.loss > parent.fit.loss:
                 # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue
-            gain = self.gain(parent.fit, joint)
+            gain = self._further_gain(parent.fit, joint)
             added = added_evidence(gain, joint, parent.scan, rank, penalty)
             prior = parent.prior - (FURTHER if parent.fit.terms else 0.0)
             prior -= prior_penalty(term.name, term.effect, term.shape)
@@ -295,6 +295,23 @@ class Search:
         drop = before.loss - after.loss
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
+    def _further_gain(self, before: FittedStructure, after: FittedStructure) -> float:
+        """Part of the gain over the start that one fit has beyond another.
+
+        Counted from the start, gains add up whatever the order of the terms: where the noise holds
+        model error, structures fit better than it, and gains from step to step would not.
+
+        Parameters
+        ----------
+        before : FittedStructure
+        after : FittedStructure
+
+        Returns
+        -------
+        float
+        """
+        return self.gain(self.start.fit, after) - self.gain(self.start.fit, before)
+
     def _enriched(self, candidate: Candidate) -> Candidate | None:
         """Give a term more freedom of shape where the residual asks for it."""
         offers = richer_structures(
@@ -328,7 +345,7 @@ class Search:
             signed = with_right_signs(joint)
             if signed is None:
                 continue
-            added = float(evidence(self.gain(candidate.fit, signed), rank))
+            added = float(evidence(self._further_gain(candidate.fit, signed), rank))
             if added <= 1.0:
                 continue
             richer = self.judged(signed, candidate.gain + added, candidate.prior)

@@ -1,6 +1,7 @@
 """A recording prepared for fitting: its rows, flank in contact, rows to fit and to keep."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -11,7 +12,11 @@ from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
 from cyclosweep.recording import Recording
+from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
 from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints, runs_and_restarts
+
+LOOPS_APART = 0.2
+"""Share of the largest torque by which two loops must turn apart to be two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +92,23 @@ class Problem:
         """
         counts = self.whole_fitted | self.whole_held_out
         return float(np.abs(self.history.applied_nm[counts]).max(initial=0.0))
+
+    @cached_property
+    def has_several_loops(self) -> bool:
+        """Whether the fitted load turns in one direction at torques well apart.
+
+        Loops that repeat each other, or a whole loop alone, show no more than one.
+        """
+        rows = self.whole_fitted
+        torque, run = self.history.applied_nm[rows], self.history.run[rows]
+        threshold = REVERSAL_SHARE * float(np.ptp(torque)) if len(torque) else 0.0
+        peaks: tuple[list[float], list[float]] = ([], [])
+        for each in np.unique(run):
+            part = torque[run == each]
+            for turn in turning_points(part, threshold).tolist():
+                peaks[int(part[turn] > part[turn - 1])].append(float(part[turn]))
+        least = LOOPS_APART * self.largest_torque_nm
+        return any(max(each) - min(each) > least for each in peaks if each)
 
     def rms_error(self, angle_deg: Floats, rows: Flags) -> float:
         """Root mean square of measured less modelled twist; NaN without rows [deg].
