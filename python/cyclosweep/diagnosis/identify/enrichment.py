@@ -55,6 +55,11 @@ def richer_structures(
         freer = freer_friction(terms[slips[0]])
         if freer is not None:
             yield _with_term(terms, slips[0], freer), 1
+        if len(slips) == 1:
+            grows = terms[slips[0]]
+            assert grows.effect is not None
+            for shape in grows.effect.refinements(candidate.fit.history, grows.shape):
+                yield _with_term(terms, slips[0], replace(grows, shape=shape)), 1
     for k, term in enumerate(terms):
         if term.effect is None or term.slips:
             continue
