@@ -32,7 +32,7 @@ def loops() -> cs.Recording:
     )
 
 
-def recorded(law: Floats) -> cs.Recording:
+def recorded(law: Floats, noise_deg: float = 0.02) -> cs.Recording:
     """Loops of a drive whose friction over the load is a table of points at equal loads."""
     load = loops()
     torque, run = load.torque_nm, load.run
@@ -54,7 +54,7 @@ def recorded(law: Floats) -> cs.Recording:
             anchor = np.clip(anchor, at - 0.4, at + 0.4)
             angle[i] = at
     angle += 28.0 * np.sign(torque)
-    return load.with_angle(angle + 0.02 * rng.normal(size=len(torque)))
+    return load.with_angle(angle + noise_deg * rng.normal(size=len(torque)))
 
 
 def test_limit_over_the_load() -> None:
@@ -95,6 +95,21 @@ def test_friction_bent_over_the_load_is_one_effect(law: str) -> None:
     power = found.model.effects[0].shape["load_power"]
     assert (power < -0.3) if law == "saturates" else (power > 0.3)
     assert found.content["explained"]["share"] > 0.99
+
+
+def test_a_bent_limit_is_tried_against_the_noise_alone() -> None:
+    """What a limit in proportion to the load misses is no take-up beside it."""
+    load = np.linspace(0.0, 1.5, 400)
+    search = search_of_recording(recorded(0.9 * load**1.6, noise_deg=0.3))
+    found = search.extend(search.baseline, "load_dependent_friction")
+    assert found is not None
+    assert found.fit.terms[0].shape["load_power"] > 0.2
+    assert search.suffices(found)
+    straight = search_of_recording(recorded(0.9 * load, noise_deg=0.3))
+    plain = straight.extend(straight.baseline, "load_dependent_friction")
+    assert plain is not None
+    assert straight.suffices(plain)
+    assert "load_power" not in plain.fit.terms[0].shape
 
 
 def test_further_effects_are_tried_before_a_bent_limit() -> None:

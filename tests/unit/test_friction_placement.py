@@ -162,6 +162,50 @@ def test_an_elastic_effect_is_found_in_its_place_from_either(in_series: bool) ->
         assert best.rmse_deg == pytest.approx(0.05, rel=0.1)
 
 
+def one_run(*ends: float) -> cs.Recording:
+    """A single run from end to end of these torques, with friction and a curve in series."""
+    torque = np.concatenate([np.linspace(a, b, 90)[1:] for a, b in pairwise((0.1, *ends))])
+    model = cs.Model(COMPLIANCE, PLAY_DEG, 0.3, effects=(friction(slack=0.0), IN_SERIES))
+    programme = cs.Recording.from_arrays(torque, time_s=np.arange(torque.size) * 1.0)
+    angle = cs.simulate(model, programme).angle_deg
+    assert angle is not None
+    noise = np.random.default_rng(8).normal(0.0, 0.05, angle.size)
+    return programme.with_angle(angle + noise).take(np.abs(programme.torque_nm) > 0.9)
+
+
+IN_SERIES = replace(SOFT, in_series=True)
+GROWING = (4.0, 1.5, 8.0, 1.5, 12.0, 1.5, 16.0, -16.0, -4.0, -16.0, -1.5)
+
+
+@pytest.mark.parametrize(
+    ("ends", "several"),
+    [
+        (GROWING, True),
+        ((16.0, -16.0, -1.5), False),
+        ((16.0, -16.0, 16.0, -16.0, 15.5, -15.5, -1.5), False),
+        ((16.0, 9.0, 16.0, 1.0), False),
+        ((16.0, 9.0, 16.0, 2.0, 16.0, 1.0), True),
+    ],
+)
+def test_loops_that_turn_apart_are_several(ends: tuple[float, ...], several: bool) -> None:
+    assert search_of_recording(one_run(*ends)).problem.has_several_loops == several
+
+
+def test_loops_of_one_run_tell_the_places_apart() -> None:
+    search = search_of_recording(one_run(*GROWING))
+    assert search.problem.run_count == 1
+    terms = [term(friction(slack=0.0)), term(SOFT)]
+    held = fit(search.problem, search.noise, terms, search.baseline.fit, rounds=20)
+    assert best_placed(held).terms[1].in_series
+    found = cs.diagnose(one_run(*GROWING), DRIVE, full=False)
+    assert {e["name"] for e in found.effects} == {"friction_hysteresis", "overload_softening"}
+    assert found.verdict == "IDENTIFIED"
+    # Of a whole loop alone, another curve and another friction make the same.
+    alone = search_of_recording(one_run(16.0, -16.0, -1.5))
+    whole = fit(alone.problem, alone.noise, terms, alone.baseline.fit, rounds=20)
+    assert best_placed(whole) is whole
+
+
 def test_the_class_of_a_law_in_series_follows_the_applied_torque() -> None:
     values = (friction(slack=0.0), replace(SOFT, in_series=True))
     search = search_of_recording(recording(*values))

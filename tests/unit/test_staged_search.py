@@ -56,6 +56,27 @@ def structure(search: Search, *terms: Term) -> Candidate:
     return search.judged(found, 0.0, 0.0)
 
 
+def test_gains_add_up_where_the_noise_holds_model_error() -> None:
+    searched = search_of(friction(0.5), SHIFTED)
+    noise = searched.noise.with_model_error(3.0)
+    search = Search(searched.problem, noise, searched.library, 0)
+    names = ("friction_hysteresis", "transmission_error")
+    first = search.extend(search.baseline, names[0])
+    assert first is not None
+    both = search.extend(first, names[1])
+    assert both is not None
+    direct = search.gain(search.baseline.fit, both.fit)
+    assert both.fit.chi2 < 0.5 * both.fit.problem.count, "fits far better than the noise"
+    for name in names:
+        part = search.extend(search.baseline, name)
+        assert part is not None
+        steps = [search.gain(search.baseline.fit, part.fit), search.gain(part.fit, both.fit)]
+        further = search._further_gain(part.fit, both.fit)
+        assert steps[0] + further == pytest.approx(direct)
+        # Counted from step to step, the same fit would gain more by way of another one.
+        assert sum(steps) > direct + 10.0
+
+
 def mismatch(search: Search) -> float:
     return search.baseline.fit.rmse_deg
 

@@ -52,14 +52,8 @@ def richer_structures(
     terms = candidate.fit.terms
     slips = [k for k, term in enumerate(terms) if term.slips]
     if slips and not suffices and terms[slips[0]].name not in accepted:
-        freer = freer_friction(terms[slips[0]])
-        if freer is not None:
+        for freer in _freer_frictions(terms[slips[0]], candidate, alone=len(slips) == 1):
             yield _with_term(terms, slips[0], freer), 1
-        if len(slips) == 1:
-            grows = terms[slips[0]]
-            assert grows.effect is not None
-            for shape in grows.effect.refinements(candidate.fit.history, grows.shape):
-                yield _with_term(terms, slips[0], replace(grows, shape=shape)), 1
     for k, term in enumerate(terms):
         if term.effect is None or term.slips:
             continue
@@ -135,6 +129,30 @@ def freer_friction(term: Term) -> Term | None:
     """Friction that may forget its turning points; None for another term, and where it may."""
     shape = term.effect.combined(term.shape, {}) if term.effect is not None and term.slips else None
     return None if shape is None else replace(term, shape=shape)
+
+
+def _freer_frictions(term: Term, candidate: Candidate, *, alone: bool) -> Iterator[Term]:
+    """Frictions of one more shape parameter.
+
+    Parameters
+    ----------
+    term : Term
+        A friction.
+    candidate : Candidate
+        Structure with it.
+    alone : bool
+        Whether it is the only friction, so that its limit may be no line of the load.
+
+    Yields
+    ------
+    Term
+    """
+    freer = freer_friction(term)
+    if freer is not None:
+        yield freer
+    if alone and term.effect is not None:
+        for shape in term.effect.refinements(candidate.fit.history, term.shape):
+            yield replace(term, shape=shape)
 
 
 def _freedom(term: Term, shape: Shape, candidate: Candidate) -> tuple[int, int]:
