@@ -95,16 +95,15 @@ class Problem:
 
     @cached_property
     def has_several_loops(self) -> bool:
-        """Whether the fitted load turns in one direction at torques well apart.
+        """Whether the load of fitted runs turns in one direction at torques well apart.
 
         Loops that repeat each other, or a whole loop alone, show no more than one.
         """
-        rows = self.whole_fitted
-        torque, run = self.history.applied_nm[rows], self.history.run[rows]
-        threshold = REVERSAL_SHARE * float(np.ptp(torque)) if len(torque) else 0.0
+        runs = np.unique(self.history.run[self.fitted])
+        parts = [self.history.applied_nm[self.history.run == run] for run in runs]
+        threshold = REVERSAL_SHARE * float(np.ptp(np.concatenate(parts))) if parts else 0.0
         peaks: tuple[list[float], list[float]] = ([], [])
-        for each in np.unique(run):
-            part = torque[run == each]
+        for part in parts:
             for turn in turning_points(part, threshold).tolist():
                 peaks[int(part[turn] > part[turn - 1])].append(float(part[turn]))
         least = LOOPS_APART * self.largest_torque_nm
