@@ -72,7 +72,6 @@ def test_slip_in_the_angle(
 @pytest.mark.parametrize("growth", [0.0, 0.7, 1.0])
 @pytest.mark.parametrize("limit", [0.6, 0.0])
 def test_states_follow_the_solved_angle(limit: float, growth: float, forgetting: float) -> None:
-    # Along a fine history the last step of Newton's method is taken without a look at the states.
     # Where there is no torque, a limit in proportion to the load is what rounding leaves.
     torque = 10.0 * np.sin(np.linspace(0.0, 40.0, 4001)) * np.linspace(0.3, 1.0, 4001)
     torque[::400] = 0.0
@@ -92,7 +91,7 @@ def test_states_follow_the_solved_angle(limit: float, growth: float, forgetting:
 
 def test_a_limit_that_rounding_leaves_is_no_limit_of_the_way() -> None:
     # Unloaded, a limit in proportion to the load is what rounding leaves, and so is each element's
-    # way; a first step of Newton's then ends where the balance is, but for that.
+    # way.
     datum, start = np.full(3, 160.9773279329358), np.full(3, 161.38253679326212)
     slip = 12.0 * np.exp(np.linspace(-0.5, 0.5, 14))
     angle, friction = core.solve_slip(

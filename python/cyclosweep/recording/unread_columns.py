@@ -58,7 +58,19 @@ def unread_columns(meta: Metadata, sources: Mapping[str, Column], table: FileTab
 
 
 def _varies(table: FileTable, column: str) -> bool:
-    """Whether a column holds numbers, more than one of them."""
+    """Whether a column holds numbers, more than one of them.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    column : str
+        One of its columns.
+
+    Returns
+    -------
+    bool
+    """
     try:
         values = table.read([column], [])[column]
     except InputError:

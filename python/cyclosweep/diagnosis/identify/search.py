@@ -296,19 +296,10 @@ class Search:
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
     def _further_gain(self, before: FittedStructure, after: FittedStructure) -> float:
-        """Part of the gain over the start that one fit has beyond another.
+        """Gain over the start by one fit beyond another, see `gain` for the parameters.
 
-        Counted from the start, gains add up whatever the order of the terms: where the noise holds
-        model error, structures fit better than it, and gains from step to step would not.
-
-        Parameters
-        ----------
-        before : FittedStructure
-        after : FittedStructure
-
-        Returns
-        -------
-        float
+        Counted so, gains add up in any order; from step to step they do not where structures fit
+        better than noise with model error.
         """
         return self.gain(self.start.fit, after) - self.gain(self.start.fit, before)
 

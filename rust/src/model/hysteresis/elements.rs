@@ -86,15 +86,6 @@ impl SlipElements<'_> {
         let reference = self.load_limit(self.reference_torque);
         (limit / reference).max(1e-9).powf(self.growth)
     }
-
-    /// Slope of the stretch in the angle; no number where the limit is zero.
-    #[inline(always)]
-    pub(super) fn stretch_slope(&self, stretch: f64, limit: f64, limit_slope: f64) -> f64 {
-        if self.growth == 0.0 || self.load_factor == 0.0 {
-            return 0.0;
-        }
-        self.growth * stretch * limit_slope / limit
-    }
 }
 
 /// A number for each element of a block.
@@ -125,8 +116,6 @@ struct ElementBlock {
 pub(super) struct ElementStates {
     blocks: Vec<ElementBlock>,
     angle: f64,
-    /// Way to the angle looked at last, over the stretch there.
-    way: f64,
     forgetting: f64,
 }
 
@@ -166,7 +155,6 @@ impl ElementStates {
         Self {
             blocks: blocks.collect(),
             angle: 0.0,
-            way: 0.0,
             forgetting: elements.forgetting,
         }
     }
@@ -194,7 +182,6 @@ impl ElementStates {
         }
         if forgets > 0.0 {
             let way = (angle - self.angle) * per_stretch;
-            self.way = way;
             let [state, slope] = self.dahl(way);
             sums.state += forgets * state;
             sums.slope += forgets * slope * per_stretch;
@@ -237,23 +224,6 @@ impl ElementStates {
             }
         }
         [state, slope].map(total)
-    }
-
-    /// Looks at an angle so close to the one looked at last that the states go on in a line.
-    #[inline(always)]
-    pub(super) fn step(&mut self, angle: f64, stretch: f64) {
-        if self.forgetting == 0.0 {
-            return;
-        }
-        let way = (angle - self.angle) / stretch;
-        let limit = if self.way < 0.0 { -1.0 } else { 1.0 };
-        let further = (way - self.way) * limit;
-        for block in &mut self.blocks {
-            for lane in 0..LANES {
-                let left = limit - block.dahl_there[lane];
-                block.dahl_there[lane] += left * (further * block.per_slip[lane]);
-            }
-        }
     }
 
     /// Moves the elements to the angle looked at last: no anchor is stretched beyond its reach.

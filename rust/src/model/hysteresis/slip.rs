@@ -21,10 +21,6 @@ use crate::model::hysteresis::elements::{ElementStates, SlipElements};
 use crate::model::hysteresis::spring::Spring;
 use crate::wide::{Wide, with_widest};
 
-/// Excess over the torque from which one more step of Newton's leads to the balance: its error falls
-/// with the square, so that it need not be looked at.
-const NEAR: f64 = 1e-6;
-
 /// Angle and friction torque for a torque history.
 ///
 /// `offset` is everything that shifts the datum, sample by sample; `restart[i]` marks a sample before
@@ -127,29 +123,6 @@ struct Balance {
     slope: f64,
     /// Part of that slope that moves with the datum.
     stiffness: f64,
-    /// Slope of the friction torque in the angle.
-    friction_slope: f64,
-    /// Slope of the stretch in the angle.
-    stretch_slope: f64,
-}
-
-impl Balance {
-    /// Whether a step hardly changes the stretch; without load the limit may be zero, and it does.
-    #[inline(always)]
-    fn goes_on_in_a_line(&self, step: f64) -> bool {
-        (self.stretch_slope * step).abs() <= 1e-4 * self.stretch
-    }
-
-    /// The state a small step further, to first order.
-    #[inline(always)]
-    fn stepped(self, step: f64) -> Self {
-        Self {
-            angle: self.angle + step,
-            friction: self.friction + self.friction_slope * step,
-            stretch: self.stretch + self.stretch_slope * step,
-            ..self
-        }
-    }
 }
 
 /// The drive with its friction, wherever the elements are.
@@ -194,19 +167,16 @@ impl<'a> Solver<'a> {
         let stretch = elements.stretch(limit);
         let sums = self.states.look_at(angle, stretch);
         // A growing limit also stretches the elements.
-        let limit_slope = elements.limit_slope(elastic) * stiffness;
-        let growth = limit_slope * (sums.state - elements.growth * sums.falls);
+        let growth =
+            elements.limit_slope(elastic) * stiffness * (sums.state - elements.growth * sums.falls);
         let force = limit * sums.state;
-        let friction_slope = growth + limit * sums.slope;
         Balance {
             angle,
             friction: force,
             stretch,
             excess: elastic + force - torque,
-            slope: stiffness + friction_slope,
+            slope: stiffness + growth + limit * sums.slope,
             stiffness: stiffness + growth,
-            friction_slope,
-            stretch_slope: elements.stretch_slope(stretch, limit, limit_slope),
         }
     }
 
@@ -228,14 +198,7 @@ impl<'a> Solver<'a> {
             } else {
                 low = best.angle;
             }
-            let step = -best.excess / best.slope;
-            let newton = best.angle + step;
-            let near = best.excess.abs() <= NEAR * (1e-3 + torque.abs());
-            if near && newton > low && newton < high && best.goes_on_in_a_line(step) {
-                let stepped = best.stepped(step);
-                self.states.step(stepped.angle, stepped.stretch);
-                return stepped;
-            }
+            let newton = best.angle - best.excess / best.slope;
             let next = if newton.is_finite() && newton > low && newton < high {
                 newton
             } else {
