@@ -220,12 +220,12 @@ def doubts(
     compliance_is_far = not 1.0 / FAR_COMPLIANCE <= factor <= FAR_COMPLIANCE
     suggested: tuple[str, ...] = ()
     if factor > 0:
-        if compliance_is_far:
+        if compliance_is_far and are_exchanged(recording, compliance.estimate, abs(nominal)):
+            suggested = (EXCHANGED,)
+        elif compliance_is_far:
             suggested = likely_mistakes(factor, play_factor, ratio)
         elif play_factor is None or abs(log(max(play_factor, 1e-9))) < SAME_PLAY:
             suggested = likely_mistakes(factor, play_factor, ratio, CLEAR)
-        if compliance_is_far and are_exchanged(recording, compliance.estimate, abs(nominal)):
-            suggested = (EXCHANGED,)
     found = []
     if compliance_is_far or suggested:
         found.append(_compliance(compliance, nominal, factor, suggested, play_is_far))

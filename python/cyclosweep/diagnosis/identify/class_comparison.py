@@ -223,25 +223,29 @@ class ClassComparison:
         clear = max(CLEAR, CLOSE_LOOP_SHARE * self.beyond)
         return ahead > clear and self.by_law <= max(loops) + self.close
 
+    @property
+    def error_of_others(self) -> float:
+        """Error that other laws may leave in their class, over the laws' own size."""
+        return ERROR_OF_OTHERS * self.size_of_others
+
+    def _with_error_of_others(self, share: float) -> float:
+        """Share that may be missed, no less than the error that much larger laws leave."""
+        return min(float(np.hypot(share, self.error_of_others)), MOST_MISSED_LOOP)
+
     def stands(self) -> bool:
         """Whether the laws explain as much as their class, but for the error of laws."""
-        # A law is judged by its class no closer than to the error that much larger ones leave.
         share = CLOSE_LOOP_SHARE if _is_loose(self.own) else CLOSE_SHARE
         if self.deficit <= self.close + share * self.beyond:
             return True
         if self.follows_one_cause or self.is_of_offsets:
             return True
-        error = ERROR_OF_OTHERS * self.size_of_others
-        little = float(np.clip(np.hypot(LITTLE_MISSED, error), 0.0, MOST_MISSED_LOOP))
-        counts = self.beyond > 0.0 or error > LITTLE_MISSED
-        return counts and self.missed_share <= little
+        counts = self.beyond > 0.0 or self.error_of_others > LITTLE_MISSED
+        return counts and self.missed_share <= self._with_error_of_others(LITTLE_MISSED)
 
     def is_whole(self) -> bool:
         """Whether the laws miss nothing inside their class that it shows."""
-        error = ERROR_OF_OTHERS * self.size_of_others
-        most = float(np.clip(np.hypot(MOST_MISSED, error), 0.0, MOST_MISSED_LOOP))
-        if _is_loose(self.own) or self.is_of_offsets:
-            most = MOST_MISSED_LOOP
+        loose = _is_loose(self.own) or self.is_of_offsets
+        most = MOST_MISSED_LOOP if loose else self._with_error_of_others(MOST_MISSED)
         if self.missed_share <= most or self.deficit < 0.0:
             return True
         return max((each.evidence for each in self.left), default=0.0) < CLEAR
