@@ -42,7 +42,7 @@ def _arguments(study: Path) -> dict[str, list[str]]:
         "disc.png": ["plot", "disc", "reference-87", "--out"],
         "best.csv": [*best, "--out"],
         "best.xlsx": [*best, "--out"],
-        "drive.toml": ["pick", str(study), "5", "--out"],
+        "drive.toml": ["pick", str(study), "5", "--force", "--out"],
     }
 
 

@@ -111,6 +111,17 @@ def test_picked_drive_evaluates_to_its_row(made: Path, tmp_path: Path) -> None:
     assert json.loads(run("show", str(out), "--json", cwd=made).stdout)["drives"][0]["results"]
 
 
+def test_a_drive_that_was_edited_by_hand_is_not_overwritten(made: Path, tmp_path: Path) -> None:
+    out = tmp_path / "mine.toml"
+    out.write_text("# mine\n")
+    refused = run("pick", "studie ü", "0", "--out", str(out), cwd=made)
+    assert refused.returncode == 2
+    assert f"{out} exists; --force replaces it" in refused.stderr
+    assert out.read_text() == "# mine\n"
+    assert run("pick", "studie ü", "0", "--out", str(out), "--force", cwd=made).returncode == 0
+    cs.Drive.from_toml(out)
+
+
 def test_an_infeasible_variant_is_written_with_its_status_said(made: Path, tmp_path: Path) -> None:
     frame = cs.scan_dataset(made / "studie ü").filter(pl.col("status") != "ok").collect()
     row = frame.row(0, named=True)

@@ -277,7 +277,9 @@ def test_simulate_takes_the_least_programme_and_spares_what_it_reads(tmp_path: P
     programme = tmp_path / "programme.csv"
     programme.write_text("torque_nm\n0\n7.2575\n")
     out = tmp_path / "out.csv"
-    assert run("simulate", "reference-87", str(programme), "--out", str(out)).returncode == 0
+    done = run("simulate", "reference-87", str(programme), "--out", str(out))
+    assert done.returncode == 0
+    assert done.stdout == f"Written: {out} (2 rows)\n"
     assert "angle_deg" in out.read_text()
     before = programme.read_text()
     refused = run("simulate", "reference-87", str(programme), "--out", str(programme))

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from cyclosweep.cli.output import refuse_output
+from cyclosweep.errors import InputError
 
 
 def pick(
@@ -16,15 +17,19 @@ def pick(
     variant: Annotated[int, typer.Argument(metavar="N", help="Number of the variant.")],
     out: Annotated[Path, typer.Option("--out", metavar="DRIVE.toml", help="File to write.")],
     name: Annotated[str | None, typer.Option("--name", help="What the drive is called.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace DRIVE.toml.")] = False,
 ) -> None:
     """Write one variant of a study as a drive file.
 
     The file gives the same results as the variant's row. What the study varied is marked as
-    derived from it; every other mark is that of the study's drive.
+    derived from it; every other mark is that of the study's drive. A file that exists is not
+    overwritten: it may have been edited by hand.
     """
     from cyclosweep.sweep.stored import open_study
 
     refuse_output(out)
+    if out.exists() and not force:
+        raise InputError(f"--out: {out} exists; --force replaces it")
     stored = open_study(study)
     drive = stored.drive_of(variant, name=name)
     status = stored.row(variant)["status"]

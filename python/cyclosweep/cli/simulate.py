@@ -88,7 +88,9 @@ def simulate(
     filled_in = None if sheet is None else sheet_of(programme, lever_arm)
     if law == "components":
         chosen = _of_components(chosen, model, programme.side, crank_deg)
-    _write(run(chosen, programme, predict).to_frame(), out)
+    predicted = run(chosen, programme, predict).to_frame()
+    _write(predicted, out)
+    print(f"Written: {out} ({predicted.height} rows)")
     if sheet is not None and filled_in is not None:
         _write(filled_in, sheet)
         side = "" if programme.side == "input" else " --side output"
