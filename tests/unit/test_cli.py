@@ -427,7 +427,8 @@ def test_loads_in_both_directions(tmp_path: Path) -> None:
     )
 
 
-def test_numbers_of_a_narrow_table_are_not_broken() -> None:
+@pytest.mark.parametrize("width", [40, 60, 75, 80, 120, 300])
+def test_no_number_and_no_word_of_a_narrow_table_is_broken_or_lost(width: int) -> None:
     import io
 
     import polars as pl
@@ -435,12 +436,19 @@ def test_numbers_of_a_narrow_table_are_not_broken() -> None:
 
     from cyclosweep.cli.frames import titled
 
-    columns = {f"a_heading_that_is_long_{k}": [3.6245e5, -1.2345e-7] for k in range(5)}
+    names = [f"output_pin_circle_radius_{k}" for k in range(9)]
+    columns = {"variant": [7, 11], **{name: [3.6245e5, -1.2345e-7 - k] for k, name in
+               enumerate(names)}}  # fmt: skip
     text = io.StringIO()
-    Console(file=text, width=75).print(titled("numbers", pl.DataFrame(columns)))
-    assert text.getvalue().count("3.6245e+05") == 5
-    assert text.getvalue().count("-1.2345e-07") == 5
-    assert max(map(len, text.getvalue().splitlines())) <= 75
+    Console(file=text, width=width).print(titled("numbers", pl.DataFrame(columns)))
+    lines = text.getvalue().splitlines()
+    assert max(map(len, lines)) <= width
+    assert text.getvalue().count("3.6245e+05") == 9
+    assert text.getvalue().count("circle_") == 9
+    assert text.getvalue().count("numbers") == 1
+    blocks = text.getvalue().count("variant")
+    assert sum(line.split()[:1] == ["7"] for line in lines) == blocks
+    assert (blocks == 1) == (width == 300)
 
 
 @pytest.mark.parametrize(

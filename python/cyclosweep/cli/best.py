@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -134,10 +133,6 @@ def _split(text: str) -> list[str]:
 
 
 def _with_units(table: pl.DataFrame, stored: StoredStudy) -> pl.DataFrame:
-    """The same table with names broken at their underscores and the unit below."""
-    titles = {}
-    for name in table.columns:
-        unit = stored.columns.get(name, {}).get("unit", "1")
-        lines = textwrap.wrap(name.replace("_", "_ "), 16, break_long_words=False)
-        titles[name] = "\n".join([*(line.replace("_ ", "_") for line in lines), unit])
-    return table.rename({k: v.removesuffix("\n1") for k, v in titles.items()})
+    """The same table with the unit below each name."""
+    units = {name: stored.columns.get(name, {}).get("unit", "1") for name in table.columns}
+    return table.rename({name: f"{name}\n{unit}" for name, unit in units.items() if unit != "1"})
