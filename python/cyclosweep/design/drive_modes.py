@@ -62,6 +62,7 @@ def modes(
     Returns
     -------
     Modes
+        Natural frequencies [Hz], lowest first, and shapes, the largest angle of each being one [1].
 
     Raises
     ------

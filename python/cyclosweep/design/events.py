@@ -173,6 +173,7 @@ def transient(train: Train, event: Event) -> Transient:
     Returns
     -------
     Transient
+        Peaks of the springs' torques [N m], their times [s], and a table over the time.
 
     Raises
     ------

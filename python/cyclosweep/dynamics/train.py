@@ -79,6 +79,8 @@ class Train(Chain):
         Returns
         -------
         Modes
+            Natural frequencies [Hz], lowest first, and shapes, the largest angle of each being
+            one [1].
 
         Raises
         ------
@@ -174,6 +176,7 @@ class Train(Chain):
         Returns
         -------
         Transient
+            Peaks of the springs' torques [N m], their times [s], and a table over the time.
 
         Raises
         ------

@@ -323,15 +323,33 @@ class Recording(Samples):
         return find_structure(self)
 
     def take(self, rows: NDArray[np.bool_] | Sequence[int] | Ints | slice) -> Self:
-        """Return a part of the recording, in the order recorded."""
-        parts: dict[str, Any] = {
-            name: None if (array := getattr(self, name)) is None else array[rows]
-            for name in COLUMNS
-        }
-        return replace(self, **parts)
+        """Return a part of the recording.
+
+        Parameters
+        ----------
+        rows : slice, array of bool of shape (n,), or sequence of int
+            Rows to keep, in the order recorded: the path of the load counts.
+
+        Returns
+        -------
+        Recording
+        """
+        columns: dict[str, Any] = {name: getattr(self, name) for name in COLUMNS}
+        columns = {name: v if v is None else v[rows] for name, v in columns.items()}
+        return replace(self, **columns)
 
     def with_angle(self, angle_deg: ArrayLike | None) -> Self:
-        """Return the same load history with another angle, as for synthetic twins."""
+        """Return the same load history with another angle, as for simulated recordings.
+
+        Parameters
+        ----------
+        angle_deg : array_like, shape (n,), or None
+            Twist of the recording's shaft [deg]; None leaves the load history alone.
+
+        Returns
+        -------
+        Recording
+        """
         return replace(self, angle_deg=_floats("angle_deg", angle_deg))
 
 

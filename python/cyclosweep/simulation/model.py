@@ -103,7 +103,18 @@ class Model:
             instance_of("effects", value, EffectValue)
 
     def elastic_twist(self, torque_nm: Floats) -> Floats:
-        """Twist beyond the free play without effects [deg], by the curve or by the line."""
+        """Twist beyond the free play without effects, by the curve or by the line.
+
+        Parameters
+        ----------
+        torque_nm : ndarray, shape (n,)
+            Torque at the model's shaft [N m]; its sign is that of the twist.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Elastic twist [deg]: zero at zero torque, the play not in it.
+        """
         if self.elastic_curve is None:
             return self.compliance_deg_per_nm * torque_nm
         return self.elastic_curve.twist(torque_nm)
