@@ -1,6 +1,7 @@
 """The figures of a report: the main picture, the zoom with the energy, those of the residual."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from cyclosweep.report.charts import (
     Series,
 )
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.dots import residual_dots
+from cyclosweep.report.dots import ResidualDots, residual_dots
 from cyclosweep.report.loops import LOST_MOTION_SHARE, dead_zone_crossings, loop_figures
 from cyclosweep.report.regions import axis_values, residual_axis, spans_of
 from cyclosweep.report.residual_figures import map_figure, profiles_figures
@@ -49,15 +50,8 @@ def all_figures(data: ReportData) -> list[Figure]:
 
 def main_figure(data: ReportData) -> Figure:
     """Loop measured, before and after; residual before and after with the region shaded."""
-    recording = data.recording
     shown = _shown_rows(data)
-    loop = Panel(
-        title="Torque–twist loop",
-        x_label=f"torque at the {recording.side} shaft (N m)",
-        y_label=f"twist at the {recording.side} shaft (deg)",
-        series=tuple(_loop_series(data, shown, _reach(len(recording), len(shown)))),
-        spans=tuple(spans_of(data, "torque", labelled=False)),
-    )
+    loop = _loop_panel(data, shown)
     before, after = data.residual_before_deg, data.residual_after_deg
     if before is None or after is None:
         return Figure(
@@ -67,71 +61,168 @@ def main_figure(data: ReportData) -> Figure:
             panels=(Placed(panel=loop, row=0, column=0),),
             row_height=430,
         )
-    axis = residual_axis(data)
-    x, x_label = axis_values(recording, axis)
     rows = shown[data.scored[shown]]
-    dots = residual_dots(data, rows, x)
-    limit = dots.limit_deg
-    beyond = int(np.count_nonzero(np.maximum(abs(before), abs(after))[data.scored] > limit))
-    beyond = beyond if dots.averaged == 1 else int(np.count_nonzero(data.on_the_way_through))
-    result = data.result
-    inside = dots.located
-    panels = [Placed(panel=loop, row=0, column=0, rows=2)]
-    change = " with the effects named below" if data.is_repaired else ", as nothing was repaired"
-    repair: list[Series] = []
-    after_title = "Residual after" if data.is_repaired else "Residual after (no repair)"
-    if data.is_repaired:
-        added = before - after
-        line = _with_breaks(recording, rows, added, x, _reach(len(recording), len(shown)))
-        repair = [Line(*line, "what the repair adds", MODELLED, 1.6)]
-    for row, (residual, dot, colour, title, model, fitted) in enumerate(
-        (
-            (before, dots.before_deg, BEFORE, "Residual before", repair, result.baseline.rmse_deg),
-            (after, dots.after_deg, AFTER, after_title, [], result.repaired.rmse_deg),
-        )
-    ):
-        rmse = float(np.sqrt(np.mean(residual[data.scored] ** 2)))
-        words = f"{number(rmse)} deg rms" if fitted is None else f"fit error {number(fitted)} deg"
-        panel = Panel(
-            title=f"{title}: {words}",
-            x_label=x_label,
-            y_label="residual (deg)",
-            series=(
-                *_noise_band(x[rows], dots.sigma_deg),
-                Points(dots.x[~inside], dot[~inside], "", FAINT, _dot(len(dots.x))),
-                Points(dots.x[inside], dot[inside], "", colour, _dot(len(dots.x))),
-                *model,
-            ),
-            spans=tuple(spans_of(data, axis, labelled=row == 0)),
-            y_range=(-limit, limit),
-            right_factor=ARCMIN,
-            right_label="residual (arcmin)",
-            zero_line=True,
-        )
-        panels.append(Placed(panel=panel, row=row, column=1))
+    dots = residual_dots(data, rows, axis_values(data.recording, residual_axis(data))[0])
+    repair = _repair_series(data, rows, before - after, _reach(len(data.recording), len(shown)))
+    title = "Residual after" if data.is_repaired else "Residual after (no repair)"
+    upper = _Residual(
+        "Residual before", BEFORE, before, data.result.baseline.rmse_deg, repair, True
+    )
+    lower = _Residual(title, AFTER, after, data.result.repaired.rmse_deg, (), False)
     return Figure(
         key="loop",
         title="Measured loop, simulation before and after, and what is left",
-        caption="Before: the published model with calibrated stiffness, free play and datum. "
-        f"After: the same{change}. Shaded: where simulation and recording "
-        "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
-        f"deviations of the noise of a dot ({number(dots.sigma_deg)} deg)."
-        + (
-            f" A dot is the mean of {dots.averaged} neighbouring samples, as in the diagnosis."
-            if dots.averaged > 1
-            else ""
-        )
-        + (
-            f" {beyond} of {np.count_nonzero(data.scored)} samples lie beyond the scale of the "
-            "residuals, most of them on the way through the dead zone."
-            if beyond
-            else ""
+        caption=_main_caption(data, dots, np.maximum(abs(before), abs(after))),
+        panels=(
+            Placed(panel=loop, row=0, column=0, rows=2),
+            Placed(panel=upper.panel(data, rows, dots, dots.before_deg), row=0, column=1),
+            Placed(panel=lower.panel(data, rows, dots, dots.after_deg), row=1, column=1),
         ),
-        panels=tuple(panels),
         rows=2,
         columns=2,
         row_height=258,
     )
+
+
+def _loop_panel(data: ReportData, rows: NDArray[np.int64]) -> Panel:
+    """Twist over torque."""
+    return Panel(
+        title="Torque–twist loop",
+        x_label=f"torque at the {data.recording.side} shaft (N m)",
+        y_label=f"twist at the {data.recording.side} shaft (deg)",
+        series=tuple(_loop_series(data, rows, _reach(len(data.recording), len(rows)))),
+        spans=tuple(spans_of(data, "torque", labelled=False)),
+    )
+
+
+def _repair_series(
+    data: ReportData, rows: NDArray[np.int64], added_deg: Floats, reach: int
+) -> tuple[Series, ...]:
+    """Line of what the repair adds to the simulation.
+
+    Parameters
+    ----------
+    data : ReportData
+    rows : ndarray of int
+        Samples that are drawn.
+    added_deg : ndarray, shape (n,)
+        Twist of the repaired simulation beyond that of the calibrated one [deg].
+    reach : int
+        Samples between two drawn ones beyond which the line is broken.
+
+    Returns
+    -------
+    tuple of Series
+        Empty where nothing was repaired.
+    """
+    if not data.is_repaired:
+        return ()
+    x, _ = axis_values(data.recording, residual_axis(data))
+    line = _with_breaks(data.recording, rows, added_deg, x, reach)
+    return (Line(*line, "what the repair adds", MODELLED, 1.6),)
+
+
+@dataclass(frozen=True)
+class _Residual:
+    """A residual to be drawn.
+
+    Attributes
+    ----------
+    title, colour : str
+        What it is called, and the colour of the dots in the region.
+    residual_deg : ndarray, shape (n,)
+        Of each sample [deg].
+    fitted_deg : float or None
+        Error of the fit, where one was made [deg].
+    model : tuple of Series
+        Lines drawn over the dots.
+    labelled : bool
+        Whether the name of the region stands in the panel.
+    """
+
+    title: str
+    colour: str
+    residual_deg: Floats
+    fitted_deg: float | None
+    model: tuple[Series, ...]
+    labelled: bool
+
+    def panel(
+        self, data: ReportData, rows: NDArray[np.int64], dots: ResidualDots, dot_deg: Floats
+    ) -> Panel:
+        """Residual over the axis along which the region is seen best.
+
+        Parameters
+        ----------
+        data : ReportData
+        rows : ndarray of int
+            Samples that are drawn.
+        dots : ResidualDots
+            Where the dots stand, and which of them lie in the region.
+        dot_deg : ndarray
+            Residual of each dot [deg].
+
+        Returns
+        -------
+        Panel
+        """
+        axis = residual_axis(data)
+        x, x_label = axis_values(data.recording, axis)
+        rmse = float(np.sqrt(np.mean(self.residual_deg[data.scored] ** 2)))
+        fitted, inside, size = self.fitted_deg, dots.located, _dot(len(dots.x))
+        words = f"{number(rmse)} deg rms" if fitted is None else f"fit error {number(fitted)} deg"
+        return Panel(
+            title=f"{self.title}: {words}",
+            x_label=x_label,
+            y_label="residual (deg)",
+            series=(
+                *_noise_band(x[rows], dots.sigma_deg),
+                Points(dots.x[~inside], dot_deg[~inside], "", FAINT, size),
+                Points(dots.x[inside], dot_deg[inside], "", self.colour, size),
+                *self.model,
+            ),
+            spans=tuple(spans_of(data, axis, labelled=self.labelled)),
+            y_range=(-dots.limit_deg, dots.limit_deg),
+            right_factor=ARCMIN,
+            right_label="residual (arcmin)",
+            zero_line=True,
+        )
+
+
+def _main_caption(data: ReportData, dots: ResidualDots, largest_deg: Floats) -> str:
+    """Words below the main picture.
+
+    Parameters
+    ----------
+    data : ReportData
+    dots : ResidualDots
+    largest_deg : ndarray, shape (n,)
+        Larger residual of each sample, before or after [deg].
+
+    Returns
+    -------
+    str
+    """
+    change = " with the effects named below" if data.is_repaired else ", as nothing was repaired"
+    words = [
+        "Before: the published model with calibrated stiffness, free play and datum. "
+        f"After: the same{change}. Shaded: where simulation and recording "
+        "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
+        f"deviations of the noise of a dot ({number(dots.sigma_deg)} deg)."
+    ]
+    if dots.averaged > 1:
+        words.append(
+            f"A dot is the mean of {dots.averaged} neighbouring samples, as in the diagnosis."
+        )
+        beyond = int(np.count_nonzero(data.on_the_way_through))
+    else:
+        beyond = int(np.count_nonzero(largest_deg[data.scored] > dots.limit_deg))
+    if beyond:
+        words.append(
+            f"{beyond} of {np.count_nonzero(data.scored)} samples lie beyond the scale of the "
+            "residuals, most of them on the way through the dead zone."
+        )
+    return " ".join(words)
 
 
 def zoom_figure(data: ReportData) -> Figure:
