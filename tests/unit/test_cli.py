@@ -434,13 +434,13 @@ def test_no_number_and_no_word_of_a_narrow_table_is_broken_or_lost(width: int) -
     import polars as pl
     from rich.console import Console
 
-    from cyclosweep.cli.frames import titled
+    from cyclosweep.cli.frames import FrameTable
 
     names = [f"output_pin_circle_radius_{k}" for k in range(9)]
     columns = {"variant": [7, 11], **{name: [3.6245e5, -1.2345e-7 - k] for k, name in
                enumerate(names)}}  # fmt: skip
     text = io.StringIO()
-    Console(file=text, width=width).print(titled("numbers", pl.DataFrame(columns)))
+    Console(file=text, width=width).print(FrameTable("numbers", pl.DataFrame(columns)))
     lines = text.getvalue().splitlines()
     assert max(map(len, lines)) <= width
     assert text.getvalue().count("3.6245e+05") == 9

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cyclosweep.cli.exploring import check_out, plain_rows, say_if_unfinished
-from cyclosweep.cli.frames import titled
+from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
 
@@ -88,7 +88,7 @@ def best(
         print("no feasible variant within the limits")
         return
     shown_rows = _with_units(table.head(rows).select(columns), stored)
-    print_tables([titled(", ".join(goals), shown_rows)])
+    print_tables([FrameTable(", ".join(goals), shown_rows)])
     more = f", the first {rows} shown" if pareto and table.height > rows else ""
     print(f"{count}{more}" + (f"; written: {out}" if out is not None else ""))
 

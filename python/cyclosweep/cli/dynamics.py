@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cyclosweep.cli.frames import titled
+from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, print_json, print_tables, refuse_folder
 
 if TYPE_CHECKING:
@@ -97,10 +97,10 @@ def modes(
     dimensions = [] if moved is None else [_largest(moved)]
     print_tables(
         [
-            titled("natural frequencies and shapes", found.table()),
-            titled("who holds the energy; percent per percent of it", found.summary()),
-            *[titled("percent per percent of a dimension", table) for table in dimensions],
-            titled(f"excited below {fastest:g} rpm", meetings),
+            FrameTable("natural frequencies and shapes", found.table()),
+            FrameTable("who holds the energy; percent per percent of it", found.summary()),
+            *[FrameTable("percent per percent of a dimension", table) for table in dimensions],
+            FrameTable(f"excited below {fastest:g} rpm", meetings),
         ]
     )
 
@@ -149,7 +149,7 @@ def shock(
     if as_json:
         print_json(content)
         return
-    print_tables([titled(f"{chosen.name}: {what.kind}", run.summary())])
+    print_tables([FrameTable(f"{chosen.name}: {what.kind}", run.summary())])
     factor = "none, no torque is static" if run.shock_factor is None else f"{run.shock_factor:.3f}"
     print(f"shock factor {factor}; {len(run.impacts)} impacts in {what.duration_s:g} s")
     print(f"{out}: transient.parquet, events.csv, shock.json{', shock.png' if pictured else ''}")

@@ -15,7 +15,7 @@ from cyclosweep.cli.exploring import (
     say_if_unfinished,
     write_out,
 )
-from cyclosweep.cli.frames import titled
+from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 
 
@@ -54,9 +54,9 @@ def feasible(
             }
         )
         return
-    tables = [titled("Ranges", found.inputs)]
+    tables = [FrameTable("Ranges", found.inputs)]
     if found.rules.height:
-        tables.append(titled("No feasible variant has", found.rules))
+        tables.append(FrameTable("No feasible variant has", found.rules))
     print_tables(tables)
     share = found.feasible / max(found.rows, 1)
     written = f"; written: {out}" if out is not None else ""

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions
     from rich.table import Table
 
-__all__ = ["FrameTable", "titled"]
+__all__ = ["FrameTable"]
 
 HEADING = 16
 """Width to which a heading is broken at its underscores and spaces, in signs."""
@@ -23,27 +23,9 @@ BETWEEN = 3
 """Signs between two columns."""
 
 
-def titled(title: str, frame: pl.DataFrame) -> FrameTable:
-    """Table of a frame, numbers to five digits.
-
-    Parameters
-    ----------
-    title : str
-        What stands above it.
-    frame : polars.DataFrame
-        Rows and columns.
-
-    Returns
-    -------
-    FrameTable
-        To be printed by rich.
-    """
-    return FrameTable(title, frame)
-
-
 @dataclass(frozen=True)
 class FrameTable:
-    """A frame that is printed as wide as there is room.
+    """A frame that rich prints as wide as there is room, numbers to five digits.
 
     Columns beyond it follow below, each time after the first column. Headings are broken at
     underscores and spaces alone, and numbers never.

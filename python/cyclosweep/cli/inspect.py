@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from cyclosweep.atomic import write_text
-from cyclosweep.cli.output import AsJson, print_json
+from cyclosweep.cli.output import AsJson, print_json, refuse_overwriting
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -83,14 +83,15 @@ def inspect(
     """Show what is understood of a recording, and write the metadata file to diagnose it with.
 
     With the metadata file of the same stem beside the recording, `cyclosweep diagnose RECORDING
-    --out DIR` follows. What could be two things is asked, not guessed. Where that file exists
-    already, the recording is shown as diagnose reads it, and what it suggests otherwise is listed.
+    --out DIR` follows. Nothing is written where a column could be two things. Where that file
+    exists already, the recording is shown as diagnose reads it, and what it suggests otherwise is
+    listed.
     """
     from cyclosweep.recording.inspection import inspect as look
     from cyclosweep.recording.metadata import TableOptions
 
-    if out is not None and out.exists() and not force:
-        raise InputError(f"--out: {out} exists; --force replaces it")
+    if out is not None:
+        refuse_overwriting(out, force=force)
     if out is not None and (out.is_dir() or not out.parent.is_dir()):
         raise InputError(f"--out: found {out}, expected a file in a folder that exists")
     if out is not None and out.exists() and recording.exists() and out.samefile(recording):

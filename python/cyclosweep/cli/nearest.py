@@ -16,7 +16,7 @@ from cyclosweep.cli.exploring import (
     say_if_unfinished,
     write_out,
 )
-from cyclosweep.cli.frames import titled
+from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
 
@@ -62,7 +62,7 @@ def nearest(
         return
     known = [name for name in wanted if name in found.columns]
     columns = dict.fromkeys(["variant", "distance", *known, *stored.axes])
-    print_tables([titled("Nearest variants", found.select(*columns))])
+    print_tables([FrameTable("Nearest variants", found.select(*columns))])
     if out is not None:
         print(f"written: {out}")
 

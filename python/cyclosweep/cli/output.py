@@ -30,6 +30,7 @@ __all__ = [
     "print_tables",
     "refuse_folder",
     "refuse_output",
+    "refuse_overwriting",
     "refuse_table",
 ]
 
@@ -126,6 +127,25 @@ def refuse_table(out: Path, *sources: str | Path, option: str = "--out") -> None
     refuse_output(out, *sources, option=option)
     if out.suffix.lower() in OTHER_TABLES:
         raise InputError(f"{option}: found {out}, expected a file ending in .csv")
+
+
+def refuse_overwriting(out: Path, *, force: bool) -> None:
+    """Refuse to replace a file that may have been edited by hand.
+
+    Parameters
+    ----------
+    out : Path
+        The file that is to be written.
+    force : bool
+        Whether it may be replaced.
+
+    Raises
+    ------
+    InputError
+        When it exists.
+    """
+    if out.exists() and not force:
+        raise InputError(f"--out: {out} exists; --force replaces it")
 
 
 def _same(path: Path, other: Path) -> bool:

@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cyclosweep.cli.output import refuse_output
-from cyclosweep.errors import InputError
+from cyclosweep.cli.output import refuse_output, refuse_overwriting
 
 
 def pick(
@@ -28,8 +27,7 @@ def pick(
     from cyclosweep.sweep.stored import open_study
 
     refuse_output(out)
-    if out.exists() and not force:
-        raise InputError(f"--out: {out} exists; --force replaces it")
+    refuse_overwriting(out, force=force)
     stored = open_study(study)
     drive = stored.drive_of(variant, name=name)
     status = stored.row(variant)["status"]

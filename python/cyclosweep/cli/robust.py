@@ -18,7 +18,7 @@ from cyclosweep.cli.exploring import (
     say_if_unfinished,
     write_out,
 )
-from cyclosweep.cli.frames import titled
+from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
 
@@ -102,7 +102,7 @@ def robust(
     names = [name for name in ("drive", "variant") if name in found.columns]
     figures = [name for name in found.columns if name.startswith(f"{wanted.column}_")]
     columns = ["rank", "rank_nominal", *names, "share_ok", *dict.fromkeys(figures)]
-    print_tables([titled(str(wanted), found.select(columns).head(rows))])
+    print_tables([FrameTable(str(wanted), found.select(columns).head(rows))])
     more = f", the first {rows} shown" if found.height > rows else ""
     written = f"; written: {out}" if out is not None else ""
     print(f"{found.height:,} designs, {pieces:,} pieces of each{more}{written}")

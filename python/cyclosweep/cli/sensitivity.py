@@ -15,7 +15,7 @@ from cyclosweep.cli.exploring import (
     say_if_unfinished,
     write_out,
 )
-from cyclosweep.cli.frames import titled
+from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
 from cyclosweep.errors import InputError
 
@@ -82,7 +82,7 @@ def sensitivity(
         )
         return
     title = "Share of variance by itself" if kind == "influence" else "Total Sobol index"
-    print_tables([titled(title, shown)])
+    print_tables([FrameTable(title, shown)])
     if kind == "sobol":
         _say_what_is_open(table, half_width)
     if out is not None:
