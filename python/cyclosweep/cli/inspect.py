@@ -92,10 +92,10 @@ def inspect(
 
     if out is not None:
         refuse_overwriting(out, force=force)
-    if out is not None and (out.is_dir() or not out.parent.is_dir()):
-        raise InputError(f"--out: found {out}, expected a file in a folder that exists")
-    if out is not None and out.exists() and recording.exists() and out.samefile(recording):
-        raise InputError(f"--out: {out} is the recording itself, expected another file")
+        if out.is_dir() or not out.parent.is_dir():
+            raise InputError(f"--out: found {out}, expected a file in a folder that exists")
+        if out.exists() and recording.exists() and out.samefile(recording):
+            raise InputError(f"--out: {out} is the recording itself, expected another file")
     for name, value in (("lever-arm", lever_arm), ("counts-per-turn", counts)):
         if value is not None and not value > 0:
             raise InputError(f"--{name}: found {value:g}, expected a number above zero")

@@ -106,3 +106,8 @@ def _means_of_neighbours(data: ReportData, averaged: int) -> Callable[[Floats], 
         return means
 
     return mean
+
+
+def dot_size(samples: int) -> float:
+    """Radius of a dot [px]: the fewer, the larger."""
+    return 3.2 if samples <= 100 else 2.0 if samples <= 600 else 1.3

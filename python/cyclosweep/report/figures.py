@@ -1,7 +1,6 @@
 """The figures of a report: the main picture, the zoom with the energy, those of the residual."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +9,8 @@ from cyclosweep.recording import Recording
 from cyclosweep.report.charts import (
     AFTER,
     BEFORE,
-    FAINT,
     MEASURED,
     MODELLED,
-    QUIET,
-    Band,
     Figure,
     Line,
     Panel,
@@ -23,12 +19,13 @@ from cyclosweep.report.charts import (
     Series,
 )
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.dots import ResidualDots, residual_dots
+from cyclosweep.report.dots import ResidualDots, dot_size
 from cyclosweep.report.loops import LOST_MOTION_SHARE, dead_zone_crossings, loop_figures
-from cyclosweep.report.regions import axis_values, residual_axis, spans_of
+from cyclosweep.report.regions import spans_of
 from cyclosweep.report.residual_figures import map_figure, profiles_figures
+from cyclosweep.report.residual_panel import Residual, ResidualAxis
 from cyclosweep.report.thin import thin
-from cyclosweep.report.wording import ARCMIN, number
+from cyclosweep.report.wording import number
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -61,22 +58,19 @@ def main_figure(data: ReportData) -> Figure:
             panels=(Placed(panel=loop, row=0, column=0),),
             row_height=430,
         )
-    rows = shown[data.scored[shown]]
-    dots = residual_dots(data, rows, axis_values(data.recording, residual_axis(data))[0])
-    repair = _repair_series(data, rows, before - after, _reach(len(data.recording), len(shown)))
+    axis = ResidualAxis.of(data, shown[data.scored[shown]])
+    repair = _repair_series(data, axis, before - after, _reach(len(data.recording), len(shown)))
     title = "Residual after" if data.is_repaired else "Residual after (no repair)"
-    upper = _Residual(
-        "Residual before", BEFORE, before, data.result.baseline.rmse_deg, repair, True
-    )
-    lower = _Residual(title, AFTER, after, data.result.repaired.rmse_deg, (), False)
+    upper = Residual("Residual before", BEFORE, before, data.result.baseline.rmse_deg, repair, True)
+    lower = Residual(title, AFTER, after, data.result.repaired.rmse_deg, (), False)
     return Figure(
         key="loop",
         title="Measured loop, simulation before and after, and what is left",
-        caption=_main_caption(data, dots, np.maximum(abs(before), abs(after))),
+        caption=_main_caption(data, axis.dots, np.maximum(abs(before), abs(after))),
         panels=(
             Placed(panel=loop, row=0, column=0, rows=2),
-            Placed(panel=upper.panel(data, rows, dots, dots.before_deg), row=0, column=1),
-            Placed(panel=lower.panel(data, rows, dots, dots.after_deg), row=1, column=1),
+            Placed(panel=upper.panel(data, axis, axis.dots.before_deg), row=0, column=1),
+            Placed(panel=lower.panel(data, axis, axis.dots.after_deg), row=1, column=1),
         ),
         rows=2,
         columns=2,
@@ -96,15 +90,14 @@ def _loop_panel(data: ReportData, rows: NDArray[np.int64]) -> Panel:
 
 
 def _repair_series(
-    data: ReportData, rows: NDArray[np.int64], added_deg: Floats, reach: int
+    data: ReportData, axis: ResidualAxis, added_deg: Floats, reach: int
 ) -> tuple[Series, ...]:
     """Line of what the repair adds to the simulation.
 
     Parameters
     ----------
     data : ReportData
-    rows : ndarray of int
-        Samples that are drawn.
+    axis : ResidualAxis
     added_deg : ndarray, shape (n,)
         Twist of the repaired simulation beyond that of the calibrated one [deg].
     reach : int
@@ -117,76 +110,8 @@ def _repair_series(
     """
     if not data.is_repaired:
         return ()
-    x, _ = axis_values(data.recording, residual_axis(data))
-    line = _with_breaks(data.recording, rows, added_deg, x, reach)
+    line = _with_breaks(data.recording, axis.rows, added_deg, axis.x, reach)
     return (Line(*line, "what the repair adds", MODELLED, 1.6),)
-
-
-@dataclass(frozen=True)
-class _Residual:
-    """A residual to be drawn.
-
-    Attributes
-    ----------
-    title, colour : str
-        What it is called, and the colour of the dots in the region.
-    residual_deg : ndarray, shape (n,)
-        Of each sample [deg].
-    fitted_deg : float or None
-        Error of the fit, where one was made [deg].
-    model : tuple of Series
-        Lines drawn over the dots.
-    labelled : bool
-        Whether the name of the region stands in the panel.
-    """
-
-    title: str
-    colour: str
-    residual_deg: Floats
-    fitted_deg: float | None
-    model: tuple[Series, ...]
-    labelled: bool
-
-    def panel(
-        self, data: ReportData, rows: NDArray[np.int64], dots: ResidualDots, dot_deg: Floats
-    ) -> Panel:
-        """Residual over the axis along which the region is seen best.
-
-        Parameters
-        ----------
-        data : ReportData
-        rows : ndarray of int
-            Samples that are drawn.
-        dots : ResidualDots
-            Where the dots stand, and which of them lie in the region.
-        dot_deg : ndarray
-            Residual of each dot [deg].
-
-        Returns
-        -------
-        Panel
-        """
-        axis = residual_axis(data)
-        x, x_label = axis_values(data.recording, axis)
-        rmse = float(np.sqrt(np.mean(self.residual_deg[data.scored] ** 2)))
-        fitted, inside, size = self.fitted_deg, dots.located, _dot(len(dots.x))
-        words = f"{number(rmse)} deg rms" if fitted is None else f"fit error {number(fitted)} deg"
-        return Panel(
-            title=f"{self.title}: {words}",
-            x_label=x_label,
-            y_label="residual (deg)",
-            series=(
-                *_noise_band(x[rows], dots.sigma_deg),
-                Points(dots.x[~inside], dot_deg[~inside], "", FAINT, size),
-                Points(dots.x[inside], dot_deg[inside], "", self.colour, size),
-                *self.model,
-            ),
-            spans=tuple(spans_of(data, axis, labelled=self.labelled)),
-            y_range=(-dots.limit_deg, dots.limit_deg),
-            right_factor=ARCMIN,
-            right_label="residual (arcmin)",
-            zero_line=True,
-        )
 
 
 def _main_caption(data: ReportData, dots: ResidualDots, largest_deg: Floats) -> str:
@@ -316,7 +241,7 @@ def _loop_series(data: ReportData, rows: NDArray[np.int64], reach: int) -> Itera
     measured = recording.angle_deg
     assert measured is not None
     torque = recording.torque_nm
-    yield Points(torque[rows], measured[rows], NAME_MEASURED, MEASURED, _dot(len(rows)))
+    yield Points(torque[rows], measured[rows], NAME_MEASURED, MEASURED, dot_size(len(rows)))
     for angle, name, colour, dashed in (
         (data.before_deg, NAME_BEFORE, BEFORE, True),
         (data.after_deg, NAME_AFTER, AFTER, False),
@@ -347,22 +272,9 @@ def _with_breaks(
     return np.insert(x[rows], at, np.nan), np.insert(y[rows], at, np.nan)
 
 
-def _dot(samples: int) -> float:
-    """Radius of a dot [px]: the fewer, the larger."""
-    return 3.2 if samples <= 100 else 2.0 if samples <= 600 else 1.3
-
-
 def _reach(samples: int, shown: int) -> int:
     """Longest step between drawn samples that thinning makes."""
     return 1 if shown >= samples else 4 * -(-samples // shown)
-
-
-def _noise_band(x: Floats, sigma: float) -> tuple[Band, ...]:
-    """Two standard deviations either side of zero."""
-    if sigma <= 0 or not len(x):
-        return ()
-    ends = np.array([x.min(), x.max()])
-    return (Band(ends, np.full(2, -2 * sigma), np.full(2, 2 * sigma), "noise ±2σ", QUIET),)
 
 
 def _energy_series(data: ReportData) -> list[Series]:
