@@ -43,12 +43,12 @@ def test_nothing_missing_is_not_said_beside_a_misfit(
     assert bent.baseline.fit.rmse_deg > 3 * bent.noise.spread_deg
     # As if no hypothesis could be told from chance.
     monkeypatch.setattr(bent, "threshold", np.inf)
-    decision = decide(bent, [], 0.0)
+    decision = decide(bent)
     assert decision.verdict == "UNKNOWN_PHYSICS"
     assert decision.unexplained
     # On a dial so coarse the same misfit is rounding.
     monkeypatch.setattr(bent, "noise", replace(bent.noise, step_deg=100.0))
-    assert decide(bent, [], 0.0).verdict == "INSUFFICIENT_DATA"
+    assert decide(bent).verdict == "INSUFFICIENT_DATA"
 
 
 def test_share_is_nothing_for_the_baseline_and_all_for_the_right_law(bent: Search) -> None:

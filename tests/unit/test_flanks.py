@@ -1,9 +1,8 @@
 """The flank in contact: readings taken while the play is crossed are in contact with none."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.prepare.flanks import find_flanks
 from cyclosweep.diagnosis.prepare.play_jumps import sides_by_jumps
 from cyclosweep.simulation.effects.history import Flags
@@ -13,10 +12,7 @@ PLAY = 28.0
 COMPLIANCE = 2.7
 
 
-@dataclass
-class Line:
-    free_play_deg: float = PLAY
-    compliance_deg_per_nm: float = COMPLIANCE
+LINE = NominalLine(PLAY, COMPLIANCE)
 
 
 def crossings(size: int = 41, loops: int = 4) -> Floats:
@@ -30,7 +26,7 @@ def twist(torque: Floats, noise: Floats) -> Floats:
 
 
 def contact(torque: Floats, angle: Floats) -> Flags:
-    return find_flanks(torque, angle, Line()).at(torque, angle)[1]
+    return find_flanks(torque, angle, LINE).at(torque, angle)[1]
 
 
 def test_a_reading_on_its_way_to_the_flank_is_not_in_contact() -> None:
@@ -82,7 +78,7 @@ def test_a_held_load_is_on_its_own_flank_where_a_loop_wider_than_the_play_hides_
     flank = np.sign(torque)
     flank[7 * 120 : 8 * 120], flank[-120:] = 1.0, -1.0
     angle = 1.8 * torque + play * flank + late
-    side, _ = find_flanks(torque, angle, Line(play, 1.8)).at(torque, angle)
+    side, _ = find_flanks(torque, angle, NominalLine(play, 1.8)).at(torque, angle)
     np.testing.assert_array_equal(side, flank)
 
 
@@ -95,7 +91,7 @@ def test_the_flank_changes_where_the_angle_jumps() -> None:
         elastic[row] = held
     rng = np.random.default_rng(4)
     angle = 0.8 * np.sign(elastic) + COMPLIANCE * elastic + 0.05 * rng.normal(size=len(torque))
-    side, known = find_flanks(torque, angle, Line(0.5)).at(torque, angle)
+    side, known = find_flanks(torque, angle, NominalLine(0.5, COMPLIANCE)).at(torque, angle)
     clear = known & (np.abs(elastic) > 1e-9)
     np.testing.assert_array_equal(side[clear], np.sign(elastic[clear]))
     assert np.sum(clear & (np.sign(torque) != side)) > 10

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.decide import with_other_law
+from cyclosweep.diagnosis.conclude import with_other_law
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.class_check import check_laws
 from cyclosweep.diagnosis.identify.fit import fit

@@ -1,5 +1,6 @@
 """Position of the mesh while the shaft twists: what it is, and what stands on it."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -12,7 +13,11 @@ from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.diagnosis.whole_loop.staircase_found import named_staircase
 from cyclosweep.simulation.effects import find
-from cyclosweep.simulation.effects.mesh_range import LEAST_TRAVEL_DEG
+from cyclosweep.simulation.effects.mesh_range import (
+    LEAST_TRAVEL_DEG,
+    mesh_positions,
+    position_count,
+)
 from cyclosweep.simulation.effects.orders import CYCLE_STEP, travel_deg, travel_shapes
 from cyclosweep.simulation.model import EffectValue, linear_twist
 from cyclosweep.simulation.simulate import history_of
@@ -251,3 +256,9 @@ def test_a_low_order_of_recorded_positions_is_no_staircase(
         history=history(),
     )
     assert (named_staircase(cast(Forecast, forecast)) is not None) == steps
+
+
+def test_a_full_turn_is_the_position_that_it_started_from() -> None:
+    crank = np.array([0.0, 359.97, 0.02, 360.0, 719.99, 359.9, 370.0, 10.0])
+    np.testing.assert_array_equal(mesh_positions(crank), [0, 0, 0, 0, 0, 359.9, 10, 10])
+    assert position_count(replace(history(), crank_deg=np.resize(crank, len(history())))) == 3

@@ -230,7 +230,7 @@ def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
     search.visited = {
         frozenset(name): each for name, each in zip("nor", (named, other, rival), strict=True)
     }
-    decision = decide(search, [], 0.0)
+    decision = decide(search)
     assert decision.best is other
     closer = named_if_close(search, decision)
     assert (closer.best is named) == taken
@@ -245,12 +245,12 @@ def test_named_effects_are_taken_where_what_has_no_name_is_hardly_likelier(
     assert beyond.recognised == (True, False)
     beyond = replace(beyond, prior=beyond.prior + other.score - 1.0 - beyond.score)
     search.visited[beyond.names] = beyond
-    assert decide(search, [], 0.0).best is other
+    assert decide(search).best is other
     assert named_if_close(search, decision).best is named
     # What is far ahead holds more than errors: it is an explanation of its own.
     beyond = replace(beyond, prior=beyond.prior + 80.0)
     search.visited[beyond.names] = beyond
-    decision_beyond = decide(search, [], 0.0)
+    decision_beyond = decide(search)
     assert decision_beyond.best is beyond
     assert named_if_close(search, decision_beyond) is decision_beyond
     del search.visited[beyond.names]

@@ -11,7 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.effects_found import explanations
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.verdict import Decision

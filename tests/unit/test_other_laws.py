@@ -80,11 +80,11 @@ def test_a_tilted_dial_is_found_where_a_side_load_made_up_for_the_tilt(
 ) -> None:
     search = search_of(EffectValue("dial_eccentricity", TILTED, amplitudes))
     search.run()
-    best = decide(search, [], 0.0).best
+    best = decide(search).best
     assert best is not None
     assert best.names == {"dial_eccentricity", "load_asymmetry"}
     visit_rivals(search)
-    best = decide(search, [], 0.0).best
+    best = decide(search).best
     assert best is not None
     assert {term.name: term.shape for term in best.fit.terms} == {"dial_eccentricity": TILTED}
 

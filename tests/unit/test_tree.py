@@ -50,7 +50,7 @@ MAY_IMPORT: dict[str, set[str]] = {
 
 # The parts of a diagnosis, each after those that it may build on; the stages have a file each.
 FITTING = {"prepare", "hypotheses", "identify", "whole_loop"}
-DECIDED = FITTING | {"outcome", "provenance", "refuse", "decide"}
+DECIDED = FITTING | {"outcome", "provenance", "refuse", "conclude"}
 STAGES = {
     "prepare": set[str](),
     "hypotheses": {"prepare"},
@@ -71,7 +71,7 @@ STAGES = {
     "friction_in_noise": FITTING | {"calibrate"},
     "identify_effects": FITTING | {"calibrate", "friction_in_noise"},
     "one_history": FITTING | {"friction_in_noise", "identify_effects"},
-    "decide": FITTING | {"outcome", "provenance", "refuse"},
+    "conclude": FITTING | {"outcome", "provenance", "refuse"},
     "locate": DECIDED,
     "repair": DECIDED | {"elasticity"},
     "growth": set[str](),

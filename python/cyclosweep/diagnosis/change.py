@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.growth import growth
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.sweeps import FEWEST_ROWS, Sweep, equal_sweeps

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.effects_found import (
     classes_shown,
     explanations,

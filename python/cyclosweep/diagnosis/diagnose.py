@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.compose import compose
-from cyclosweep.diagnosis.decide import conclude
+from cyclosweep.diagnosis.conclude import conclude
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_of

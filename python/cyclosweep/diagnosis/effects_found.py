@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import stats
 
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.effect_chance import chance_of_effect
 from cyclosweep.diagnosis.elasticity import (
     added_twist,

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.report.play_and_stiffness import play_and_stiffness

@@ -132,7 +132,7 @@ def _crossing_as_recorded(search: Search) -> Search:
     """
     found = [search.start]
     if search.start is search.baseline:
-        found = [candidate for candidate, _ in decide(search, [], 0.0).explanations]
+        found = [candidate for candidate, _ in decide(search).explanations]
     for candidate in found:
         take_recorded_crossings(search, candidate)
     return search
@@ -208,7 +208,7 @@ def _leaves_something(search: Search) -> bool:
     -------
     bool
     """
-    decision = decide(search, [], 0.0)
+    decision = decide(search)
     if decision.best is None:
         return decision.unexplained
     return no_more_than_fits(decision, decision.best, search, 0.0).unexplained

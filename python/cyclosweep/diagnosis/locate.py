@@ -6,7 +6,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
@@ -15,6 +15,7 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import recorded_runs
 from cyclosweep.result.mismatch import Direction, Region
 from cyclosweep.simulation.effects.history import Flags, Floats
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
 
 MOST_REGIONS = 4
 """Regions that are given at most."""
@@ -279,7 +280,8 @@ def _position_cells(problem: Problem) -> Iterator[_Cell]:
     crank = problem.history.crank_deg
     if crank is None:
         return
-    places = np.unique(np.round(crank, 1))
+    position = mesh_positions(crank)
+    places = np.unique(position)
     if len(places) > MOST_POSITIONS:
         width = 360.0 / SECTORS
         sector = (crank % 360.0) // width
@@ -287,7 +289,7 @@ def _position_cells(problem: Problem) -> Iterator[_Cell]:
             yield _Cell(rows=sector == k, crank=(k * width, (k + 1) * width))
         return
     for place in places:
-        yield _Cell(rows=np.abs(crank - place) < 0.06, crank=(float(place), float(place)))
+        yield _Cell(rows=position == place, crank=(float(place), float(place)))
 
 
 def _time_cells(problem: Problem) -> Iterator[_Cell]:

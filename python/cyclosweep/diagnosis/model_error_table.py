@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from cyclosweep.diagnosis.decide import NAMING, Conclusion
+from cyclosweep.diagnosis.conclude import NAMING, Conclusion
 from cyclosweep.diagnosis.identify.repetition import FEWEST_CELLS, LEAST_REPEAT
 from cyclosweep.diagnosis.identify.verdict import Decision
 from cyclosweep.diagnosis.prepare.problem import Problem

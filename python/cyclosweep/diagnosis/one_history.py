@@ -145,5 +145,5 @@ def _remembers(fitted: FittedStructure) -> bool:
 
 def _best(searched: Search) -> FittedStructure:
     """The structure that the verdict on a search rests on."""
-    best = accepted_in_stages(searched) or decide(searched, [], 0.0).best or searched.baseline
+    best = accepted_in_stages(searched) or decide(searched).best or searched.baseline
     return best.fit

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.abrupt_step import abrupt_step
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import from_place
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.elasticity import compliance_with_curve
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import Problem

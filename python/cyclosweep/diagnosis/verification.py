@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cyclosweep.diagnosis.change import find_change
-from cyclosweep.diagnosis.decide import Conclusion
+from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.identify.class_check import candidates_of
-from cyclosweep.diagnosis.identify.verdict import MOSTLY, Decision
+from cyclosweep.diagnosis.identify.verdict import Decision, verdict_by_share
 from cyclosweep.diagnosis.verify.experiment import next_experiment
 from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
-from cyclosweep.result import DriveChange, NextExperiment, RunToRunDrift, SelfCheck, Verdict
+from cyclosweep.result import DriveChange, NextExperiment, RunToRunDrift, SelfCheck
 
 NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, np.nan, "")
 MOST_RIVALS = 2
@@ -37,7 +37,8 @@ class Verification:
     Attributes
     ----------
     decision : Decision
-        The verdict, changed where the drive was not the same in all runs.
+        The verdict that is reported: that of the fit, changed where the drive was not the same in
+        all runs.
     held_out : HeldOutResult
         Errors on data that were not fitted.
     drift : RunToRunDrift or None
@@ -100,10 +101,8 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
 
 def _of_changed_drive(concluded: Conclusion) -> Decision:
     """Verdict where the drive changed: named effects explain most of it at best."""
-    share = concluded.explained.share or 0.0
-    named = bool(concluded.naming.names) and share >= MOSTLY
-    verdict: Verdict = "MOSTLY_EXPLAINED" if named else "UNKNOWN_PHYSICS"
-    return replace(concluded.decision, verdict=verdict, unexplained=True)
+    share = (concluded.explained.share or 0.0) if concluded.naming.names else 0.0
+    return replace(concluded.decision, verdict=verdict_by_share(share), unexplained=True)
 
 
 def _drift(concluded: Conclusion, held: HeldOutResult) -> RunToRunDrift | None:

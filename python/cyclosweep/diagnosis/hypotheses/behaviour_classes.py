@@ -10,9 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 
 import cyclosweep._core as _core
-from cyclosweep.diagnosis.hypotheses.shape_columns import hats, lapse, positions, rates
+from cyclosweep.diagnosis.hypotheses.shape_columns import hats, lapse, rates
 from cyclosweep.simulation.effects.bounds import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
 
 ODD_CURVE = "odd curve of the torque"
 EVEN_CURVE = "even curve of the torque"
@@ -146,7 +147,7 @@ def _by_state(history: History) -> Iterator[tuple[str, Floats]]:
     """What differs between positions, between runs, and with the temperature."""
     elastic = history.elastic_nm / history.largest_torque_nm
     if history.crank_deg is not None:
-        place = positions(history.crank_deg)
+        place = mesh_positions(history.crank_deg)
         places = np.unique(place)
         if FEWEST_STATES <= len(places) <= MOST_POSITIONS:
             one = (place[:, None] == places).astype(np.float64)

@@ -225,18 +225,3 @@ def relaxing(history: History, delays: Floats) -> Floats:
             for delay in delays
         ]
     )
-
-
-def positions(crank_deg: Floats) -> Floats:
-    """Positions of the mesh that are told apart: tenths of a degree within a turn [deg].
-
-    Parameters
-    ----------
-    crank_deg : ndarray, shape (n,)
-        Position of the mesh [deg].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    return np.asarray(np.round(crank_deg % 360.0, 1) % 360.0)

@@ -19,7 +19,6 @@ from cyclosweep.diagnosis.hypotheses.shape_columns import (
     hats,
     lapse,
     one_run,
-    positions,
     rates,
     relaxing,
     softer_after,
@@ -27,6 +26,7 @@ from cyclosweep.diagnosis.hypotheses.shape_columns import (
 )
 from cyclosweep.simulation.effects.bounds import FEWEST_STEPS
 from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
 
 
 @dataclass(frozen=True, eq=False)
@@ -324,7 +324,7 @@ def _positions(history: History) -> Iterator[UnnamedShape]:
     """An offset and a compliance of its own for each position of the mesh."""
     if history.crank_deg is None:
         return
-    place = positions(history.crank_deg)
+    place = mesh_positions(history.crank_deg)
     places = np.unique(place)
     if not 3 <= len(places) <= 40:
         return

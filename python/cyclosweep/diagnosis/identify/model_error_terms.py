@@ -14,7 +14,6 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     TEMPERATURE,
     WAYS_APART,
 )
-from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
@@ -30,6 +29,7 @@ from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import size_of
 from cyclosweep.simulation.effects.history import Flags, History
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
 from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
 
 LEAST_OF_MISMATCH = 0.04
@@ -147,7 +147,7 @@ def offset_count(history: History, fitted: Flags, name: str) -> int:
     """
     if history.crank_deg is None or POSITION not in CLASSES_OF_EFFECT[name]:
         return history.run_count
-    place = positions(history.crank_deg[fitted])
+    place = mesh_positions(history.crank_deg[fitted])
     if len(np.unique(place)) > MOST_POSITIONS:
         return history.run_count
     return count_states(history, fitted)

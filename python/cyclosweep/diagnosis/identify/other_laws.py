@@ -144,7 +144,7 @@ def visit_rivals(search: Search) -> None:
     search : Search
         After it has run from the baseline.
     """
-    best = decide(search, [], 0.0).best
+    best = decide(search).best
     if best is None:
         return
     near = [best.names]

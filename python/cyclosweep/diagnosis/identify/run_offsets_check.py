@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION
-from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import (
@@ -21,6 +20,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     withdrawn_where,
 )
 from cyclosweep.simulation.effects.history import Flags, History
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
 from cyclosweep.simulation.effects.order_names import travels
 
 
@@ -112,7 +112,7 @@ def count_states(history: History, fitted: Flags) -> int:
     """
     if history.crank_deg is None:
         return len(np.unique(history.run[fitted]))
-    states = np.column_stack([history.run[fitted], positions(history.crank_deg[fitted])])
+    states = np.column_stack([history.run[fitted], mesh_positions(history.crank_deg[fitted])])
     return len(np.unique(states, axis=0))
 
 

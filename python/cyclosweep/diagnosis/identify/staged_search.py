@@ -71,7 +71,7 @@ def search_in_stages(
         stages.renew(renewed)
         search = stage_of(stages.searched, flexible, stages.fitted)
         search.run(say)
-        decision = named_if_close(search, decide(search, [], 0.0), NEARLY_ALL)
+        decision = named_if_close(search, decide(search), NEARLY_ALL)
         if stages.accepted:
             stages.last = search
         best = decision.best

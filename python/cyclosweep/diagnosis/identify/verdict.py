@@ -1,5 +1,6 @@
 """The verdict: which explanation, if any, the evidence supports."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,15 +53,18 @@ class Decision:
     unexplained: bool
 
 
-def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> Decision:
+def decide(
+    search: Search, bounds: Sequence[Testability] = (), tolerance_deg: float = 0.0
+) -> Decision:
     """Choose the verdict from the visited structures.
 
     Parameters
     ----------
     search : Search
         After it has run.
-    bounds : list of Testability
-        The testable effects beside the baseline, for the case that nothing is found.
+    bounds : sequence of Testability
+        The testable effects beside the baseline. Only where all of them are below the tolerance
+        does it mean that nothing is missing when nothing is found; without bounds it never does.
     tolerance_deg : float
         Size below which an effect does not matter [deg].
 
@@ -82,11 +86,20 @@ def decide(search: Search, bounds: list[Testability], tolerance_deg: float) -> D
         return Decision("UNKNOWN_PHYSICS", best, [(best, 1.0)], True)
     probable = probabilities(enough)
     unnamed = [(n, p) for n, p in probable if not n.all_recognised]
-    if sum(p for _, p in unnamed) > 0.5:
+    if sum(p for _, p in unnamed) > 1.0 - SURE:
         return Decision("UNKNOWN_PHYSICS", unnamed[0][0], likely(probable), True)
     best, probability = next((n, p) for n, p in probable if n.all_recognised)
-    verdict: Verdict = "IDENTIFIED" if probability >= SURE else "AMBIGUOUS"
-    return Decision(verdict, best, likely(probable), False)
+    return Decision(verdict_by_probability(probability), best, likely(probable), False)
+
+
+def verdict_by_probability(probability: float) -> Verdict:
+    """Verdict where the best explanation, of this probability, leaves nothing but noise."""
+    return "IDENTIFIED" if probability >= SURE else "AMBIGUOUS"
+
+
+def verdict_by_share(share: float) -> Verdict:
+    """Verdict where something remains beside named effects that explain this share."""
+    return "MOSTLY_EXPLAINED" if share >= MOSTLY else "UNKNOWN_PHYSICS"
 
 
 def named_if_close(search: Search, decision: Decision, nearly_all: float = np.inf) -> Decision:
@@ -253,10 +266,8 @@ def decide_in_stages(search: Search, explained_share: float) -> Decision:
     explanations = likely(sorted([own, *search.rivals_of_start], key=lambda each: -each[1]))
     explanations += [own] if own not in explanations else []
     if search.suffices(best) and best.fit.noise.model_error_factor == 1.0:
-        sure = probability >= SURE
-        return Decision("IDENTIFIED" if sure else "AMBIGUOUS", best, explanations, False)
-    mostly = explained_share >= MOSTLY
-    return Decision("MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS", best, explanations, True)
+        return Decision(verdict_by_probability(probability), best, explanations, False)
+    return Decision(verdict_by_share(explained_share), best, explanations, True)
 
 
 def accepted_in_stages(search: Search) -> Candidate | None:
@@ -303,6 +314,4 @@ def no_more_than_fits(
     claims = decision.verdict in ("IDENTIFIED", "AMBIGUOUS")
     if not claims or accepted.fit.rmse_deg <= WITHIN_NOISE * search.noise.spread_deg:
         return decision
-    mostly = explained_share >= MOSTLY
-    verdict: Verdict = "MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS"
-    return replace(decision, verdict=verdict, unexplained=True)
+    return replace(decision, verdict=verdict_by_share(explained_share), unexplained=True)

@@ -1,10 +1,10 @@
 """The flank in contact and the dead zone, read off a recording by a robust line."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
+from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.prepare.play_jumps import FEW_STEPS, sides_by_jumps
 from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
@@ -22,16 +22,6 @@ LEAST_COMPLIANCE = 1e-12
 FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
-
-
-class NominalLine(Protocol):
-    """Free play [deg] each side of zero and slope [deg/(N m)] of the published model."""
-
-    @property
-    def free_play_deg(self) -> float: ...  # noqa: D102
-
-    @property
-    def compliance_deg_per_nm(self) -> float: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True)

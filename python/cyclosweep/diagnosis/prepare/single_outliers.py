@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.prepare.flanks import NominalLine
+from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.recording import Fault, Recording
 from cyclosweep.simulation.effects.history import Flags, Floats
 

@@ -10,6 +10,9 @@ from cyclosweep.simulation.effects.history import Flags
 
 FOLDS = 4
 """Blocks that are left out in turn."""
+STRETCHES, STRETCHES_OF_LOOPS = 2, 4
+"""Stretches of a block: of the flank in contact, and of whole loops, crossings of the dead zone
+included."""
 KEPT_RUNS = "the runs kept for it"
 """Label of runs that were never fitted, because they are kept for the verdict."""
 
@@ -53,61 +56,33 @@ def folds(problem: Problem) -> list[tuple[str, Flags]]:
             names = ", ".join(str(labels[r]) for r in chosen)
             out.append((f"runs {names}", np.isin(history.run, chosen)))
         return out
-    return stretches(problem, 2)
+    return stretches(use, STRETCHES)
 
 
-def stretches(problem: Problem, each: int) -> list[tuple[str, Flags]]:
-    """Blocks to leave out in turn, each of some stretches of the fitted rows.
+def stretches(rows: Flags, each: int) -> list[tuple[str, Flags]]:
+    """Blocks to leave out in turn, each of some stretches of the rows.
 
     Parameters
     ----------
-    problem : Problem
+    rows : ndarray of bool, shape (n,)
+        Rows that are shared out.
     each : int
         Stretches in a block.
 
     Returns
     -------
     list of (str, ndarray of bool)
-        Label and rows of each block.
+        Label and rows of each block; none without rows.
     """
-    use = problem.fitted
-    index = np.flatnonzero(use)
+    index = np.flatnonzero(rows)
     count = each * FOLDS
-    block = np.full(len(use), -1)
+    block = np.full(len(rows), -1)
     block[index] = np.arange(len(index)) * count // max(len(index), 1)
+    blocks = [(block >= 0) & (block % FOLDS == k) for k in range(FOLDS)]
     return [
-        (
-            f"every {FOLDS}th of {count} stretches from number {k + 1}",
-            (block >= 0) & (block % FOLDS == k),
-        )
-        for k in range(FOLDS)
-        if np.any(block % FOLDS == k)
-    ]
-
-
-def whole_stretches(problem: Problem, each: int = 4) -> list[tuple[str, Flags]]:
-    """Blocks to leave out in turn, crossings of the dead zone included.
-
-    Parameters
-    ----------
-    problem : Problem
-    each : int
-        Stretches of the fitted runs in a block.
-
-    Returns
-    -------
-    list of (str, ndarray of bool)
-        Label and rows of each block.
-    """
-    index = np.flatnonzero(problem.whole_fitted)
-    block = np.full(len(problem.whole_fitted), -1)
-    block[index] = np.arange(len(index)) * (each * FOLDS) // max(len(index), 1)
-    return [
-        (
-            f"every {FOLDS}th of {each * FOLDS} stretches from number {k + 1}",
-            (block % FOLDS == k) & (block >= 0),
-        )
-        for k in range(FOLDS)
+        (f"every {FOLDS}th of {count} stretches from number {k + 1}", block)
+        for k, block in enumerate(blocks)
+        if block.any()
     ]
 
 

@@ -22,7 +22,7 @@ from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.stage import FAINT
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
-from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, whole_stretches
+from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, STRETCHES_OF_LOOPS, stretches
 from cyclosweep.diagnosis.whole_loop.findings import findings, hidden_by_friction
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, fit_forecast, refit
 from cyclosweep.diagnosis.whole_loop.run_comparison import steadiness
@@ -110,7 +110,9 @@ class WholeLoopFit(FittedStructure):
         """Predict the runs kept for it, or stretches of the fitted ones left out in turn."""
         problem = self.problem
         kept_runs = bool(np.any(problem.whole_held_out))
-        parts = [(KEPT_RUNS, problem.whole_held_out)] if kept_runs else whole_stretches(problem)
+        parts = [(KEPT_RUNS, problem.whole_held_out)]
+        if not kept_runs:
+            parts = stretches(problem.whole_fitted, STRETCHES_OF_LOOPS)
         found = []
         for label, rows in parts:
             before, after = self.before, self.forecast

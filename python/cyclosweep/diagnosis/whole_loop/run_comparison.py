@@ -4,14 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.shape_columns import positions
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
 from cyclosweep.diagnosis.whole_loop.step_order import step_order
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.effects.mesh_range import short_way_deg
+from cyclosweep.simulation.effects.mesh_range import mesh_positions, short_way_deg
 
 DRIFT_RATIO = 1.8
 """Error on another run over that on its own beyond which the two are not the same drive."""
@@ -109,7 +108,7 @@ def are_replicates(history: History, first: Flags, second: Flags) -> bool:
         return False
     if history.crank_deg is None:
         return True
-    places = [positions(history.crank_deg[rows]) for rows in (first, second)]
+    places = [mesh_positions(history.crank_deg[rows]) for rows in (first, second)]
     away = np.abs(short_way_deg(np.subtract.outer(*map(np.unique, places))))
     return bool(np.all(away.min(axis=0) <= SAME_PLACE) and np.all(away.min(axis=1) <= SAME_PLACE))
 

@@ -15,7 +15,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import strength_of
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem
-from cyclosweep.diagnosis.prepare.split import whole_stretches
+from cyclosweep.diagnosis.prepare.split import STRETCHES_OF_LOOPS, stretches
 from cyclosweep.diagnosis.whole_loop.forecast import (
     BLUR,
     Forecast,
@@ -224,7 +224,7 @@ def left_out_error(model: Forecast) -> float:
     """Root mean square on stretches that were left out in turn [deg]."""
     problem = model.problem
     total, count = 0.0, 0
-    for _, rows in whole_stretches(problem):
+    for _, rows in stretches(problem.whole_fitted, STRETCHES_OF_LOOPS):
         part = refit(model, rows=problem.whole_fitted & ~rows, most=3)
         left = problem.whole_fitted & rows
         total += problem.rms_error(part.angle_deg, left) ** 2 * np.count_nonzero(left)

@@ -18,6 +18,7 @@ from cyclosweep.simulation.effects.datum_laws import (
     single_laws,
 )
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
 
 __all__ = ["PUSHES", "PUSH_NAMES", "DatumDrift"]
 
@@ -36,8 +37,6 @@ LEAST_SWING = 0.3
 OTHER_CAUSE = 0.25
 """Share of the offsets below which temperature or mesh position leaves too little unexplained to
 call the datum erratic."""
-PLACE_DEG = 0.1
-"""Mesh positions closer than this are the same [deg]."""
 
 
 class DatumDrift(Effect):
@@ -238,7 +237,7 @@ def _by_place(history: History, centred: Floats) -> bool:
     """Whether the mesh positions of the runs explain their offsets, or may well do so."""
     if history.crank_deg is None:
         return False
-    place = np.round(history.crank_deg[history.run_starts] % 360.0 / PLACE_DEG)
+    place = mesh_positions(history.crank_deg[history.run_starts])
     _, which = np.unique(place, return_inverse=True)
     count, places = len(which), int(which.max()) + 1
     if places == 1:

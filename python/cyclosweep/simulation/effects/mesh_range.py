@@ -42,11 +42,27 @@ def short_way_deg(turned_deg: Floats) -> Floats:
     return np.asarray((turned_deg + 180.0) % 360.0 - 180.0)
 
 
+def mesh_positions(crank_deg: Floats) -> Floats:
+    """Positions of the mesh that are told apart: tenths of a degree within a turn.
+
+    Parameters
+    ----------
+    crank_deg : ndarray, shape (n,)
+        Angle of the crank, over any number of turns [deg].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        From 0 to below 360 [deg]; just below a full turn is 0.
+    """
+    return np.asarray(np.round(crank_deg % 360.0, 1) % 360.0)
+
+
 def position_count(history: History) -> int:
     """Count the positions of the mesh zone in a recording, to a tenth of a degree."""
     if history.crank_deg is None:
         return 0
-    return len(np.unique(np.round(history.crank_deg % 360.0, 1)))
+    return len(np.unique(mesh_positions(history.crank_deg)))
 
 
 def turned_orders(history: History, above: int) -> range:

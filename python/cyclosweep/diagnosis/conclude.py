@@ -13,18 +13,19 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.testability import Testability, testability
 from cyclosweep.diagnosis.identify.verdict import (
     MOSTLY,
-    SURE,
     Decision,
     accepted_in_stages,
     decide,
     decide_in_stages,
     named_if_close,
     no_more_than_fits,
+    verdict_by_probability,
+    verdict_by_share,
 )
 from cyclosweep.diagnosis.identify.worth import without_unseen_friction
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import repetition
-from cyclosweep.result import Explained, Verdict
+from cyclosweep.result import Explained
 
 DEFAULT_TOLERANCE = 0.01
 """Size below which an effect does not matter, as a share of the largest elastic twist."""
@@ -52,7 +53,8 @@ class Conclusion:
     tolerance_deg : float
         Size below which an effect does not matter [deg].
     decision : Decision
-        Verdict and explanations.
+        Verdict and explanations by the fit. `Verification.decision` is the one that is reported: it
+        is another one where the drive turns out to have changed from run to run.
     accepted : Candidate
         The effects of the best structure, for repair and prediction; the baseline where nothing was
         found. Those that may not be named stand in for their classes of behaviour.
@@ -249,9 +251,8 @@ def with_other_law(
     listed = [each for each in decision.explanations if each[0].names not in both]
     listed += zip((other.part, accepted), shares, strict=False)
     listed.sort(key=lambda each: -each[1])
-    verdict: Verdict = "MOSTLY_EXPLAINED"
-    if enough := _is_enough(search, other.part):
-        verdict = "IDENTIFIED" if shares[0] >= SURE else "AMBIGUOUS"
+    enough = _is_enough(search, other.part)
+    verdict = verdict_by_probability(shares[0]) if enough else "MOSTLY_EXPLAINED"
     return Decision(verdict, other.part, listed, not enough), other
 
 
@@ -286,8 +287,7 @@ def _with_names_that_hold(
     too_little = decision.verdict == "MOSTLY_EXPLAINED" and share < MOSTLY
     if not (naming.withdrawn or nothing or too_little):
         return decision
-    mostly = bool(naming.names) and share >= MOSTLY
-    verdict: Verdict = "MOSTLY_EXPLAINED" if mostly else "UNKNOWN_PHYSICS"
+    verdict = verdict_by_share(share if naming.names else 0.0)
     return replace(decision, verdict=verdict, unexplained=True)
 
 
