@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cyclosweep.recording import Recording
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.report.residual_scale import DEAD_ZONE_SHARE, scale_deg
 from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, answer_of
 
@@ -160,7 +161,7 @@ class ReportData:
                 rho = max(thinning.sample_autocorrelation, 0.0)
         if sigma is None or not np.isfinite(sigma) or sigma <= 0:
             residual = self.residual_after_deg
-            sigma = 0.0 if residual is None else 1.4826 * float(np.median(np.abs(residual)))
+            sigma = 0.0 if residual is None else robust_sigma(residual)
         return sigma, 0.0 if rho is None or not np.isfinite(rho) else rho
 
     def _residual(self, predicted: Floats | None) -> Floats | None:

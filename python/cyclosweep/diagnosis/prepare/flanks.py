@@ -7,6 +7,7 @@ import numpy as np
 from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.prepare.play_jumps import FEW_STEPS, sides_by_jumps
 from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 
 LOADED = 0.25
@@ -221,10 +222,10 @@ def find_flanks(
     target = angle if both else angle - sign * line.free_play_deg
     start = np.linalg.lstsq(design[loaded], target[loaded], rcond=None)[0]
     residual = target[loaded] - design[loaded] @ start
-    scale = max(1.4826 * float(np.median(np.abs(residual))), 1e-9)
+    scale = max(robust_sigma(residual), 1e-9)
 
-    def misfit(line: Floats) -> Floats:
-        return np.asarray((target[loaded] - design[loaded] @ line) / scale)
+    def misfit(values: Floats) -> Floats:
+        return np.asarray((target[loaded] - design[loaded] @ values) / scale)
 
     robust = least_squares(misfit, start, loss="soft_l1").x
     datum, compliance = float(robust[0]), float(robust[1])

@@ -7,6 +7,7 @@ and hide both themselves and all the rest.
 
 import numpy as np
 
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 
 BLOCK = 8
@@ -51,7 +52,7 @@ def event_rows(angle: Floats, basis: Floats, run: Ints) -> Flags:
     for _ in range(ROUNDS if basis.shape[1] else 1):
         median = _medians(left, block)
         apart = np.abs(median - np.median(median))
-        apart /= max(1.4826 * float(np.median(apart)), 1e-300)
+        apart /= max(robust_sigma(apart), 1e-300)
         far = apart > FAR
         beside = np.r_[far[1:], False] | np.r_[False, far[:-1]]
         now = (far | (beside & (apart > EDGE)))[block]

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.prepare.autocorrelation import autocorrelation
 from cyclosweep.diagnosis.prepare.noise import COARSE_STEP, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.rounding import MUCH_LIKELIER, noise_with_rounding
 from cyclosweep.diagnosis.prepare.row_score import bin_score, interval_score, student_score
+from cyclosweep.recording.robust import robust_sigma, rounding_sigma, sigma_by_second_differences
 from cyclosweep.simulation.effects.history import Floats
 
 MODEL_ERROR = 0.9
@@ -70,7 +71,7 @@ def estimate_noise(
     whole, basis = basis, basis[:, : max(count // 3, 3)]
     freedom = max(count - basis.shape[1], 1)
     left = angle - basis @ (basis.T @ angle)
-    scale = max(1.4826 * float(np.median(np.abs(left))), 1e-12)
+    scale = max(robust_sigma(left), 1e-12)
     scale *= np.sqrt(count / freedom)
     clean = np.clip(left, -4 * scale, 4 * scale)
     best, upper = autocorrelation(clean, basis, gap)
@@ -92,7 +93,7 @@ def estimate_noise(
             coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
             if coarse is not None:
                 return coarse
-        sigma = max(sigma, resolution / np.sqrt(12.0))
+        sigma = max(sigma, rounding_sigma(resolution))
     found = replace(rough, sigma_deg=sigma, tail=tail, score_moments=moments, tail_gain=gain)
     if all_noise:
         return found
@@ -125,7 +126,7 @@ def as_model_error(noise: Noise, left: Floats, resolution: float, travel: float)
     -------
     Noise
     """
-    least = max(_floor(left), resolution / np.sqrt(12.0), 1e-6 * travel, 1e-12)
+    least = max(sigma_by_second_differences(left), rounding_sigma(resolution), 1e-6 * travel, 1e-12)
     return replace(
         noise,
         sigma_deg=least,
@@ -179,16 +180,11 @@ def _neighbours(white: Floats, gap: Floats) -> float:
     -------
     float
     """
-    limit = 3.0 * 1.4826 * float(np.median(np.abs(white)))
+    limit = 3.0 * robust_sigma(white)
     clipped = np.clip(white, -limit, limit)
     near = np.flatnonzero(gap > 0)
     total = float(clipped @ clipped)
     return float(clipped[near] @ clipped[near - 1]) / total if total > 0 else 0.0
-
-
-def _floor(left: Floats) -> float:
-    """Standard deviation of white noise whose second differences are like those of a residual."""
-    return 1.4826 * float(np.median(np.abs(np.diff(left, 2)))) / float(np.sqrt(6.0))
 
 
 def _coarse_noise(
@@ -259,7 +255,7 @@ def _size(
     if count < 100 or sigma <= 0:
         return max(sigma, 1e-9), np.inf, (1.0, 1.0), 0.0
     inflate = np.sqrt(count / freedom)
-    scale = 1.4826 * float(np.median(np.abs(white))) * inflate
+    scale = robust_sigma(white) * inflate
     best_tail, best_value, best_sigma = np.inf, -np.inf, sigma
     for tail in (np.inf, 12.0, 7.0, 5.0, 4.0, 3.2, 2.6):
         if np.isinf(tail):

@@ -9,6 +9,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.recording import Recording
+from cyclosweep.recording.robust import sigma_by_second_differences
 from cyclosweep.recording.structure import turning_points
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 
@@ -135,6 +136,5 @@ def _least_turn(torque: Floats) -> float:
     """Way back of the torque within a run that its noise cannot make [N m]."""
     if len(torque) < 3:
         return 0.0
-    bend: float = np.median(np.abs(np.diff(torque, 2)))
-    noise = 1.4826 * bend / np.sqrt(6.0)
+    noise = sigma_by_second_differences(torque)
     return float(max(LEAST_TURN * float(np.ptp(torque)), TURN_NOISE * noise))

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.special import ndtr
 
+from cyclosweep.recording.robust import rounding_sigma
 from cyclosweep.simulation.effects.history import Floats
 
 
@@ -20,7 +21,7 @@ def with_rounding(sigma_deg: float, step_deg: float) -> float:
     -------
     float
     """
-    return float(np.hypot(sigma_deg, step_deg / np.sqrt(12.0)))
+    return float(np.hypot(sigma_deg, rounding_sigma(step_deg)))
 
 
 def _squared_scale(tail: float) -> float:

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 from cyclosweep.simulation.effects.mesh_range import short_way_deg
 
@@ -103,7 +104,7 @@ class Rows:
         count = int(within.sum())
         if count < 2:
             return float("nan"), float("nan")
-        sigma = 1.4826 * float(np.median(np.abs(difference[within])))
+        sigma = robust_sigma(difference[within])
         clean = np.clip(difference, -4.0 * sigma, 4.0 * sigma)
         pair = within[1:] & within[:-1]
         if self.averaged == 1 or np.count_nonzero(pair) < 2 or sigma <= 0.0:

@@ -11,6 +11,7 @@ import numpy as np
 
 from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.recording import Fault, Recording
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 BEYOND_USUAL = 12.0
@@ -33,8 +34,6 @@ MOST_SHARE = 0.01
 """Share of the samples up to which they are single outliers, and not noise of heavy tails."""
 LISTED = 3
 """Outliers that are listed one by one."""
-TO_SIGMA = 1.4826
-"""Median of absolute values over the standard deviation of normal noise, inverse."""
 
 
 def without_single_outliers(recording: Recording, line: NominalLine) -> Recording:
@@ -121,7 +120,7 @@ def _usual(changes: Floats) -> float:
     """Usual change, by the median of those that are known and not zero."""
     known = np.abs(changes[np.isfinite(changes)])
     known = known[known > 0]
-    return float(TO_SIGMA * np.median(known)) if len(known) else 0.0
+    return robust_sigma(known) if len(known) else 0.0
 
 
 def _spikes(signal: Floats, run: np.ndarray, least: float) -> Flags:

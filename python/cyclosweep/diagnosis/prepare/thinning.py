@@ -20,6 +20,7 @@ from cyclosweep.diagnosis.prepare.flanks import Flanks, find_flanks
 from cyclosweep.diagnosis.prepare.pieces import Pieces, find_pieces
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.recording import Recording
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 MOST_ROWS = 6000
@@ -114,7 +115,7 @@ def _without_outliers(curve: Floats) -> Floats:
     """What a straight line leaves of the twist, shape (samples,) [deg], without single outliers."""
     smooth = median_filter(curve, 5)
     apart = curve - smooth
-    most = SPIKE * 1.4826 * float(np.median(np.abs(apart)))
+    most = SPIKE * robust_sigma(apart)
     return np.where(np.abs(apart) > most, smooth, curve)
 
 
@@ -142,7 +143,7 @@ def _wanted_size(
     if resolution > 0:
         near = (np.diff(pieces.of_sample) == 0) & (side[1:] * side[:-1] > 0)
         step = np.diff(curve)[near]
-        spread = 1.4826 * float(np.median(np.abs(step - np.median(step)))) if len(step) else 0.0
+        spread = robust_sigma(step - np.median(step)) if len(step) else 0.0
         if spread < np.sqrt(2.0) * COARSE * resolution:
             return 1
     ends = 2 * int(np.count_nonzero(~pieces.dwell))
@@ -177,7 +178,7 @@ def averaging_error(curve: Floats, blocks: Rows, usable: Flags) -> float:
     bend = (row[1:-1] - 0.5 * (row[:-2] + row[2:]))[side]
     if not len(bend):
         return 0.0
-    noise = 1.4826 * float(np.median(np.abs(bend)))
+    noise = robust_sigma(bend)
     square = float(bend @ bend)
     if square <= 0.0:
         return 0.0

@@ -8,6 +8,7 @@ makes, and like friction, which holds the shaft through its small reversals.
 
 import numpy as np
 
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Floats, Ints
 
 REACHES = (2, 3, 5, 8, 12, 18, 27)
@@ -70,7 +71,7 @@ def torque_without_noise(
     beyond = np.divide(torque_nm - nearest, left, out=np.zeros_like(left), where=left > 0.0)
     if not np.any(left > 0.0):
         return torque_nm, 0.0
-    noise = 1.4826 * float(np.median(np.abs(beyond[left > 0.0])))
+    noise = robust_sigma(beyond[left > 0.0])
     steady = (left > 0.0) & (np.abs(beyond) <= CORNER * noise)
     if compliance_deg_per_nm * noise <= SMALL * mismatch_deg:
         return torque_nm, 0.0
@@ -84,7 +85,7 @@ def torque_without_noise(
         agrees = agrees & (low <= high)
         smooth[:, agrees] = fitted[:, agrees]
     ripple, jitter = (both - smooth)[:, steady]
-    size = 1.4826 * float(np.median(np.abs(jitter)))
+    size = robust_sigma(jitter)
     power = float(ripple @ ripple)
     if compliance_deg_per_nm * np.sqrt(power) <= SEEN * size:
         return torque_nm, 0.0

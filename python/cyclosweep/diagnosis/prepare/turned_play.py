@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from cyclosweep.recording.robust import sigma_by_second_differences
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 REACHES = (1, 2, 4, 8, 16, 32, 64)
@@ -121,9 +122,9 @@ def _clear_of_noise(twist: Floats, angle: Floats) -> float:
     -------
     float
     """
-    bend = np.diff(angle - twist, 2)
-    sigma = 1.4826 * float(np.median(np.abs(bend))) / np.sqrt(6.0) if len(bend) else 0.0
-    return CLEAR_OF_NOISE * sigma
+    if len(angle) < 3:
+        return 0.0
+    return CLEAR_OF_NOISE * sigma_by_second_differences(angle - twist)
 
 
 def _turns_freely(twist: Floats, angle: Floats, least: float) -> Flags:
