@@ -3,8 +3,8 @@
 import numpy as np
 
 import cyclosweep as cs
-from cyclosweep.report import HeldOut, Hypothesis, ReportData
-from cyclosweep.result import Answer, answer_of
+from cyclosweep.report import HeldOut, ReportData
+from cyclosweep.result import Answer, Hypothesis, answer_of
 from cyclosweep.result.effects import Outcome
 
 C = 2.73  # compliance at the input [deg/(N m)]

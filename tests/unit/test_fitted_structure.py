@@ -122,7 +122,7 @@ def test_rows_left_out_are_predicted_once_and_never_fitted(
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_strength_counts_independent_rows(structure: FittedStructure, kind: str) -> None:
+def test_share_of_independent_rows(structure: FittedStructure, kind: str) -> None:
     if kind == "contact":
         assert structure.independent_share == 1.0
     else:

@@ -21,7 +21,9 @@ def test_the_loads_are_said_in_newton_metres() -> None:
         assert plan is not None
         largest = float(np.abs(diagnosis.recording.torque_nm).max())
         assert len(plan.loads_nm) >= 3
-        assert 0.29 * largest < max(plan.loads_nm) < 1.45 * largest
+        (of_menu,) = [each for each in MENU if each.words == plan.program]
+        expected = [share * largest for share in of_menu.shares]
+        assert plan.loads_nm == pytest.approx(expected, rel=5e-3)
         assert plan.rig_programme == "weights-and-protractor"
 
 

@@ -234,7 +234,7 @@ def _folder_table(series: Series) -> Table:
     from rich.table import Table
 
     from cyclosweep.report.series_page import heading, verdict_of
-    from cyclosweep.report.wording import number, plain
+    from cyclosweep.report.wording import number
     from cyclosweep.result.series import MEASURES
 
     rows = series.table.to_dicts()
@@ -243,7 +243,7 @@ def _folder_table(series: Series) -> Table:
     room = max(shutil.get_terminal_size().columns - ROOM_OF_VALUES, SHORTEST_NAME)
     table.add_column("recording", no_wrap=True)
     for condition in series.conditions:
-        table.add_column(plain(condition))
+        table.add_column(readable(condition))
     table.add_column("verdict")
     measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
     for measure in measures:

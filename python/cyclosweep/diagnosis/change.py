@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.conclude import Conclusion
-from cyclosweep.diagnosis.growth import growth
+from cyclosweep.diagnosis.growth import LEAST_GROWTH, LEVEL, growth
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.sweeps import FEWEST_ROWS, Sweep, equal_sweeps
 from cyclosweep.result import DriveChange
@@ -21,13 +21,9 @@ FEWEST_SWEEPS = 6
 """Equal sweeps beyond one a group from which a trend is told from scatter."""
 DRAWS = 1999
 """Orders of the sweeps that are tried at random."""
-LEVEL = 0.002
-"""Share of these orders that may show as large a trend: one false alarm in 500 steady drives."""
 CLEANED_LEVEL = 0.02
 """Probability by chance that growth may have once the named effects are removed: the measured one
 has been tested already, this asks only whether an effect explains it."""
-LEAST_CHANGE = 0.03
-"""Change of the compliance that matters: below it a stiffness still holds to two digits."""
 LEAST_RATIO = 4.0
 """Trend over its standard error from the scatter of equal sweeps, as a second guard: neighbouring
 sweeps share slow noise, which the random orders do not."""
@@ -64,7 +60,7 @@ class Trend:
         """Whether the drive changed, beyond scatter and by as much as matters."""
         change = abs(self.slope) * (self.last - self.first)
         beyond = abs(self.slope) >= LEAST_RATIO * self.std_error
-        return self.p_value <= LEVEL and beyond and change >= LEAST_CHANGE
+        return self.p_value <= LEVEL and beyond and change >= LEAST_GROWTH
 
 
 def find_change(concluded: Conclusion) -> DriveChange | None:
@@ -140,7 +136,7 @@ def _by_growth(concluded: Conclusion, cleaned_deg: Floats) -> DriveChange | None
     if measured is None or not measured.is_change:
         return None
     left = growth(problem.history, cleaned_deg)
-    if left is None or left.p_value > CLEANED_LEVEL or left.logarithm < LEAST_CHANGE:
+    if left is None or left.p_value > CLEANED_LEVEL or left.logarithm < LEAST_GROWTH:
         return None
     compliance = concluded.accepted.fit.history.compliance_deg_per_nm
     return _drive_change(

@@ -23,9 +23,10 @@ COMPARED_AT = 0.9
 FEWEST_CYCLES = 8
 """Cycles compared with the one before, from which growth is told from scatter."""
 LEVEL = 0.002
-"""Probability of as much growth by chance that is accepted."""
+"""Probability by chance of as much change that is accepted: one false alarm in 500 steady
+drives."""
 LEAST_GROWTH = 0.03
-"""Growth over all cycles that matters: below it a stiffness still holds to two digits."""
+"""Change over the recording that matters: below it a stiffness still holds to two digits."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from itertools import chain, pairwise
 import numpy as np
 
 from cyclosweep.diagnosis.conclude import Conclusion
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import MOST_POSITIONS, MOST_RUNS
 from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
 from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.search import Search
@@ -27,10 +28,6 @@ MOST_TAKEN = 0.5
 """Share of its rows that earlier regions may hold."""
 BANDS = 8
 """Bands of torque on either side of zero."""
-MOST_RUNS = 60
-"""Runs up to which each run is a cell."""
-MOST_POSITIONS = 40
-"""Mesh positions up to which each is a cell."""
 SECTORS = 12
 """Parts of a turn that are cells where the mesh was turned past more positions."""
 LEAST_CHANCE = 0.002

@@ -5,7 +5,12 @@ from collections.abc import Callable
 from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, charges, cost, friction_first
+from cyclosweep.diagnosis.identify.friction_first import (
+    CONVERGED,
+    charges,
+    friction_first,
+    structure_cost,
+)
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.verdict import accepted_in_stages, decide
@@ -101,14 +106,14 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
             fit(joined.problem, noise, kept, near, rounds=CONVERGED)
             for kept, near in offered.items()
         ),
-        key=cost,
+        key=structure_cost,
     )
     likelier = afresh.loss + charges(afresh) - going_on.loss - charges(going_on)
     if likelier <= CLEARLY_LIKELIER:
         return False
     # What is left of either may be error of the laws, of which there is less than there are rows.
     within_noise = going_on.rmse_deg < noise.spread_deg
-    return within_noise or cost(afresh) - cost(going_on) > CLEARLY
+    return within_noise or structure_cost(afresh) - structure_cost(going_on) > CLEARLY
 
 
 def friction_of(joined: Search, left_deg: float) -> FittedStructure | None:

@@ -9,8 +9,8 @@ from cyclosweep.design.json_files import JsonSource, json_object, name_of
 from cyclosweep.errors import InputError
 from cyclosweep.notebook import html_table
 from cyclosweep.recording import Recording
-from cyclosweep.report import HeldOut, Hypothesis, ReportData, write_report
-from cyclosweep.result import Answer, Size, answer_of, content_of, json_text
+from cyclosweep.report import HeldOut, ReportData, write_report
+from cyclosweep.result import Answer, Hypothesis, Size, Verdict, answer_of, content_of, json_text
 from cyclosweep.result.content import EffectContent, MismatchContent
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
@@ -54,8 +54,8 @@ class Diagnosis:
     provenance: dict[str, str] = field(default_factory=dict)
 
     @property
-    def verdict(self) -> str:
-        """One of the six verdicts."""
+    def verdict(self) -> Verdict:
+        """What the diagnosis concludes, one of `cyclosweep.result.Verdict`."""
         return self.answer.verdict
 
     @property

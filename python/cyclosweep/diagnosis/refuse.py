@@ -3,6 +3,7 @@
 import numpy as np
 
 from cyclosweep.design.drive import Drive
+from cyclosweep.diagnosis.identify.fit import FEWEST_FITTED
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.plausibility import likely_mistakes
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -10,8 +11,6 @@ from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.recording import Recording
 from cyclosweep.result import Answer, NextExperiment, NoiseEstimate, Repair, SelfCheck, Verdict
 
-FEWEST_ROWS = 6
-"""Fewer readings in contact than this cannot even calibrate the baseline."""
 LEAST_CHANGE = 0.02
 """Share of the largest torque by which the torque has to change for a compliance to be read."""
 PLAUSIBLE = (0.1, 10.0)
@@ -82,11 +81,11 @@ def check_prepared(problem: Problem, drive: Drive) -> None:
     NoDiagnosisError
         Too few readings, a torque that hardly changes, or an impossible compliance.
     """
-    if problem.count < FEWEST_ROWS:
+    if problem.count < FEWEST_FITTED:
         raise NoDiagnosisError(
             "INSUFFICIENT_DATA",
             f"only {problem.count} readings are in contact and to be fitted; at least "
-            f"{FEWEST_ROWS} are needed to calibrate stiffness, free play and datum",
+            f"{FEWEST_FITTED} are needed to calibrate stiffness, free play and datum",
             RECORD_MORE.format("more readings under load, loading and unloading"),
         )
     torque = problem.history.applied_nm[problem.fitted]
@@ -119,7 +118,7 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
         With the factor named where it is near one that a unit or a side explains.
     """
     lower, upper = PLAUSIBLE
-    ratio = compliance / problem.nominal_compliance
+    ratio = compliance / problem.nominal_compliance_deg_per_nm
     if lower <= ratio <= upper:
         return
     torque, angle = problem.history.applied_nm, problem.angle_deg
@@ -139,7 +138,7 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
     raise NoDiagnosisError(
         "DATA_FAULT",
         f"the compliance at the {problem.recording.side} shaft is {compliance:.4g} deg/(N m), "
-        f"{ratio:.4g} times the nominal {problem.nominal_compliance:.4g}{hint}",
+        f"{ratio:.4g} times the nominal {problem.nominal_compliance_deg_per_nm:.4g}{hint}",
         SETTINGS.format("unit, side or drive"),
     )
 
@@ -162,8 +161,8 @@ def _likely(problem: Problem, factor: float, ratio: float) -> tuple[str, ...]:
         In words, empty where none fits.
     """
     play = None
-    if not problem.one_sided and problem.nominal_free_play > 0:
-        play = problem.history.free_play_deg / problem.nominal_free_play
+    if not problem.one_sided and problem.nominal_free_play_deg > 0:
+        play = problem.history.free_play_deg / problem.nominal_free_play_deg
     return likely_mistakes(factor, play, ratio) or likely_mistakes(factor, None, ratio)
 
 

@@ -122,7 +122,7 @@ def calibrated_parameters(
         compares the whole elasticity with the drive's: line, and effects that bend it.
     """
     errors = fitted.line_errors
-    nominal = problem.nominal_compliance
+    nominal = problem.nominal_compliance_deg_per_nm
     whole, whole_error = compliance_with_curve(fitted)
     found = {
         "compliance_scale": CalibratedParameter(
@@ -135,7 +135,7 @@ def calibrated_parameters(
             unit="deg/(N m)",
         ),
         "free_play_deg": CalibratedParameter(
-            nominal=problem.nominal_free_play,
+            nominal=problem.nominal_free_play_deg,
             estimate=fitted.history.free_play_deg,
             std_error=None if problem.one_sided else finite(errors[2]),
             unit="deg",
@@ -175,7 +175,7 @@ def calibration_of(base: FittedStructure, problem: Problem) -> Mapping[str, Cali
         return fitted
     read = problem.history
     values = {
-        "compliance_scale": read.compliance_deg_per_nm / problem.nominal_compliance,
+        "compliance_scale": read.compliance_deg_per_nm / problem.nominal_compliance_deg_per_nm,
         "compliance_deg_per_nm": read.compliance_deg_per_nm,
         "free_play_deg": read.free_play_deg,
         "datum_deg": read.datum_deg,

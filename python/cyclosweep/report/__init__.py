@@ -5,11 +5,9 @@ from cyclosweep.report.html import write_html
 from cyclosweep.report.png import write_png
 from cyclosweep.report.terminal import print_summary, summary
 from cyclosweep.report.write import write_report
-from cyclosweep.result import Hypothesis
 
 __all__ = [
     "HeldOut",
-    "Hypothesis",
     "ReportData",
     "print_summary",
     "summary",

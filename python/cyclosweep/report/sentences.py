@@ -12,14 +12,13 @@ from cyclosweep.report.wording import (
     angle,
     interval,
     number,
-    plain,
     probability,
     with_error,
     without_unit,
 )
 from cyclosweep.result import EffectParameter, FoundEffect, Region
 from cyclosweep.result.contradictions import NONE_NEEDED
-from cyclosweep.result.words import telling_digits
+from cyclosweep.result.words import readable, telling_digits
 
 LEAST_BACKWARDS = 0.01
 """Friction below zero, over the largest torque, from which a loop runs the wrong way round."""
@@ -34,7 +33,7 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
     """Name, size, evidence, physics and what to look at of every accepted effect."""
     return [
         (
-            plain(effect.name),
+            readable(effect.name),
             _size(effect),
             _evidence(effect),
             effect.physics,
@@ -47,7 +46,7 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
 def look_at(data: ReportData) -> list[str]:
     """What to look at on the drive, by effect."""
     return [
-        f"{plain(effect.name)}: {LOOK_AT[effect.name]}"
+        f"{readable(effect.name)}: {LOOK_AT[effect.name]}"
         for effect in data.result.effects
         if effect.name in LOOK_AT
     ]
@@ -109,7 +108,7 @@ def possible(data: ReportData) -> list[str]:
     """Upper bounds of the effects that may be the cause."""
     named = _possible(data)
     return [
-        f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}"
+        f"{readable(bound.name)}: at most {angle(bound.upper95_deg)}"
         for bound in data.result.undecided
         if bound.name in named
     ]
@@ -128,9 +127,10 @@ def bounds(data: ReportData) -> list[str]:
     above = [bound for bound in undecided if bound.upper95_deg >= tolerance]
     below = [bound for bound in undecided if bound not in above] + list(data.result.ruled_out)
     return [
-        f"{plain(bound.name)}: could be as large as {angle(bound.upper95_deg)}, above the tolerance"
+        f"{readable(bound.name)}: could be as large as {angle(bound.upper95_deg)}, "
+        "above the tolerance"
         for bound in above
-    ] + [f"{plain(bound.name)}: at most {angle(bound.upper95_deg)}" for bound in below]
+    ] + [f"{readable(bound.name)}: at most {angle(bound.upper95_deg)}" for bound in below]
 
 
 def unknown(data: ReportData) -> str:
@@ -140,7 +140,7 @@ def unknown(data: ReportData) -> str:
         return ""
     place = f", {rest.place}" if rest.place else ""
     return (
-        f"{plain(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
+        f"{readable(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
         "No effect of the vocabulary explains it."
     )
 
@@ -165,7 +165,7 @@ def untestable(data: ReportData) -> list[str]:
     rows = []
     for row in data.result.not_testable:
         needs = f" Needs: {row.needs}." if row.needs else ""
-        rows.append(f"{plain(row.name)}: {row.reason.rstrip('.')}.{needs}")
+        rows.append(f"{readable(row.name)}: {row.reason.rstrip('.')}.{needs}")
     return rows
 
 
@@ -179,7 +179,7 @@ def explanations(data: ReportData) -> list[str]:
     rows = []
     for explanation in data.result.explanation_set:
         names = [*explanation.effects, *explanation.without_name]
-        text = " + ".join(map(plain, names)) or "nothing missing"
+        text = " + ".join(map(readable, names)) or "nothing missing"
         rows.append(f"{text}: probability {probability(explanation.probability)}")
     return rows
 
@@ -201,7 +201,7 @@ def next_experiment(data: ReportData) -> str:
         )
     if plan.separates:
         text += f" It would {'show or rule out' if len(plan.separates) == 1 else 'separate'} "
-        text += " from ".join(map(plain, plan.separates)) + "."
+        text += " from ".join(map(readable, plan.separates)) + "."
     if plan.detectability:
         text += f" It would show at {number(plan.detectability, 2)} times the noise."
     if plan.minutes:

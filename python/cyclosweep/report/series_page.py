@@ -11,8 +11,9 @@ from cyclosweep.atomic import write_text
 from cyclosweep.page import bullets, document
 from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
 from cyclosweep.report.svg import figure_svg
-from cyclosweep.report.wording import KNOWN_AND_MORE, VERDICTS, interval, number, plain
+from cyclosweep.report.wording import KNOWN_AND_MORE, VERDICTS, interval, number
 from cyclosweep.result.series import MEASURES, Trend
+from cyclosweep.result.words import readable
 
 Row = Mapping[str, Any]
 
@@ -108,7 +109,7 @@ def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
         )
         figure = Figure(
             key=f"trend-{condition}",
-            title=f"By {plain(condition)}",
+            title=f"By {readable(condition)}",
             caption="",
             panels=panels,
             columns=len(panels),
@@ -120,10 +121,10 @@ def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
             cells = "".join(_mean(trend, level.value) for trend in own)
             lines.append(f"<tr><td>{number(level.value)}</td>{cells}</tr>")
         parts.append(
-            f"<section><h2>By {escape(plain(condition))}</h2><ul>{said}</ul>"
+            f"<section><h2>By {escape(readable(condition))}</h2><ul>{said}</ul>"
             f"<figure>{figure_svg(figure)}<figcaption>Rings: recordings. Line and bars: mean of "
             "each value with its 95 % interval.</figcaption></figure>"
-            f'<div class="scroll"><table><thead><tr><th>{escape(plain(condition))}</th>{head}'
+            f'<div class="scroll"><table><thead><tr><th>{escape(readable(condition))}</th>{head}'
             f"</tr></thead><tbody>{''.join(lines)}</tbody></table></div></section>"
         )
     return "".join(parts)
@@ -141,7 +142,7 @@ def _mean(trend: Trend, value: float) -> str:
 def heading(measure: str) -> str:
     """Measure with its unit."""
     unit = UNITS.get(measure)
-    name = MEASURES.get(measure, plain(measure))
+    name = MEASURES.get(measure, readable(measure))
     return f"{name} ({unit})" if unit else name
 
 
@@ -168,8 +169,8 @@ def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
     if bars_x:
         series.append(Line(np.array(bars_x), np.array(bars_y), "95 % interval", AFTER, 1.2))
     return Panel(
-        title=MEASURES.get(trend.measure, plain(trend.measure)).capitalize(),
-        x_label=plain(trend.condition),
+        title=MEASURES.get(trend.measure, readable(trend.measure)).capitalize(),
+        x_label=readable(trend.condition),
         y_label=heading(trend.measure),
         series=tuple(series),
         x_names=tuple((float(value), number(float(value))) for value in at),
@@ -179,7 +180,7 @@ def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
 def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
     """Row of each recording: conditions, verdict, measures with intervals, effects with sizes."""
     measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
-    head = ["recording", *map(plain, conditions), "verdict", *map(heading, measures), "effects"]
+    head = ["recording", *map(readable, conditions), "verdict", *map(heading, measures), "effects"]
     words = {0, len(conditions) + 1, len(head) - 1}
 
     def cell(tag: str, place: int, content: str) -> str:
@@ -222,7 +223,7 @@ def _sizes(row: Row) -> list[str]:
     """Effects of a recording with their sizes."""
     names = str(row.get("effects") or "").split(" + ")
     return [
-        f"{plain(name)} {number(row.get(f'{name}_deg'))} deg "
+        f"{readable(name)} {number(row.get(f'{name}_deg'))} deg "
         f"({interval((row[f'{name}_deg_low'], row[f'{name}_deg_high']))})"
         for name in names
         if name and row.get(f"{name}_deg_low") is not None

@@ -14,13 +14,12 @@ from cyclosweep.report.wording import (
     angle,
     interval,
     number,
-    plain,
     probability,
     with_error,
     without_unit,
 )
 from cyclosweep.result import CalibratedParameter, Reading
-from cyclosweep.result.words import listed, telling_digits
+from cyclosweep.result.words import listed, readable, telling_digits
 
 FRICTIONS = {"friction_hysteresis", "load_dependent_friction"}
 OPEN_THE_LOOP = ("creep", "viscous_drag", "thermal_drift", "datum_drift")
@@ -131,7 +130,7 @@ def hypothesis_table(data: ReportData) -> Table | None:
         digits = 3 if row.size_deg is None else telling_digits(row.size_deg, row.ci95_deg)
         rows.append(
             (
-                plain(row.name),
+                readable(row.name),
                 row.outcome,
                 NOTHING if row.absorbed_share is None else f"{100 * row.absorbed_share:.0f} %",
                 number(row.size_deg, digits),
@@ -227,8 +226,10 @@ def self_check_table(data: ReportData) -> Table | None:
         ("found, when the named effect is there", _percent(check.power)),
     ]
     for name, shares in check.confusion.items():
-        text = ", ".join(f"{plain(called)} {_percent(share)}" for called, share in shares.items())
-        rows.append((f"twin with {plain(name)} is called", text))
+        text = ", ".join(
+            f"{readable(called)} {_percent(share)}" for called, share in shares.items()
+        )
+        rows.append((f"twin with {readable(name)} is called", text))
     return Table(
         "Self-check on synthetic twins of this recording",
         ("", "share of twins"),

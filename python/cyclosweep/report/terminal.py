@@ -17,12 +17,11 @@ from cyclosweep.report.wording import (
     angle,
     interval,
     number,
-    plain,
     probability,
     verdict_words,
 )
 from cyclosweep.result import FoundEffect, Verdict
-from cyclosweep.result.words import telling_digits
+from cyclosweep.result.words import readable, telling_digits
 
 NARROW = 60
 """Columns below which tables are written as lines, each with its own words."""
@@ -205,10 +204,10 @@ class _Effects:
             ends = interval(effect.size_deg.ci95, digits)
             p, e = probability(effect.p_value), number(effect.e_value, 2)
             if options.max_width < NARROW:
-                yield Text(plain(effect.name), style="bold")
+                yield Text(readable(effect.name), style="bold")
                 yield Padding(Text(f"{size}\n95 %: {ends} deg\np {p}, e {e}"), (0, 0, 0, 2))
             else:
-                table.add_row(Text(plain(effect.name)), size, ends, p, e)
+                table.add_row(Text(readable(effect.name)), size, ends, p, e)
         if table.row_count:
             yield table
 

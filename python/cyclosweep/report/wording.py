@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from cyclosweep.result import Answer, Verdict
 from cyclosweep.result.part import NORMAL_95
+from cyclosweep.result.words import readable
 
 NOTHING = "–"
 """What is printed where there is no number."""
@@ -133,17 +134,6 @@ def probability(value: float | None) -> str:
     return "> 0.999" if 0.999 < value <= 1 else number(value, 2)
 
 
-def plain(name: str) -> str:
-    """Write a name of the vocabulary in words.
-
-    Examples
-    --------
-    >>> plain("overload_softening")
-    'overload softening'
-    """
-    return name.replace("_", " ")
-
-
 def without_unit(name: str) -> str:
     """Write the name of a parameter in words, without its unit.
 
@@ -152,7 +142,7 @@ def without_unit(name: str) -> str:
     >>> without_unit("free_play_deg")
     'free play'
     """
-    return plain(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
+    return readable(re.sub(r"_(deg|nm|s|c|nm_s_per_deg|deg_per_nm)$", "", name))
 
 
 POOR = 3.0

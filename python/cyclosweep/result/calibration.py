@@ -37,7 +37,7 @@ class Thinning(Part):
     averaged: int
     """Usual number of neighbouring samples averaged in a row; 1: none were averaged."""
     every: int
-    """Every how manieth of these rows was taken; 1: all of them."""
+    """One of this many of these rows was taken; 1: all of them."""
     sample_sigma_deg: float | None = None
     """Standard deviation of the noise of one sample [deg]; that of a row is under ``noise``."""
     sample_autocorrelation: float | None = None

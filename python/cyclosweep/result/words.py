@@ -95,7 +95,13 @@ def falls(before: float | None, after: float | None) -> bool:
 
 
 def readable(name: str) -> str:
-    """Name of an effect in plain words."""
+    """Name of an effect, or of another entry of a table, in words.
+
+    Examples
+    --------
+    >>> readable("overload_softening")
+    'overload softening'
+    """
     return name.replace("_", " ")
 
 

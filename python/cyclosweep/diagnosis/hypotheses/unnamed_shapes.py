@@ -9,6 +9,11 @@ from functools import partial
 
 import numpy as np
 
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
+    FEWEST_STATES,
+    MOST_POSITIONS,
+    MOST_RUNS,
+)
 from cyclosweep.diagnosis.hypotheses.shape_columns import (
     after,
     beyond,
@@ -254,7 +259,7 @@ def _cells(history: History) -> Iterator[UnnamedShape]:
 
 def _runs(history: History) -> Iterator[UnnamedShape]:
     """A compliance of its own for each run, and single runs apart."""
-    if not 3 <= history.run_count <= 60:
+    if not FEWEST_STATES <= history.run_count <= MOST_RUNS:
         return
     runs = np.arange(history.run_count)
     yield UnnamedShape(
@@ -326,7 +331,7 @@ def _positions(history: History) -> Iterator[UnnamedShape]:
         return
     place = mesh_positions(history.crank_deg)
     places = np.unique(place)
-    if not 3 <= len(places) <= 40:
+    if not FEWEST_STATES <= len(places) <= MOST_POSITIONS:
         return
     which = np.searchsorted(places, place)
     one = (which[:, None] == np.arange(len(places))).astype(np.float64)

@@ -21,8 +21,8 @@ from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import EffectValue, Model
 
-FEWEST_ROWS = 6
-"""Fewer rows than this cannot even calibrate the baseline."""
+FEWEST_FITTED = 6
+"""Fewer readings in contact than this cannot even calibrate the baseline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ class ContactFit(FittedStructure):
         found = []
         for label, rows in parts:
             train, train_noise = (problem, noise) if kept_runs else restrict(problem, noise, ~rows)
-            if train.count < FEWEST_ROWS or not np.any(train.held_out):
+            if train.count < FEWEST_FITTED or not np.any(train.held_out):
                 continue
             base = fit(train, train_noise, ())
             repaired = base

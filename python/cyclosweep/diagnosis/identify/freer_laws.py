@@ -24,7 +24,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.testability import size_of
 
-MOST_GROWTH = 1.5
+MOST_OWN_GROWTH = 1.5
 """Size of a law in its freer form over its size before, from which it has taken the place of other
 effects."""
 ROUNDS = 2
@@ -101,7 +101,7 @@ def freer_instead_of_others(
                 continue
             if makes_others_grow(joint, len(others), start.fit):
                 continue
-            if np.std(size_of(joint, len(others))) > MOST_GROWTH * np.std(before):
+            if np.std(size_of(joint, len(others))) > MOST_OWN_GROWTH * np.std(before):
                 continue
             rank = amplitude_count(joint, len(others)) - known
             added = float(evidence(search.gain(start.fit, joint), rank))

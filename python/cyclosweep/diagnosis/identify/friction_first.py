@@ -75,7 +75,7 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     for term in _freer_terms(search, *STARTS[0]):
         alone = _fitted(noise, [term], baseline, best) if term.slips else None
         offered += [] if alone is None else [alone]
-    best = from_better_start(noise, min(offered, key=cost), EFFECT_CHARGE)
+    best = from_better_start(noise, min(offered, key=structure_cost), EFFECT_CHARGE)
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
     others = [term for term in best.terms if not term.slips]
@@ -115,7 +115,7 @@ def _does_as_well(
     bool
     """
     other = _fitted(noise, terms, before, best)
-    return other is not None and cost(other) <= cost(best)
+    return other is not None and structure_cost(other) <= structure_cost(best)
 
 
 def _drags(search: Search) -> list[list[Term]]:
@@ -282,8 +282,8 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
     """
     turned = best
     for other in in_other_states(noise, best):
-        least = cost(best) - charge if turned is best else cost(turned)
-        if cost(other) < least:
+        least = structure_cost(best) - charge if turned is best else structure_cost(turned)
+        if structure_cost(other) < least:
             turned = other
     return turned
 
@@ -340,10 +340,10 @@ def _prune(noise: Noise, best: FittedStructure) -> FittedStructure:
         rest = [term for term in best.terms if term is not left_out]
         without = _fitted(noise, rest, best, best)
         fits += [] if without is None else [without]
-    return min(fits, key=cost)
+    return min(fits, key=structure_cost)
 
 
-def cost(fitted: FittedStructure) -> float:
+def structure_cost(fitted: FittedStructure) -> float:
     """Minus twice the log likelihood of a residual's pieces, and the charges.
 
     Parameters

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, cost
+from cyclosweep.diagnosis.identify.friction_first import CONVERGED, PARAMETER_CHARGE, structure_cost
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.simulation.effects import Shape
 from cyclosweep.simulation.effects.base import Effect
@@ -112,7 +112,7 @@ def _better(best: FittedStructure, shapes: Mapping[int, Shape]) -> FittedStructu
         if signed is None:
             return best
         other = signed
-    ahead = cost(best) - cost(other)
+    ahead = structure_cost(best) - structure_cost(other)
     if abs(ahead) <= PARAMETER_CHARGE:
         # Both are within the noise, or about as far beyond it.
         more = len(other.fit_parameters) - len(best.fit_parameters)

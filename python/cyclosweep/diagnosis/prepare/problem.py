@@ -48,6 +48,8 @@ class Problem:
         Step of the angle reading [deg].
     torque_noise_nm : float
         Noise of the torque reading that was smoothed [N m]; zero: none that matters.
+    nominal_compliance_deg_per_nm, nominal_free_play_deg : float
+        Line of the published model, without calibration [deg/(N m)], [deg].
     one_history : bool
         Runs are taken to go on from each other although the recording does not say so.
     """
@@ -66,8 +68,8 @@ class Problem:
     loop_width_deg: float
     resolution_deg: float
     torque_noise_nm: float
-    nominal_compliance: float
-    nominal_free_play: float
+    nominal_compliance_deg_per_nm: float
+    nominal_free_play_deg: float
     one_history: bool = False
 
     @property
@@ -249,8 +251,8 @@ def prepare(
         loop_width_deg=flanks.loop_width_deg,
         resolution_deg=recording.angle_resolution_deg,
         torque_noise_nm=torque_noise,
-        nominal_compliance=line.compliance_deg_per_nm,
-        nominal_free_play=line.free_play_deg,
+        nominal_compliance_deg_per_nm=line.compliance_deg_per_nm,
+        nominal_free_play_deg=line.free_play_deg,
     )
 
 

@@ -23,7 +23,7 @@ class Rows:
     averaged : int
         Usual number of samples averaged in a row.
     every : int
-        Every how manieth of such rows is taken.
+        One of this many of such rows is taken; 1: all of them.
     on_one_flank : ndarray of bool, shape (n,), or None
         Rows whose samples are all in contact with the same flank; None where nothing is averaged.
     """

@@ -28,8 +28,9 @@ MOST_ROWS = 6000
 MOST_ERROR = 3.0
 """Size of the error of averaging, over the noise and summed over all rows [-].
 
-It is the signal-to-noise ratio d of that error; a test that knows an effect beforehand needs 3.6 to
-find it in nine of ten recordings. With nothing but noise the estimate passes 3 hardly ever.
+It is the signal-to-noise ratio d of that error; a test that knows an effect beforehand needs 3.9 to
+find it in nine of ten recordings, at one false alarm in a hundred. With nothing but noise the
+estimate passes 3 hardly ever.
 """
 LEAST_KEPT = 0.9
 """Share of the samples that has to be in full rows; blocks are made smaller until it is."""

@@ -63,7 +63,9 @@ def findings(
             found.append(_stiffening(problem, forecast))
         found.append(_stiffness(problem, unsteady=unsteady))
     else:
-        found.append(_finding("stiffness", "Not reported, for the same reason as the play."))
+        found.append(
+            Finding(topic="stiffness", text="Not reported, for the same reason as the play.")
+        )
     named = named_staircase(forecast)
     if named is not None:
         found.append(named)
@@ -89,7 +91,7 @@ def hidden_by_friction(problem: Problem, forecast: Forecast) -> str | None:
     """
     rows = problem.whole_fitted | problem.whole_held_out
     moved = float(np.ptp(problem.angle_deg[rows]))
-    nominal = 2.0 * problem.nominal_free_play
+    nominal = 2.0 * problem.nominal_free_play_deg
     largest = problem.largest_torque_nm
     limit = sum(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
     if limit > MOST_FRICTION * largest:
@@ -102,20 +104,6 @@ def hidden_by_friction(problem: Problem, forecast: Forecast) -> str | None:
         f"{sign} the largest torque of {largest:.3g} N m. Friction that does not break away fully "
         "looks like a smaller play and a stiffer drive; larger ramps are needed"
     )
-
-
-def _finding(topic: str, text: str) -> Finding:
-    """One finding of a topic and its text.
-
-    Parameters
-    ----------
-    topic, text : str
-
-    Returns
-    -------
-    Finding
-    """
-    return Finding(topic=topic, text=text)
 
 
 def _half_width_of_play(forecast: Forecast) -> float:
@@ -152,9 +140,9 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     Finding
     """
     if hidden is not None:
-        return _finding("play", f"Not reported, {HIDDEN}: {hidden}.")
+        return Finding(topic="play", text=f"Not reported, {HIDDEN}: {hidden}.")
     if problem.one_sided:
-        return _finding("play", "Not reported: only one flank was loaded.")
+        return Finding(topic="play", text="Not reported: only one flank was loaded.")
     dead = 2.0 * forecast.model.free_play_deg
     half = 2 * _half_width_of_play(forecast)
     text = (
@@ -167,7 +155,7 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
             " It leaves out the soft start of the contacts, which the free play by straight lines "
             "contains."
         )
-    return _finding("play", text)
+    return Finding(topic="play", text=text)
 
 
 def _friction(forecast: Forecast, error_nm: float) -> Finding:
@@ -185,9 +173,9 @@ def _friction(forecast: Forecast, error_nm: float) -> Finding:
     """
     limit = next(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
     half = NORMAL_95 * error_nm
-    return _finding(
-        "friction hysteresis",
-        f"Coulomb friction of {limit:.3g} ± {half:.2g} N m (95 %) at the measured shaft: the "
+    return Finding(
+        topic="friction hysteresis",
+        text=f"Coulomb friction of {limit:.3g} ± {half:.2g} N m (95 %) at the measured shaft: the "
         f"loop is {2 * limit:.3g} N m wide where the shaft leaves a flank.",
     )
 
@@ -207,9 +195,9 @@ def _load_friction(forecast: Forecast, error: float) -> Finding:
     """
     share = next(t.amplitude for t in forecast.terms if t.name == "load_dependent_friction")
     half = NORMAL_95 * error
-    return _finding(
-        "friction that grows with load",
-        f"{100 * share:.0f} ± {100 * half:.0f} % (95 %) of the transmitted torque on top of "
+    return Finding(
+        topic="friction that grows with load",
+        text=f"{100 * share:.0f} ± {100 * half:.0f} % (95 %) of the transmitted torque on top of "
         "it: the loop opens with load, and the shaft stands still where unloading starts.",
     )
 
@@ -251,9 +239,9 @@ def _stiffening(problem: Problem, forecast: Forecast) -> Finding:
         return 0.5 * ((ends[0] - ends[1]) + (ends[3] - ends[2])) / (high - low)
 
     soft, stiff = slope(0.0, 0.1 * top), slope(0.5 * top, top)
-    return _finding(
-        "stiffening",
-        f"The elastic line at the {problem.recording.side} shaft is "
+    return Finding(
+        topic="stiffening",
+        text=f"The elastic line at the {problem.recording.side} shaft is "
         f"{soft / max(stiff, 1e-12):.2g} times steeper up to {0.1 * top:.2g} N m "
         f"({soft:.3g} deg/(N m)) than from {0.5 * top:.3g} to {top:.3g} N m "
         f"({stiff:.3g} deg/(N m)).",
@@ -293,23 +281,23 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
     Finding
     """
     if unsteady:
-        return _finding(
-            "stiffness",
-            "Not reported: the loops drift from run to run, so a slope mixes stiffness with "
+        return Finding(
+            topic="stiffness",
+            text="Not reported: the loops drift from run to run, so a slope mixes stiffness with "
             "creep, warming or wear. Let the drive settle and repeat.",
         )
     values = secant_stiffnesses(problem)
     if len(values) < 2:
         text = "Not reported: too few loading branches reach half of the torque."
-        return _finding("stiffness", text)
+        return Finding(topic="stiffness", text=text)
     top = float(np.abs(problem.history.applied_nm[problem.fitted]).max(initial=0.0))
     mean = float(values.mean())
     half = float(stats.t.ppf(0.975, len(values) - 1) * stats.sem(values))
     low, high = max(mean - half, 0.0), mean + half
     digits = telling_digits(mean, (low, high), 2)
-    return _finding(
-        "stiffness",
-        f"Loading branches alone, from {0.5 * top:.3g} to {top:.3g} N m: {mean:.{digits}g} N "
+    return Finding(
+        topic="stiffness",
+        text=f"Loading branches alone, from {0.5 * top:.3g} to {top:.3g} N m: {mean:.{digits}g} N "
         f"m/arcmin at the {problem.recording.side} shaft, 95 % interval {low:.{digits}g} to "
         f"{high:.{digits}g} ({60 * 180 / np.pi * mean:.3g} N m/rad); single "
         f"branches from {values.min():.2g} to {values.max():.2g}. Unlike the stiffness by straight "

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
+from cyclosweep.diagnosis.identify.repetition import FEWEST_CELLS, LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, refit
 from cyclosweep.diagnosis.whole_loop.step_order import step_order
@@ -20,6 +20,9 @@ SAME_RANGE = 0.2
 """Share of the range of torque within which the ends of two replicates agree."""
 SAME_PLACE = 2.0
 """Distance of two positions of the mesh that count as one [deg]."""
+BANDS = 19.99
+"""Bands of the load within which two runs are compared: twenty, of which the last one holds the
+largest load as well."""
 FEWEST_ROWS = 40
 """Least rows of a run that is compared with another."""
 MOST_RUNS = 6
@@ -130,7 +133,7 @@ def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
     history = fitted.history
     rows = problem.fitted | problem.held_out
     residual = problem.angle_deg - fitted.mean_deg
-    band = np.floor(np.abs(history.applied_nm) / history.largest_torque_nm * 19.99)
+    band = np.floor(np.abs(history.applied_nm) / history.largest_torque_nm * BANDS)
     cell = band * 4 + (history.side > 0) * 2 + (history.sense > 0)
     runs = _by_run(problem, rows)
     best = Repetition(0.0, 0)
@@ -138,7 +141,7 @@ def repetition(problem: Problem, fitted: FittedStructure) -> Repetition:
     for i, first in enumerate(runs):
         for second in runs[i + 1 :]:
             a, b = _means(residual, cell, first, second)
-            if len(a) >= 12 and np.std(a) > 0 and np.std(b) > 0:
+            if len(a) >= FEWEST_CELLS and np.std(a) > 0 and np.std(b) > 0:
                 found.append(Repetition(float(np.corrcoef(a, b)[0, 1]), len(a)))
     if found:
         middle = sorted(found, key=lambda r: r.correlation)

@@ -7,6 +7,7 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_words
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.result import Finding
+from cyclosweep.result.words import readable
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
 
@@ -31,7 +32,7 @@ def named_staircase(forecast: Forecast) -> Finding | None:
         if term.effect is not None and has_steps:
             amplitudes = np.array(value.amplitudes)
             law = term.effect.found_law(forecast.history, term.shape, amplitudes)
-            return Finding(topic="staircase", text=f"Named: {term.name.replace('_', ' ')}. {law}")
+            return Finding(topic="staircase", text=f"Named: {readable(term.name)}. {law}")
     return None
 
 

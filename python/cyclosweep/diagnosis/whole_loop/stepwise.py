@@ -28,7 +28,7 @@ from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, noise_besi
 from cyclosweep.diagnosis.whole_loop.usual_loop import (
     DECIDED,
     better,
-    cost,
+    forecast_cost,
     pruned,
     shows_torque_zero,
     usual_structure,
@@ -92,8 +92,8 @@ def whole_loop_structure(search: Search) -> Candidate | None:
     # Stretches that were left out guard against a structure that explains nothing. Between two of
     # them they decide badly (one crossing of the dead zone that comes late outweighs all the rest),
     # so that they are asked only where the likelihood does not decide.
-    least = min(cost(each) for each, _ in offered)
-    close = [pair for pair in offered if cost(pair[0]) < least + DECIDED]
+    least = min(forecast_cost(each) for each, _ in offered)
+    close = [pair for pair in offered if forecast_cost(pair[0]) < least + DECIDED]
     errors = [left_out_error(each) for each, _ in close]
     first = int(np.argmin(errors))
     if errors[first] >= (1.0 - LEAST_GAIN) * left_out_error(base):

@@ -106,7 +106,7 @@ def pruned(problem: Problem, best: Forecast, names: Collection[str] | None = Non
         terms = tuple(best.terms[k] for k in kept)
         model = replace(best.model, effects=tuple(best.model.effects[k] for k in kept))
         without = fit_forecast(problem, model, terms, zero=best.has_zero, most=5)
-        if cost(without) < cost(best):
+        if forecast_cost(without) < forecast_cost(best):
             best = without
     return best
 
@@ -131,8 +131,8 @@ def _extend(search: Search, best: Forecast) -> Forecast:
         ]
         if not tried:
             break
-        joint = min(tried, key=cost)
-        if cost(joint) >= cost(best):
+        joint = min(tried, key=forecast_cost)
+        if forecast_cost(joint) >= forecast_cost(best):
             break
         best = better(joint, refit(joint, most=8, blur=BLUR))
     return best
@@ -163,13 +163,13 @@ def freer_where_it_pays(problem: Problem, best: Forecast) -> Forecast:
         fit_forecast(problem, model, terms, zero=zero, most=10),
         fit_forecast(problem, model, terms, zero=zero, most=15, blur=BLUR),
     )
-    return freed if cost(freed) < cost(best) - DECIDED else best
+    return freed if forecast_cost(freed) < forecast_cost(best) - DECIDED else best
 
 
-def cost(model: Forecast) -> float:
+def forecast_cost(forecast: Forecast) -> float:
     """Minus twice the log likelihood of a residual's pieces, and the charge for the parameters."""
-    charge = PARAMETER_CHARGE * len(model.parameters)
-    return 2.0 * INDEPENDENT_PIECES * float(np.log(model.error_deg)) + charge
+    charge = PARAMETER_CHARGE * len(forecast.parameters)
+    return 2.0 * INDEPENDENT_PIECES * float(np.log(forecast.error_deg)) + charge
 
 
 def _with(problem: Problem, best: Forecast, effect: Effect, shape: dict[str, float]) -> Forecast:
