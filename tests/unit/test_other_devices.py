@@ -11,6 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
+from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.effects_found import explanations
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
@@ -35,14 +36,13 @@ from cyclosweep.simulation.effects.history import Flags
 from cyclosweep.simulation.model import EffectValue
 from tests.support.arrays import Floats
 from tests.support.searches import search_of
-from tests.unit.test_flanks import Line
 from tests.unit.test_statement import CALIBRATED
 
 LOAD = np.r_[np.linspace(0.7, 40.0, 60), np.linspace(40.0, 0.7, 60)]
 
 
 def sides(torque: Floats, angle: Floats, play: float) -> tuple[Floats, Flags]:
-    line = Line(free_play_deg=play)
+    line = NominalLine(play, 2.7)
     return find_flanks(torque, angle, line).at(torque, angle)
 
 

@@ -236,6 +236,7 @@ def _folder_table(series: Series) -> Table:
     from cyclosweep.report.series_page import heading, verdict_of
     from cyclosweep.report.wording import number
     from cyclosweep.result.series import MEASURES
+    from cyclosweep.result.words import readable
 
     rows = series.table.to_dicts()
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
