@@ -7,7 +7,7 @@ use crate::components::laws::hertz;
 use crate::components::mechanism::MAX_DISCS;
 use crate::components::outputs::PartOutput;
 use crate::components::parts::Parts;
-use crate::components::turn::{ARCMIN, POSITIONS};
+use crate::components::turn::ARCMIN;
 use crate::model::inputs::Input;
 
 /// A contact is active when its force is above this share of the largest of its kind.
@@ -139,6 +139,8 @@ impl Factors {
 /// What is gathered over the positions.
 #[derive(Debug, Clone, Default)]
 pub struct RatedForces {
+    /// Positions that were added.
+    positions: f64,
     budget: Budget,
     /// Sum of the forces at R_OP (N).
     torque: f64,
@@ -158,6 +160,7 @@ pub struct RatedForces {
 impl RatedForces {
     /// Adds one position of the crank (rad).
     pub(crate) fn add(&mut self, parts: &Parts, crank: f64, at: &AtPosition<f64>) {
+        self.positions += 1.0;
         self.details.add(crank, at);
         let lobes = parts.counts[0] as f64;
         // Speeds for a crank that turns by one radian a second.
@@ -228,7 +231,7 @@ impl RatedForces {
     /// Writes the columns.
     #[inline(always)]
     pub fn put(&self, parts: &Parts, put: &mut impl FnMut(PartOutput, f64)) {
-        let mean = 1.0 / POSITIONS as f64;
+        let mean = 1.0 / self.positions;
         let to_twist = mean / (parts.torque * ARCMIN);
         let budget = &self.budget;
         put(PartOutput::TwistRing, budget.ring * to_twist);

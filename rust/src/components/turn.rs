@@ -62,9 +62,13 @@ pub struct Turn<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Trace {
     share: f64,
-    /// Flange's motion (m at R_OP) and stiffness (N/m) at each position.
+    /// Flange's motion (m at R_OP) and stiffness (N/m) at each position of a period.
     flange: [f64; POSITIONS],
     stiffness: [f64; POSITIONS],
+    /// Sums over the periods of their means over a period.
+    flange_sum: f64,
+    stiffness_sum: f64,
+    periods: f64,
     found: Found,
 }
 
@@ -74,6 +78,9 @@ impl Trace {
             share,
             flange: [f64::NAN; POSITIONS],
             stiffness: [f64::NAN; POSITIONS],
+            flange_sum: 0.0,
+            stiffness_sum: 0.0,
+            periods: 0.0,
             found: Found {
                 by_full: false,
                 failed: false,
@@ -86,12 +93,19 @@ impl Trace {
         self.found.failed |= found.failed;
     }
 
+    /// Adds a period all positions of which have been solved.
+    fn add_period(&mut self) {
+        self.flange_sum += mean(&self.flange);
+        self.stiffness_sum += mean(&self.stiffness);
+        self.periods += 1.0;
+    }
+
     /// Twist (arc minutes) with a shaft of this compliance behind the flange.
     fn twist(&self, parts: &Parts, radius: f64) -> f64 {
         if self.found.failed {
             return f64::NAN;
         }
-        let flange = mean(&self.flange) / radius;
+        let flange = self.flange_sum / self.periods / radius;
         (flange + self.share * parts.torque * parts.shaft_compliance) / ARCMIN
     }
 
@@ -100,7 +114,7 @@ impl Trace {
         if self.found.failed {
             return f64::NAN;
         }
-        let stiffness = mean(&self.stiffness) * radius * radius;
+        let stiffness = self.stiffness_sum / self.periods * radius * radius;
         ARCMIN / (1.0 / stiffness + parts.shaft_compliance)
     }
 }
@@ -150,12 +164,48 @@ impl WithSimd for Turn<'_> {
     }
 }
 
-/// Angles (rad) of the crank over one period of the output pins, `2 pi / N_OP` of the hole pattern
-/// against the eccentricity.
-pub fn positions(mechanism: &Mechanism, count: usize) -> impl Iterator<Item = f64> + use<> {
+/// Whether the contacts of a kind have gaps of their own.
+fn differ(gap_errors: &[f64]) -> bool {
+    gap_errors.windows(2).any(|pair| pair[0] != pair[1])
+}
+
+/// Periods of the output pins that are looked through: one where all contacts of a kind are alike,
+/// else all, until every contact with a gap of its own has passed the load.
+fn periods(mechanism: &Mechanism) -> usize {
+    if differ(&mechanism.ring_gap_errors) || differ(&mechanism.hole_gap_errors) {
+        mechanism.output_pins
+    } else {
+        1
+    }
+}
+
+/// Angles (rad) of the crank over a period of the output pins, `2 pi / N_OP` of the hole pattern
+/// against the eccentricity, or of the ring against it where ring pins have gaps of their own.
+fn positions(
+    mechanism: &Mechanism,
+    period: usize,
+    count: usize,
+) -> impl Iterator<Item = f64> + use<> {
     let lobes = mechanism.lobes as f64;
-    let period = TAU / mechanism.output_pins as f64 * lobes / (lobes + 1.0);
-    (0..count).map(move |k| period * k as f64 / count as f64)
+    let holes_by_ring = if differ(&mechanism.ring_gap_errors) {
+        1.0
+    } else {
+        lobes / (lobes + 1.0)
+    };
+    let pitch = TAU / mechanism.output_pins as f64 * holes_by_ring;
+    (0..count).map(move |k| pitch * (period as f64 + k as f64 / count as f64))
+}
+
+/// The few positions of a period.
+fn few_positions(mechanism: &Mechanism, period: usize) -> [f64; POSITIONS] {
+    let mut cranks = [0.0; POSITIONS];
+    for (crank, position) in cranks
+        .iter_mut()
+        .zip(positions(mechanism, period, POSITIONS))
+    {
+        *crank = position;
+    }
+    cranks
 }
 
 /// Columns of equilibria at the few positions: means, extremes and forces.
@@ -169,57 +219,62 @@ fn loaded_turn<S: Simd>(
     memory: &mut Memory,
     put: &mut impl FnMut(PartOutput, f64),
 ) {
-    let mut cranks = [0.0; POSITIONS];
-    for (crank, position) in cranks.iter_mut().zip(positions(mechanism, POSITIONS)) {
-        *crank = position;
-    }
     let factors = Factors::of(parts);
     let mut forces = RatedForces::default();
     let mut gaps = [0.0; POSITIONS];
+    let mut gap_sum = 0.0;
     let mut traces = [
         (wanted.rated, Trace::new(1.0)),
         (wanted.half, Trace::new(0.5)),
         (wanted.low, Trace::new(LOST_MOTION_LOAD)),
         (wanted.reverse, Trace::new(-LOST_MOTION_LOAD)),
     ];
-    let lanes = lanes::<S>();
-    for first in (0..POSITIONS).step_by(lanes) {
-        let at = first..first + lanes;
-        let mut group = Group::new(simd, mechanism, engine, &cranks[at.clone()], memory);
-        if wanted.gaps {
-            group.backlash(&mut gaps[at.clone()]);
+    let (lanes, periods) = (lanes::<S>(), periods(mechanism));
+    for period in 0..periods {
+        let cranks = few_positions(mechanism, period);
+        for first in (0..POSITIONS).step_by(lanes) {
+            let at = first..first + lanes;
+            let mut group = Group::new(simd, mechanism, engine, &cranks[at.clone()], memory);
+            if wanted.gaps {
+                group.backlash(&mut gaps[at.clone()]);
+            }
+            if wanted.rated {
+                group.guess(parts.torque);
+            }
+            // Lower loads start from the rated one, whichever of them are asked for.
+            let mut rated = group.state();
+            for (_, trace) in traces.iter_mut().filter(|(wanted, _)| *wanted) {
+                if trace.share < 0.0 {
+                    group.mirror();
+                } else if trace.share < 1.0 {
+                    group.go_on_from(&rated);
+                }
+                trace.add(group.solve(trace.share * parts.torque));
+                if trace.share == 1.0 {
+                    rated = group.state();
+                }
+                group.flange(&mut trace.flange[at.clone()]);
+                let stiffness = &mut trace.stiffness[at.clone()];
+                if trace.share == 1.0 && wanted.forces {
+                    group.forces(&factors, stiffness, |found| {
+                        for position in 0..lanes {
+                            forces.add(parts, cranks[first + position], &found.at(position));
+                        }
+                    });
+                } else if trace.share > 0.0 && (trace.share < 1.0 || wanted.stiffness) {
+                    group.stiffness(stiffness);
+                }
+            }
         }
-        if wanted.rated {
-            group.guess(parts.torque);
-        }
-        // Lower loads start from the rated one, whichever of them are asked for.
-        let mut rated = group.state();
-        for (_, trace) in traces.iter_mut().filter(|(wanted, _)| *wanted) {
-            if trace.share < 0.0 {
-                group.mirror();
-            } else if trace.share < 1.0 {
-                group.go_on_from(&rated);
-            }
-            trace.add(group.solve(trace.share * parts.torque));
-            if trace.share == 1.0 {
-                rated = group.state();
-            }
-            group.flange(&mut trace.flange[at.clone()]);
-            let stiffness = &mut trace.stiffness[at.clone()];
-            if trace.share == 1.0 && wanted.forces {
-                group.forces(&factors, stiffness, |found| {
-                    for position in 0..lanes {
-                        forces.add(parts, cranks[first + position], &found.at(position));
-                    }
-                });
-            } else if trace.share > 0.0 && (trace.share < 1.0 || wanted.stiffness) {
-                group.stiffness(stiffness);
-            }
+        gap_sum += mean(&gaps);
+        for (_, trace) in &mut traces {
+            trace.add_period();
         }
     }
     let radius = mechanism.pin_circle_radius;
     if wanted.gaps {
-        put(PartOutput::Backlash, mean(&gaps) / radius / ARCMIN);
+        let gap = gap_sum / periods as f64;
+        put(PartOutput::Backlash, gap / radius / ARCMIN);
     }
     let [(_, rated), (_, half), (_, low), (_, reverse)] = &traces;
     if wanted.rated {
@@ -266,10 +321,7 @@ fn tight_turn<S: Simd>(
     put: &mut impl FnMut(PartOutput, f64),
 ) {
     let tight = without_clearance(mechanism);
-    let mut cranks = [0.0; POSITIONS];
-    for (crank, position) in cranks.iter_mut().zip(positions(mechanism, POSITIONS)) {
-        *crank = position;
-    }
+    let cranks = few_positions(&tight, 0);
     let lanes = lanes::<S>();
     let mut trace = Trace::new(1.0);
     for first in (0..POSITIONS).step_by(lanes) {
@@ -279,6 +331,7 @@ fn tight_turn<S: Simd>(
         trace.add(group.solve(parts.torque));
         group.stiffness(&mut trace.stiffness[at]);
     }
+    trace.add_period();
     let stiffness = trace.tangent(parts, mechanism.pin_circle_radius);
     put(PartOutput::StiffnessWithoutClearance, stiffness);
 }
@@ -296,34 +349,36 @@ fn fine_turn<S: Simd>(
     // Each lane goes on in small steps through its own part of the period.
     const STEPS: usize = FINE_POSITIONS / POSITIONS;
     let lanes = lanes::<S>();
-    let mut cranks = [[0.0; POSITIONS]; STEPS];
-    for (place, crank) in positions(mechanism, FINE_POSITIONS).enumerate() {
-        cranks[place % STEPS][place / STEPS] = crank;
-    }
     let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let (mut flange, mut input) = ([0.0; POSITIONS], [0.0; POSITIONS]);
-    for first in (0..POSITIONS).step_by(lanes) {
-        let mut before: Option<State<S>> = None;
-        for cranks in &cranks {
-            let cranks = &cranks[first..first + lanes];
-            let mut group = Group::new(simd, mechanism, engine, cranks, memory);
-            match &before {
-                Some(state) => group.go_on_from(state),
-                None => group.guess(parts.torque),
-            }
-            if group.solve(parts.torque).failed {
-                return;
-            }
-            before = Some(group.state());
-            let (flange, input) = (&mut flange[..lanes], &mut input[..lanes]);
-            group.flange(flange);
-            group.input_torque(parts.torque, input);
-            for (flange, input) in flange.iter().zip(input) {
-                let ripple = *input * mechanism.lobes as f64 / parts.torque;
-                let twist = flange / mechanism.pin_circle_radius / ARCMIN;
-                for (k, value) in [twist, ripple].into_iter().enumerate() {
-                    least[k] = least[k].min(value);
-                    most[k] = most[k].max(value);
+    for period in 0..periods(mechanism) {
+        let mut cranks = [[0.0; POSITIONS]; STEPS];
+        for (place, crank) in positions(mechanism, period, FINE_POSITIONS).enumerate() {
+            cranks[place % STEPS][place / STEPS] = crank;
+        }
+        for first in (0..POSITIONS).step_by(lanes) {
+            let mut before: Option<State<S>> = None;
+            for cranks in &cranks {
+                let cranks = &cranks[first..first + lanes];
+                let mut group = Group::new(simd, mechanism, engine, cranks, memory);
+                match &before {
+                    Some(state) => group.go_on_from(state),
+                    None => group.guess(parts.torque),
+                }
+                if group.solve(parts.torque).failed {
+                    return;
+                }
+                before = Some(group.state());
+                let (flange, input) = (&mut flange[..lanes], &mut input[..lanes]);
+                group.flange(flange);
+                group.input_torque(parts.torque, input);
+                for (flange, input) in flange.iter().zip(input) {
+                    let ripple = *input * mechanism.lobes as f64 / parts.torque;
+                    let twist = flange / mechanism.pin_circle_radius / ARCMIN;
+                    for (k, value) in [twist, ripple].into_iter().enumerate() {
+                        least[k] = least[k].min(value);
+                        most[k] = most[k].max(value);
+                    }
                 }
             }
         }

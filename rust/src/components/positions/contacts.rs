@@ -330,15 +330,18 @@ impl Pins {
         for (pin, ([tx, ty], gap)) in self.rows(simd).enumerate() {
             let (dx, dy) = (apart + turn * tx, y + turn * ty);
             let square = dx * dx + dy * dy;
-            let reach = eccentricity + gap;
-            if reach > 0.0 && !square.above(Vector::splat(simd, reach * reach)).any() {
+            let reach = (eccentricity + gap).max(0.0);
+            // The same in every lane whatever the others do: rounding of the root may make a depth
+            // where there is none.
+            let outside = square.above(Vector::splat(simd, reach * reach));
+            if !outside.any() {
                 continue;
             }
             let distance = square.sqrt();
             let inverse = one / distance;
             let (mx, my) = (dx * inverse, dy * inverse);
             let depth = distance - eccentricity - gap;
-            let touches = depth.above(least);
+            let touches = outside.and(depth.above(least));
             let depth = depth.max(least);
             let (force, slope) = laws.pin(disc, depth);
             let force = touches.keep(force);
