@@ -98,6 +98,22 @@ def test_an_interference_is_a_preload(drive: cs.Drive) -> None:
     assert frame["backlash_arcmin"][0] == 0 < frame["backlash_arcmin"][2]
 
 
+@pytest.mark.parametrize("clearance", [0.02, 0.0, -0.001, -0.01, -0.02])
+def test_backlash_is_what_a_small_load_takes_up(drive: cs.Drive, clearance: float) -> None:
+    # Ring pins that interfere push the discs along their eccentricity, and so close some holes.
+    preloaded = drive.replace(ring_clearance_mm=clearance, hole_clearance_mm=0.05)
+    row = cs.sweep(cs.Space.grid(preloaded), model="components", solver="full").row(0, named=True)
+    small = 1e-3 * preloaded.output_torque_nm
+    period = 2 * math.pi / preloaded.output_pin_count * preloaded.ratio / (preloaded.ratio + 1)
+    cranks = [period * k / 8 for k in range(8)]
+    there, back = (
+        np.mean([preloaded.loaded(sense * small, crank).twist_arcmin for crank in cranks])
+        for sense in (1.0, -1.0)
+    )
+    assert row["backlash_arcmin"] == pytest.approx(there - back, rel=0.03)
+    assert row["backlash_arcmin"] < row["lost_motion_3pct_arcmin"]
+
+
 def test_a_column_is_the_same_whatever_is_asked_for_beside_it(drive: cs.Drive) -> None:
     space = cs.Space.sobol(drive, 16, hole_clearance_mm=(0, 0.1), disc_width_mm=(6, 14))
     whole = cs.sweep(space, model="components")

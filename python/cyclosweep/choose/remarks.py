@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from cyclosweep.choose.fit_of_parts import misfits
 from cyclosweep.design.drive import Drive
 
 __all__ = ["Remark", "remarks_on"]
@@ -84,6 +85,8 @@ def _warnings(drive: Drive, results: Mapping[str, float | None]) -> Iterator[Rem
     ):
         if (value := above(name, 1.0)) is not None:
             yield Remark("warning", f"{what}: {value:.3g} times the yield strength")
+    for words in misfits(drive):
+        yield Remark("warning", words)
     stress, strength = results.get("pin_bending_stress_mpa"), drive.pin_yield_strength_mpa
     if stress is not None and strength is not None and stress > strength:
         yield Remark(

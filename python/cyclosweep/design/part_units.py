@@ -129,7 +129,7 @@ PART_OUTPUTS: dict[str, Quantity] = {
         "",
         "arcmin",
         "turn of the output between the first contacts in either sense without load, bearings "
-        "centred, mean over the crank",
+        "centred or where ring pins that interfere push them to, mean over the crank",
     ),
     "active_output_pins_mean": Quantity(
         "", "1", f"hole-pin contacts above 1 % of the largest force, {_AT_RATED}"

@@ -72,7 +72,9 @@ OUTPUTS: dict[str, Quantity] = {
     ),
     "statics_applicable": Quantity("", "1", "whether statics hold: at most two discs"),
     "hole_diameter_mm": Quantity("", "mm", "hole in the disc: pin + 2 bush walls + 2 e"),
-    "hole_web_mm": Quantity("", "mm", "least material between holes, to the rim and to the bore"),
+    "hole_web_mm": Quantity(
+        "", "mm", "least material between holes, to the rim at disc_outer_radius_mm and to the bore"
+    ),
     "short_width_coefficient": Quantity("K1", "1", "e (i + 1) / R, below 1"),
     "nominal_torque_nm": Quantity("T_N", "N m", "nominal input torque P / omega"),
     "natural_frequency_hz": Quantity(

@@ -79,6 +79,16 @@ pub enum PartError {
         /// Smallest convex radius of the path of a pin's centre (m).
         bend: f64,
     },
+    /// Holes reach beyond the roots of the profile.
+    #[error(
+        "holes that reach {hole} m from the middle break through a profile with its roots at {root} m"
+    )]
+    HolesBreakProfile {
+        /// Largest distance of a hole's edge from the disc's middle (m).
+        hole: f64,
+        /// Distance of the profile's roots (m).
+        root: f64,
+    },
     /// A list of individual gaps has another length than there are contacts.
     #[error("{name}: {found} values, expected {expected}")]
     Length {
@@ -93,12 +103,13 @@ pub enum PartError {
 
 impl PartError {
     /// The words under which a sweep files these reasons, in the order of [`PartError::code`].
-    pub const LABELS: [&'static str; 5] = [
+    pub const LABELS: [&'static str; 6] = [
         "component_input_missing",
         "component_input_out_of_range",
         "ring_pins_overlap",
         "profile_undercut",
         "gap_list_length",
+        "holes_break_profile",
     ];
 
     /// Place of its word.
@@ -110,6 +121,7 @@ impl PartError {
             Self::RingPinsOverlap { .. } => 2,
             Self::Undercut { .. } => 3,
             Self::Length { .. } => 4,
+            Self::HolesBreakProfile { .. } => 5,
         }
     }
 }
@@ -190,6 +202,17 @@ impl Parts {
         let bend = profile.path_radius_min();
         if bend <= radius {
             return Err(PartError::Undercut { radius, bend });
+        }
+        let gap =
+            values[PartInput::RingClearance as usize] + values[PartInput::ProfileOffset as usize];
+        let root = profile.ring_radius - radius - profile.eccentricity - gap;
+        let hole = scalar(Input::OutputPinCircleRadius)
+            + 0.5 * scalar(Input::OutputPinDiameter)
+            + scalar(Input::BushWall)
+            + profile.eccentricity
+            + values[PartInput::HoleClearance as usize];
+        if hole >= root {
+            return Err(PartError::HolesBreakProfile { hole, root });
         }
         for (name, list, expected) in [
             ("ring_gap_errors_mm", &fixed.ring_gap_errors, lobes + 1),

@@ -193,7 +193,8 @@ fn positions(
         lobes / (lobes + 1.0)
     };
     let pitch = TAU / mechanism.output_pins as f64 * holes_by_ring;
-    (0..count).map(move |k| pitch * (period as f64 + k as f64 / count as f64))
+    let places = period * count..(period + 1) * count;
+    places.map(move |place| pitch * place as f64 / count as f64)
 }
 
 /// The few positions of a period.

@@ -2,12 +2,18 @@
 
 use pulp::Simd;
 
-use crate::components::positions::contacts::{PinContacts, RingContacts, Visit};
-use crate::components::positions::equilibrium::{Loaded, Motions};
+use crate::components::contact::PowerLaws;
+use crate::components::positions::contacts::{Nobody, PinContacts, RingContacts, Visit};
+use crate::components::positions::equilibrium::{Loaded, Motions, bearing};
+use crate::components::positions::laws::Power;
 use crate::components::positions::vector::Vector;
 
-/// Turn of the flange (m at R_OP) between the first contacts of a disc in either sense, the
-/// eccentric's bearing in its middle: the least one of the discs.
+/// Halvings of the range in which a disc is looked for that the ring pushes.
+const HALVINGS: usize = 50;
+
+/// Turn of the flange (m at R_OP) between the first contacts of a disc in either sense, without
+/// load: the least one of the discs. The eccentric's bearing is in its middle, or where ring pins
+/// that interfere push it to.
 #[inline(always)]
 pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
     let (simd, mechanism) = (loaded.simd, loaded.mechanism);
@@ -34,11 +40,13 @@ pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
             }
         }
         let mut ahead = [never; 2];
+        let pushed = pushed_by_the_ring(loaded, disc);
         for ([x, _], gap) in loaded.pins[disc].rows(simd) {
-            // |(e, 0) + s t| = e + c in both senses of s.
-            let gap = gap.max(0.0);
-            let along = x * e;
-            let root = (along * along + gap * (2.0 * e + gap)).sqrt();
+            // |(e + p, 0) + s t| = e + c in both senses of s, with the disc pushed by p.
+            let gap = Vector::splat(simd, gap.max(0.0));
+            let along = x * (pushed + e);
+            let left = (gap - pushed).max(zero) * (gap + pushed + 2.0 * e);
+            let root = (along * along + left).sqrt();
             ahead = [ahead[0].min(root + along), ahead[1].min(root - along)];
         }
         for sense in 0..2 {
@@ -46,6 +54,38 @@ pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
         }
     }
     ends[0] + ends[1]
+}
+
+/// Shift (m) of a disc along its eccentricity at which the bearing holds ring pins that interfere;
+/// zero where none does.
+#[inline(always)]
+fn pushed_by_the_ring<S: Simd>(loaded: &Loaded<'_, S>, disc: usize) -> Vector<S> {
+    let (simd, mechanism) = (loaded.simd, loaded.mechanism);
+    let zero = Vector::zero(simd);
+    let ring = &loaded.rings[disc];
+    if ring.is_uniform() && mechanism.ring_gap >= 0.0 {
+        return zero;
+    }
+    let mut deepest = zero;
+    for (_, gap) in ring.rows(simd) {
+        deepest = deepest.max(-gap);
+    }
+    if !deepest.above(zero).any() {
+        return zero;
+    }
+    let mut laws = Power::<S, 3>::new(simd, PowerLaws::of(mechanism));
+    // The farther it is pushed, the more the bearing holds and the less the ring pushes.
+    let mut high = deepest * 4.0 + mechanism.bearing_clearance;
+    let mut low = -high;
+    for _ in 0..HALVINGS {
+        let middle = (low + high) * 0.5;
+        let of_ring = ring.sums(simd, &mut laws, disc, [middle, zero], &mut Nobody);
+        let ([of_bearing, _], _) = bearing(simd, mechanism, [middle, zero]);
+        let beyond = (of_ring.gradient[0] + of_bearing).above(zero);
+        high = beyond.select(middle, high);
+        low = beyond.select(low, middle);
+    }
+    deepest.above(zero).keep((low + high) * 0.5)
 }
 
 /// Growth of the contacts' energy with the crank's angle (N m): the normals turn and the holes go
