@@ -6,6 +6,7 @@ from cyclosweep.report.wording import verdict_words
 from cyclosweep.result import (
     Answer,
     Baseline,
+    BehaviourClass,
     Bound,
     CalibratedParameter,
     Explanation,
@@ -189,4 +190,40 @@ def test_what_is_left_is_said_to_be_above_the_noise_only_where_it_is() -> None:
     assert "what is left is above the noise and has no name" in statement_of(loud)
     within = statement_of(mostly)
     assert "above the noise" not in within
-    assert "is no larger than the noise of 0.2 deg (12 arcmin), but has a shape, and has" in within
+    assert (
+        "is on average no larger than the noise of 0.2 deg (12 arcmin), but has a shape, and has"
+        in within
+    )
+
+
+def test_classes_are_said_apart_and_once() -> None:
+    """What a named law misses inside its class belongs to that law."""
+    drift, loop = "slow change with time", "loop of constant width"
+    of_two = replace(
+        IDENTIFIED,
+        effects=(),
+        verdict="UNKNOWN_PHYSICS",
+        classes=(
+            BehaviourClass(
+                behaviour=drift, stand_ins=("friction_hysteresis",), candidates=("creep",)
+            ),
+            BehaviourClass(behaviour=loop, candidates=("friction_hysteresis",)),
+        ),
+    )
+    assert (
+        "Its classes of behaviour are clear, its law is not: a slow change with time (listed "
+        "effects of this class: creep; friction hysteresis only stands in for it), and a loop of "
+        "constant width (listed effects of this class: friction hysteresis)."
+    ) in statement_of(of_two)
+    named = BehaviourClass(behaviour=drift, laws=("creep",), missed_share=0.035)
+    left = Remainder(shape="creep", place="all along", size_deg=0.0003)
+    of_one = replace(
+        IDENTIFIED,
+        verdict="MOSTLY_EXPLAINED",
+        classes=(named, BehaviourClass(behaviour=drift)),
+        unknown=left,
+    )
+    said = statement_of(of_one)
+    assert "the law of creep misses 3.5 %" in said
+    assert "what the law of creep misses, 0.0003 deg" in said
+    assert "behaviour is clear" not in said

@@ -230,7 +230,8 @@ def doubts(
     if compliance_is_far or suggested:
         found.append(_compliance(compliance, nominal, factor, suggested, play_is_far))
     if play_is_far and not suggested:
-        found.append(_play(play, nominal_play, compliance_is_far))
+        # Of both estimates, which are far, the one that the answer gives elsewhere.
+        found.append(_play(after["free_play_deg"], nominal_play, compliance_is_far))
     reach = nominal_play + elastic * max(factor, 1.0)
     if play.std_error is not None and abs(datum) > FAR_DATUM * reach:
         found.append(_datum(datum, reach))

@@ -12,7 +12,7 @@ from cyclosweep.result.calibration_words import (
     is_hidden_by_friction,
     play_words,
 )
-from cyclosweep.result.effects import Explanation
+from cyclosweep.result.effects import Explanation, Remainder
 from cyclosweep.result.proof import HeldOutBlock
 from cyclosweep.result.words import (
     degrees,
@@ -133,8 +133,7 @@ def _mostly_explained(answer: Answer) -> str:
             share += f" (95 %: {100 * ends[0]:.{digits}g} to {100 * ends[1]:.{digits}g})"
     remains = "something without a name"
     if answer.unknown is not None:
-        remains = f"{shape_in_words(answer.unknown.shape)} of {degrees(answer.unknown.size_deg)}"
-        remains += f", {answer.unknown.place}"
+        remains = _remains(answer.unknown, degrees(answer.unknown.size_deg), answer)
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
         f"mismatch; what is left {_beside_noise(answer)} and has no name of its own: {remains}."
@@ -152,8 +151,7 @@ def _unknown(answer: Answer) -> str:
         known = f" Beside {names} ({_sizes(answer)}),"
     remains = ""
     if answer.unknown is not None:
-        size = f"{answer.unknown.size_deg:.2g} deg"
-        remains = f": {shape_in_words(answer.unknown.shape)} of {size}, {answer.unknown.place}"
+        remains = f": {_remains(answer.unknown, f'{answer.unknown.size_deg:.2g} deg', answer)}"
     calibration = _calibration(answer)
     if answer.drift is not None and answer.change is None:
         remains = ": a drift from run to run"
@@ -167,6 +165,29 @@ def _unknown(answer: Answer) -> str:
         f"{_classes(answer)}{_stand_ins(answer)} It shows most at "
         f"{place_of(answer.mismatch.regions)}. {calibration}"
     )
+
+
+def _remains(rest: Remainder, size: str, answer: Answer) -> str:
+    """Say what is left without a name.
+
+    Parameters
+    ----------
+    rest : Remainder
+        What is left.
+    size : str
+        Its largest size, in words.
+    answer : Answer
+        The answer; what has the shape of an effect that it names is left by the law of that one.
+
+    Returns
+    -------
+    str
+    """
+    words = shape_in_words(rest.shape)
+    if rest.shape in {effect.name for effect in answer.effects}:
+        words = f"what the law of {readable(rest.shape)} misses"
+        return f"{words}, {size}, {rest.place}"
+    return f"{words} of {size}, {rest.place}"
 
 
 def _stand_ins(answer: Answer) -> str:
@@ -193,8 +214,12 @@ def _stand_ins(answer: Answer) -> str:
 
 
 def _classes(answer: Answer) -> str:
-    """Say of which class of behaviour that is for which no law stands."""
-    shown = [each for each in answer.classes if not each.laws]
+    """Say of which class of behaviour that is for which no law stands.
+
+    What a named law misses inside its class is said of that law.
+    """
+    named = {each.behaviour for each in answer.classes if each.laws}
+    shown = [each for each in answer.classes if not each.laws and each.behaviour not in named]
     if not shown:
         return ""
     if len(shown) >= SPREAD:
@@ -206,17 +231,15 @@ def _classes(answer: Answer) -> str:
         if answer.verdict == "INSUFFICIENT_DATA":
             words.append(text)
             continue
-        if each.stand_ins:
-            only = "is only a stand-in" if len(each.stand_ins) == 1 else "are only stand-ins"
-            text += f", of which {listed(each.stand_ins)} {only}"
         others = [name for name in each.candidates if name not in each.stand_ins]
-        if others:
-            text += f" (listed effects of this class: {listed(others)})"
-        words.append(text)
-    said = (
-        "" if answer.verdict == "INSUFFICIENT_DATA" else "; no law of the vocabulary stands for it"
-    )
-    return f" Its class of behaviour is clear: {' and '.join(words)}{said}."
+        notes = [f"listed effects of this class: {listed(others)}"] if others else []
+        if each.stand_ins:
+            stands = "stands" if len(each.stand_ins) == 1 else "stand"
+            notes.append(f"{listed(each.stand_ins)} only {stands} in for it")
+        words.append(f"{text} ({'; '.join(notes)})" if notes else text)
+    kinds = "Its class of behaviour is" if len(words) == 1 else "Its classes of behaviour are"
+    law = ", its law is not" if answer.verdict != "INSUFFICIENT_DATA" else ""
+    return f" {kinds} clear{law}: {', and '.join(words)}."
 
 
 def _missed(answer: Answer) -> str:
@@ -295,7 +318,7 @@ def _beside_noise(answer: Answer) -> str:
     """How what is left stands to the noise: its size may be no larger, though it has a shape."""
     noise, left = answer.noise.sigma_deg, answer.repaired.rmse_deg
     if noise is not None and left is not None and left <= noise:
-        return f"is no larger than the noise of {degrees(noise)}, but has a shape,"
+        return f"is on average no larger than the noise of {degrees(noise)}, but has a shape,"
     return "is above the noise"
 
 

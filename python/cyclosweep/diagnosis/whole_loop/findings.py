@@ -300,6 +300,6 @@ def _stiffness(problem: Problem, *, unsteady: bool) -> Finding:
         text=f"Loading branches alone, from {0.5 * top:.3g} to {top:.3g} N m: {mean:.{digits}g} N "
         f"m/arcmin at the {problem.recording.side} shaft, 95 % interval {low:.{digits}g} to "
         f"{high:.{digits}g} ({60 * 180 / np.pi * mean:.3g} N m/rad); single "
-        f"branches from {values.min():.2g} to {values.max():.2g}. Unlike the stiffness by straight "
-        "lines it contains what friction takes of the torque on the way up.",
+        f"branches from {values.min():.{digits}g} to {values.max():.{digits}g}. Unlike the "
+        "stiffness by straight lines it contains what friction takes of the torque on the way up.",
     )
