@@ -109,3 +109,21 @@ def test_no_jump_is_looked_for_across_runs_or_where_the_play_is_crossed_slowly()
     np.testing.assert_array_equal(sides_by_jumps(torque, angle, side, loaded, apart, line), side)
     slow = np.clip(20.0 * torque, -PLAY, PLAY) + COMPLIANCE * torque
     np.testing.assert_array_equal(sides_by_jumps(torque, slow, side, loaded, one_run, line), side)
+
+
+def test_the_play_is_crossed_about_the_middle_of_each_run() -> None:
+    # A zero that drifts by a fifth of the play and a loop narrower than it: readings at rest in the
+    # middle of the play are in contact with no flank, in the first run and in the last.
+    play, drift = 0.03, np.array([-0.009, -0.003, 0.003, 0.009])
+    torque = np.r_[0.0, crossings(121, 1), 0.0]
+    sense = np.sign(np.diff(torque, prepend=-1.0))
+    one = play * np.sign(torque) + 0.0015 * (torque - 2.0 * sense)
+    one[torque == 0.0] = 0.0
+    run = np.repeat(np.arange(4), len(torque))
+    noise = 0.0005 * np.random.default_rng(6).normal(size=len(run))
+    angle = np.tile(one, 4) + np.repeat(drift, len(torque)) + noise
+    torques = np.tile(torque, 4)
+    flanks = find_flanks(torques, angle, NominalLine(play, 0.0015))
+    _, in_contact = flanks.at(torques, angle, run=run)
+    assert not in_contact[torques == 0.0].any()
+    assert in_contact[np.abs(torques) > 4.0].all()

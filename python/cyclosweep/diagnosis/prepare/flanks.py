@@ -17,6 +17,15 @@ LIGHT = 0.2
 """Share of that torque up to which a shaft may stand where it was turned to by hand: a twentieth of
 the largest torque is more than the zero of a torque sensor is off."""
 
+LEAST_MOVED = 0.1
+"""Move of the middle between the flanks from run to run, as a share of the play, that matters."""
+
+OF_LOOP = 0.2
+"""The same as a share of the width of the loop: of runs with different loops the middles differ."""
+
+LOOP = (0.1, 0.9)
+"""Quantiles of what the lines leave that stand for both branches of a loop."""
+
 LEAST_COMPLIANCE = 1e-12
 """Compliance that stands for none [deg/(N m)]."""
 
@@ -110,7 +119,10 @@ class Flanks:
         loaded = np.abs(torque) > self.loaded_nm
         if scored is not None:
             loaded = (np.abs(torque) > self.loaded_scored_nm) & scored
+        run = np.zeros(len(torque), dtype=np.int64) if run is None else run
         inside = angle - self.datum_deg - self.compliance_deg_per_nm * torque
+        least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
+        inside -= _moved_datum(inside - sign * play, sign * loaded, run, least)
         side = np.where(inside >= 0, 1.0, -1.0)
         side[loaded] = sign[loaded]
         if scored is not None:
@@ -120,7 +132,6 @@ class Flanks:
         if self._is_hidden:
             pushed = np.abs(torque) > self._pushed_nm
             side = _last_pushed(sign, pushed)
-        run = np.zeros(len(torque), dtype=np.int64) if run is None else run
         line = (self.compliance_deg_per_nm, play)
         side = sides_by_jumps(torque, angle, side, loaded, run, line)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
@@ -134,6 +145,37 @@ class Flanks:
             side[one_way] = sign[one_way]
             return side, contact | one_way
         return side, contact & ~_on_the_way(depth, contact, loaded)
+
+
+def _moved_datum(left: Floats, loaded: Floats, run: Ints, least: float) -> Floats:
+    """How far the middle between both flanks lies from the datum in each run.
+
+    Of a zero that drifts, as with the temperature, the play is crossed about the middle of the run.
+
+    Parameters
+    ----------
+    left : ndarray, shape (n,)
+        What the lines of both flanks leave of the twist [deg].
+    loaded : ndarray, shape (n,)
+        Direction of the load, +1 or -1, of readings under load; zero of others.
+    run : ndarray of int, shape (n,)
+        Run of each reading.
+    least : float
+        Move that matters; smaller ones count as none [deg].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In deg; zero in a run that is not loaded in both directions.
+    """
+    moved = np.zeros(len(left))
+    for each in np.unique(run):
+        flanks = [left[(run == each) & (loaded == sign)] for sign in (1.0, -1.0)]
+        if all(len(flank) for flank in flanks):
+            # Of loops the middle, however many readings are taken on the way up and down.
+            middle = float(np.mean([np.quantile(flank, LOOP) for flank in flanks]))
+            moved[run == each] = middle if abs(middle) > least else 0.0
+    return moved
 
 
 def _last_pushed(sign: Floats, pushed: Flags) -> Floats:
