@@ -15,6 +15,7 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.design.excitation import campbell, excitation_orders
 from cyclosweep.dynamics import SlipElement, TrainSpring, backbone_frequency_hz
+from cyclosweep.dynamics.spring import Brake
 from cyclosweep.simulation.effect_value import EffectValue
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state
 from tests.unit.dynamics_oracle import Oracle
@@ -306,11 +307,16 @@ def test_shock_writes_tables_and_a_picture(
     ("text", "message"),
     [
         ('kind = "stopp"', "kind: found 'stopp', expected 'start', 'stop'"),
-        ('kind = "pulse"', "event: pulse_torque_nm: missing"),
+        ('kind = "pulse"', "event.toml: pulse_torque_nm: missing"),
         ('kind = "emergency-stop"', "needs an output that turns"),
-        ('kind = "recorded"', "event: recording: missing"),
+        ('kind = "recorded"', "event.toml: recording: missing"),
         ('kind = "reversal"\ntorque_nm = -1', "torque_nm: found -1, expected greater than 0"),
         ('kind = "reversal"\n[train]\nload_inertia = 3', "train.load_inertia: unknown key"),
+        ('kind = "reversal"\nduration_s = 1e9', "event.toml: duration_s: found 1e+09 s, 1.63e+10"),
+        (
+            'kind = "reversal"\n[train]\nload_inertia_kg_m2 = 1e-30',
+            "Hz), expected at most 1e+06 periods",
+        ),
     ],
 )
 def test_a_wrong_event_is_one_line(
@@ -329,6 +335,15 @@ def test_a_wrong_event_is_one_line(
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_a_brake_counts_as_an_oscillation_that_lasts_too_long() -> None:
+    train = cs.Train([0.0035, 0.1], [21.0])
+    stiff = Brake(0, SlipElement(1e20, 1.0))
+    with pytest.raises(
+        cs.InputError, match=r"duration_s: found 1 s, .* expected at most 1e\+06 per"
+    ):
+        train.transient({}, 1.0, brake=stiff)
 
 
 @pytest.mark.parametrize("model", ["published", "components"])

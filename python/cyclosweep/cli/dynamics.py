@@ -10,6 +10,7 @@ import typer
 
 from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, print_json, print_tables, refuse_folder
+from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
     import polars as pl
@@ -126,7 +127,10 @@ def shock(
     what = Event.from_toml(event).of_drive(chosen)
     train = chosen.train(_springs(what.model), with_efficiency=True, **what.parts)
     refuse_folder(out)
-    run = transient(train, what)
+    try:
+        run = transient(train, what)
+    except InputError as error:
+        raise InputError(f"{event}: {str(error).removeprefix('event: ')}") from None
     out.mkdir(parents=True, exist_ok=True)
     content: dict[str, Any] = {
         "schema": "cyclosweep.shock/1",

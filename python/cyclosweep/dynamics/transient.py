@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,13 +12,18 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
+import cyclosweep._core as _core
 from cyclosweep.dynamics.chain import Chain
-from cyclosweep.dynamics.spring import Brake
+from cyclosweep.dynamics.spring import Brake, SlipElement
 from cyclosweep.errors import InputError
 
 __all__ = ["Transient", "follow"]
 
 Reals = npt.NDArray[np.float64]
+
+MOST_PERIODS = 1_000_000
+"""Periods of the fastest oscillation that a transient may last: with an impact or two in each about
+ten seconds and 1 GB. Nothing else bounds the events, which are all kept."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,9 +189,15 @@ def follow(
     Returns
     -------
     Transient
+
+    Raises
+    ------
+    InputError
+        When it lasts too many periods, or events follow without time passing.
     """
     nodes, springs = train.node_ratios, train.spring_ratios
     core = train.core(brake)
+    _refuse_endless(train, core, brake, float(times[-1]))
     preload = train.carried(before / nodes)
     extra = [] if brake is None else [0.0]
     start = core.static_twists([*preload, *extra])
@@ -226,6 +238,31 @@ def follow(
         ratios,
         found,
     )
+
+
+def _refuse_endless(
+    train: Chain, core: _core.Train, brake: Brake | None, duration_s: float
+) -> None:
+    """Refuse a duration of more periods than can be followed, each spring at its steepest."""
+    stiffnesses = [
+        (max(spring.slopes_nm_per_rad) + _held(spring.friction)) / ratio**2
+        for spring, ratio in zip(train.springs, train.spring_ratios, strict=True)
+    ]
+    if brake is not None:
+        stiffnesses.append(_held([brake.element]) / train.node_ratios[brake.node] ** 2)
+    squares = core.modes(stiffnesses)[0]
+    fastest_hz = math.sqrt(max(squares, default=0.0)) / math.tau
+    if not duration_s * fastest_hz <= MOST_PERIODS:
+        raise InputError(
+            f"duration_s: found {duration_s:g} s, {duration_s * fastest_hz:.3g} periods of the "
+            f"train's fastest oscillation ({fastest_hz:.4g} Hz), expected at most "
+            f"{MOST_PERIODS:g} periods: {MOST_PERIODS / fastest_hz:.3g} s, or larger inertias"
+        )
+
+
+def _held(friction: Iterable[SlipElement]) -> float:
+    """Stiffness of friction that does not slide [N m/rad]."""
+    return sum(element.stiffness_nm_per_rad for element in friction)
 
 
 def _by_name(pattern: str, names: Iterable[str], columns: Reals) -> dict[str, Reals]:
