@@ -12,7 +12,7 @@ from cyclosweep.design.drive import Cylinder, Drive, Frustum, Keyway
 from cyclosweep.dynamics.train import Train
 from cyclosweep.errors import DesignError, InputError, SweepError
 from cyclosweep.plugins import Column
-from cyclosweep.sweep.dataset import scan_dataset
+from cyclosweep.sweep.dataset_files import scan_dataset
 from cyclosweep.sweep.design_table import evaluate_table
 from cyclosweep.sweep.distributions import Distribution, log_uniform, normal, triangular, uniform
 from cyclosweep.sweep.evaluator import Evaluator

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-__all__ = ["unfinished", "write_bytes", "write_text"]
+__all__ = ["nearest_existing", "unfinished", "write_bytes", "write_text"]
 
 NO_SPACE_LEFT = 2**20
 """Free bytes below which a file that could not be written has met a full disk."""
@@ -117,3 +117,8 @@ def write_bytes(path: str | Path, content: bytes) -> None:
     """
     with unfinished(path) as temporary:
         temporary.write_bytes(content)
+
+
+def nearest_existing(path: Path) -> Path:
+    """What is there of a path: itself, or else the last of its parents that exists."""
+    return next(each for each in (path, *path.absolute().parents) if each.exists())

@@ -162,6 +162,15 @@ def test_a_file_of_another_kind_is_said_to_be_one(study: Path, tmp_path: Path) -
         cs.Tolerances.from_toml(study)
 
 
+def test_what_a_sweep_says_it_has_to_do_counts_broken_parts(study: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert "150 variants, about" in run("sweep", str(study), "--out", str(out)).stderr
+    part = out / "part-000000.parquet"
+    part.write_bytes(part.read_bytes()[:-50])
+    assert "150 variants, about" in run("sweep", str(study), "--out", str(out)).stderr
+    assert "0 variants, about" in run("sweep", str(study), "--out", str(out)).stderr
+
+
 @pytest.mark.skipif(not Path("/proc/version").exists(), reason="there is no /proc here")
 def test_a_folder_in_which_nothing_can_be_made_is_refused_at_once(tmp_path: Path) -> None:
     recording = tmp_path / "loop.csv"
@@ -458,6 +467,13 @@ def test_no_number_and_no_word_of_a_narrow_table_is_broken_or_lost(width: int) -
             ("diagnose", "loop.csv", "--drive", "reference-87", "--out", "file/sub"),
             "which is a file",
         ),
+        (("sweep", "study.toml", "--out", "file/sub"), "which is a file"),
+        (
+            ("shard", "study.toml", "--index", "0", "--of", "2", "--out", "file/sub"),
+            "which is a file",
+        ),
+        (("sweep", "study.toml", "--out", ""), "found '', expected the name of a folder"),
+        (("shock", "reference-87", "event.toml", "--out", ""), "found '', expected the name of"),
         (("evaluate", "designs.csv", "--out", "designs.csv"), "which is read"),
         (("export", "reference-87", "--out", "none/x.dxf"), "a folder that exists"),
         (("torque-twist", "reference-87", "--out", "x.xlsx"), "ending in .csv"),
@@ -471,6 +487,8 @@ def test_an_output_that_cannot_be_is_refused_before_anything_is_computed(
     for name in ("file", "drive.txt"):
         (tmp_path / name).write_text("")
     (tmp_path / "designs.csv").write_text("eccentricity_mm\n0.5\n")
+    (tmp_path / "study.toml").write_text(STUDY)
+    (tmp_path / "event.toml").write_text('kind = "reversal"\n')
     found = run(*arguments, cwd=tmp_path)
     assert (found.returncode, found.stdout) == (2, "")
     assert words in found.stderr

@@ -248,6 +248,35 @@ def test_someone_else_s_parts_are_refused_and_left_untouched(tmp_path: Path) -> 
         assert files(tmp_path) == before
 
 
+@pytest.mark.parametrize("content", [b"", b"a,b\n1,2\n", b"PAR1 cut short"])
+def test_unreadable_parts_without_a_manifest_are_left_untouched(
+    tmp_path: Path, content: bytes
+) -> None:
+    (tmp_path / "part-000000.parquet").write_bytes(content)
+    before = files(tmp_path)
+    for fresh in (False, True):
+        with pytest.raises(
+            cs.InputError, match=r"part-000000\.parquet: cannot be read, and no man"
+        ):
+            sink(tmp_path, fresh=fresh)
+        assert files(tmp_path) == before
+
+
+def test_someone_else_s_manifest_is_left_untouched(tmp_path: Path) -> None:
+    (tmp_path / "manifest.json").write_text('{"name": "a page"}')
+    before = files(tmp_path)
+    for fresh in (False, True):
+        with pytest.raises(cs.InputError, match=r"manifest\.json: not written by cyclosweep"):
+            sink(tmp_path, fresh=fresh)
+        assert files(tmp_path) == before
+
+
+def test_a_file_on_the_way_to_the_folder_is_bad_input(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("precious")
+    with pytest.raises(cs.InputError, match="file: is a file, expected a folder"):
+        sink(tmp_path / "file" / "study")
+
+
 def test_other_part_sizes_are_refused_and_left_untouched(tmp_path: Path) -> None:
     sink(tmp_path)
     before = files(tmp_path)

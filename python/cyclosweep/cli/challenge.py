@@ -7,7 +7,13 @@ from typing import Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import AsJson, interruptible, print_json, refuse_folder
+from cyclosweep.cli.output import (
+    AsJson,
+    folder_named,
+    interruptible,
+    print_json,
+    refuse_folder,
+)
 from cyclosweep.errors import InputError
 
 
@@ -18,7 +24,9 @@ def challenge(
     seed: Annotated[
         int, typer.Option("--seed", metavar="S", min=0, help="Seed; records use 100000 and above.")
     ],
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the run.")],
+    out: Annotated[
+        Path, typer.Option("--out", parser=folder_named, metavar="DIR", help="Folder of the run.")
+    ],
     workers: Annotated[int, typer.Option(min=1, help="Processes at a time.")] = 1,
     mix: Annotated[
         Literal["all", "null", "open", "concealed", "contest"],

@@ -15,6 +15,7 @@ import typer
 from cyclosweep.cli.output import (
     AsJson,
     fail,
+    folder_named,
     interruptible,
     print_json,
     print_tables,
@@ -65,7 +66,10 @@ def diagnose(
             help="Measured torque and twist: CSV, Excel, MATLAB, TDMS, LabVIEW, JSON.",
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the results.")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", parser=folder_named, metavar="DIR", help="Folder of the results."),
+    ],
     drive: Annotated[
         str | None,
         typer.Option("--drive", metavar="NAME|FILE", help="The drive, if not in the metadata."),

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cyclosweep.cli.frames import FrameTable
-from cyclosweep.cli.output import AsJson, print_json, print_tables, refuse_folder
+from cyclosweep.cli.output import (
+    AsJson,
+    folder_named,
+    print_json,
+    print_tables,
+    refuse_folder,
+)
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -110,7 +116,13 @@ def shock(
     drive: DriveName,
     event: Annotated[Path, typer.Argument(metavar="EVENT.toml", help="What happens.")],
     out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder for the tables and the picture.")
+        Path,
+        typer.Option(
+            "--out",
+            parser=folder_named,
+            metavar="DIR",
+            help="Folder for the tables and the picture.",
+        ),
     ],
     as_json: AsJson = False,
 ) -> None:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from cyclosweep.atomic import nearest_existing
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AsJson",
     "fail",
+    "folder_named",
     "interruptible",
     "print_json",
     "print_tables",
@@ -155,6 +157,13 @@ def _same(path: Path, other: Path) -> bool:
     return path.resolve() == other.resolve()
 
 
+def folder_named(text: str) -> Path:
+    """Path of a folder for results; an empty text would be the current folder, unasked for."""
+    if not text:
+        raise typer.BadParameter("found '', expected the name of a folder")
+    return Path(text)
+
+
 def refuse_folder(folder: Path) -> None:
     """Refuse a folder for results that cannot be made, before anything is computed.
 
@@ -168,7 +177,7 @@ def refuse_folder(folder: Path) -> None:
     InputError
         With what was found in its place, or on the way to it.
     """
-    nearest = next(each for each in (folder, *folder.absolute().parents) if each.exists())
+    nearest = nearest_existing(folder)
     if not nearest.is_dir():
         raise InputError(f"--out: found {nearest}, which is a file, expected a folder")
     try:

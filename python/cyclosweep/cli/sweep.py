@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
+from cyclosweep.cli.output import (
+    AsJson,
+    folder_named,
+    interruptible,
+    print_json,
+    print_tables,
+    refuse_folder,
+)
 from cyclosweep.errors import InputError
 
 if TYPE_CHECKING:
@@ -18,7 +25,10 @@ if TYPE_CHECKING:
 LEFT = "what is whole stays, the same command goes on from there"
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")]
-OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the dataset.")]
+OutFolder = Annotated[
+    Path,
+    typer.Option("--out", parser=folder_named, metavar="DIR", help="Folder of the dataset."),
+]
 
 
 def sweep(
@@ -47,6 +57,7 @@ def sweep(
     """Sweep a study to a folder of Parquet parts; killed, the same command goes on from there."""
     from cyclosweep.sweep.shards import sink
 
+    refuse_folder(out)
     with interruptible(LEFT):
         swept = _study(study, rows)
         _say_size(swept, out, fresh=fresh, yes=yes)
@@ -76,6 +87,7 @@ def shard(
     from cyclosweep.sweep.dataset import dataset_of
     from cyclosweep.sweep.shards import shard as run
 
+    refuse_folder(out)
     with interruptible(LEFT):
         swept = _study(study, None)
         summary = run(swept, out, index=index, of=of)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import polars as pl
 
 from cyclosweep.errors import InputError, instance_of
-from cyclosweep.sweep.dataset import scan_dataset
+from cyclosweep.sweep.dataset_files import scan_dataset
 from cyclosweep.sweep.expressions import condition, number
 from cyclosweep.sweep.progress import Progress, ShowProgress
 from cyclosweep.sweep.scan import scan

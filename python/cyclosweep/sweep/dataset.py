@@ -14,9 +14,19 @@ import polars as pl
 from filelock import FileLock, Timeout
 
 import cyclosweep._core as _core
-from cyclosweep.atomic import unfinished, write_text
+from cyclosweep.atomic import nearest_existing, unfinished, write_text
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.errors import InputError, path_of
+from cyclosweep.sweep.dataset_files import (
+    FOOTER,
+    FORMAT,
+    FORMER_MANIFEST,
+    MANIFEST,
+    is_foreign,
+    read_footer,
+    read_manifest,
+    scan_dataset,
+)
 from cyclosweep.sweep.kernel_columns import stretch_arrays
 from cyclosweep.sweep.part_file import write_arrays, write_rows
 from cyclosweep.sweep.rows import frame
@@ -29,17 +39,13 @@ __all__ = [
     "Dataset",
     "Part",
     "dataset_of",
-    "read_manifest",
+    "read_footer",
     "scan_dataset",
 ]
 
 ROWS_PER_PART = 2**18
 SOLVED_ROWS_PER_PART = 2**14
 """Variants a part whose equilibria are solved: some seconds' work."""
-_FOOTER = "cyclosweep"
-_FORMAT = "cyclosweep.dataset/1"
-_MANIFEST = "_manifest.json"
-_FORMER_MANIFEST = "manifest.json"  # no underscore: read as a part by other programs
 _UNFINISHED = "*part-*.tmp"  # of today with a leading dot, of former versions without
 _LOCKS = ".part-*.lock"
 _PART_NAME = re.compile(r"part-(\d+)\.parquet")
@@ -135,28 +141,35 @@ class Dataset:
 
     def check(self, *, resume: bool, fresh: bool) -> None:
         """Refuse a folder that :meth:`prepare` would refuse, and touch nothing."""
-        if self.folder.exists() and not self.folder.is_dir():
-            raise InputError(f"{self.folder}: is a file, expected a folder")
+        nearest = nearest_existing(self.folder)
+        if not nearest.is_dir():
+            raise InputError(f"{nearest}: is a file, expected a folder")
         found = self._found()
         parts = [path for path in found if path.suffix == ".parquet"]
-        if foreign := next(filter(_is_foreign, parts), None):
+        if foreign := next(filter(is_foreign, found), None):
             raise InputError(f"{foreign}: not written by cyclosweep, expected an empty folder")
+        # Broken files are passed over; the first whole part stands for the others.
+        footer = next(filter(None, map(read_footer, parts)), None)
+        identities = list(filter(None, [read_manifest(self.folder), footer]))
+        if parts and not identities:
+            raise InputError(
+                f"{parts[0]}: cannot be read, and no manifest tells that a sweep has written it; "
+                "expected an empty folder"
+            )
         if fresh:
             return
         if found and not resume:
             raise InputError(f"{self.folder}: holds a study, expected an empty folder")
-        self._refuse_another_study(parts)
+        self._refuse_another_study(identities)
 
     def _found(self) -> list[Path]:
         """Parts, whole or not, and manifests that are there."""
-        manifests = (self.folder / name for name in (_MANIFEST, _FORMER_MANIFEST))
+        manifests = (self.folder / name for name in (MANIFEST, FORMER_MANIFEST))
         parts = sorted(self.folder.glob("part-*.parquet"))
         return [*parts, *filter(Path.exists, manifests)]
 
-    def _refuse_another_study(self, found: list[Path]) -> None:
-        # Broken files are passed over; the first whole part stands for the others.
-        footer = next(filter(None, map(read_footer, found)), None)
-        for identity in filter(None, [read_manifest(self.folder), footer]):
+    def _refuse_another_study(self, identities: list[dict[str, Any]]) -> None:
+        for identity in identities:
             if identity.get("study") != self.study.hash:
                 self._refuse_another_stretch(identity)
                 raise InputError(
@@ -185,16 +198,21 @@ class Dataset:
 
     def is_whole(self, part: Part) -> bool:
         """Whether a part is there and belongs to this study."""
-        return self.summary(part) is not None
+        return self._own_footer(part) is not None
 
-    def summary(self, part: Part) -> PartSummary | None:
-        """Read the summary in a part's footer; None unless the part is whole and of this study."""
+    def _own_footer(self, part: Part) -> dict[str, Any] | None:
         footer = read_footer(self.folder / part.name)
         if footer is None or footer.get("study") != self.study.hash:
             return None
-        summary = PartSummary.from_json(footer["record"])
-        if (summary.start, summary.stop) != (part.start, part.stop):
+        record = footer["record"]
+        return footer if (record["start"], record["stop"]) == (part.start, part.stop) else None
+
+    def summary(self, part: Part) -> PartSummary | None:
+        """Read the summary in a part's footer; None unless the part is whole and of this study."""
+        footer = self._own_footer(part)
+        if footer is None:
             return None
+        summary = PartSummary.from_json(footer["record"])
         if footer.get("objectives") != self._objectives():
             # Another objective changes no numbers, only which variants are best.
             rows = pl.read_parquet(self.folder / part.name)
@@ -255,11 +273,11 @@ class Dataset:
         """What stands in a part's footer, as text under the package's key."""
         objectives, record = self._objectives(), summary.to_json()
         footer = {**self._identity(), "objectives": objectives, "record": record}
-        return {_FOOTER: json.dumps(footer)}
+        return {FOOTER: json.dumps(footer)}
 
     def _identity(self) -> dict[str, Any]:
         return {
-            "format": _FORMAT,
+            "format": FORMAT,
             "study": self.study.hash,
             "version": _core.__version__,
             "rows_per_part": self.rows_per_part,
@@ -305,8 +323,8 @@ class Dataset:
                 )
             ],
         }
-        write_text(self.folder / _MANIFEST, json.dumps(manifest, indent=1))
-        (self.folder / _FORMER_MANIFEST).unlink(missing_ok=True)
+        write_text(self.folder / MANIFEST, json.dumps(manifest, indent=1))
+        (self.folder / FORMER_MANIFEST).unlink(missing_ok=True)
 
 
 def dataset_of(study: Study, folder: str | Path, rows_per_part: int | None = None) -> Dataset:
@@ -330,61 +348,3 @@ def dataset_of(study: Study, folder: str | Path, rows_per_part: int | None = Non
     return Dataset(
         study, path_of("folder", folder), whole_number("rows_per_part", rows_per_part, least=1)
     )
-
-
-def read_footer(path: Path) -> dict[str, Any] | None:
-    """Read what cyclosweep wrote into a Parquet footer; None for a broken or foreign file."""
-    try:
-        text = pl.read_parquet_metadata(path).get(_FOOTER)
-        footer = json.loads(text) if text is not None else None
-    except (OSError, ValueError, pl.exceptions.PolarsError):
-        return None
-    return footer if isinstance(footer, dict) and footer.get("format") == _FORMAT else None
-
-
-def read_manifest(folder: Path) -> dict[str, Any] | None:
-    """Read a study's manifest, also under its former name; None where it is missing or broken."""
-    for name in (_MANIFEST, _FORMER_MANIFEST):
-        with contextlib.suppress(OSError, ValueError):
-            manifest = json.loads((folder / name).read_text(encoding="utf-8"))
-            if isinstance(manifest, dict):
-                return manifest
-    return None
-
-
-def _is_foreign(path: Path) -> bool:
-    """Whether a file is whole and not of a sweep, so that it must not be touched."""
-    try:
-        return _FOOTER not in pl.read_parquet_metadata(path)
-    except (OSError, pl.exceptions.PolarsError):
-        return False
-
-
-def parts_of(folder: Path) -> list[Path]:
-    """All whole parts in a folder, in order of their variants."""
-    found = sorted(folder.glob("part-*.parquet"), key=lambda path: (len(path.name), path))
-    return [path for path in found if read_footer(path) is not None]
-
-
-def scan_dataset(folder: str | Path) -> pl.LazyFrame:
-    """Read a finished or unfinished study lazily.
-
-    Parameters
-    ----------
-    folder : str or Path
-        Where a sweep was written.
-
-    Returns
-    -------
-    polars.LazyFrame
-        Rows of all whole parts, in order of their variants.
-
-    Raises
-    ------
-    InputError
-        When the folder holds no part of a study.
-    """
-    paths = parts_of(path_of("folder", folder))
-    if not paths:
-        raise InputError(f"{folder}: no parts of a study there")
-    return pl.scan_parquet(paths)

@@ -14,7 +14,7 @@ from filelock import FileLock, Timeout
 
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.parts import Engine as Solver
-from cyclosweep.errors import InputError, SweepError, instance_of
+from cyclosweep.errors import SweepError, instance_of
 from cyclosweep.sweep.attempts import run_shards
 from cyclosweep.sweep.dataset import Dataset, dataset_of
 from cyclosweep.sweep.executors import Engine, executor_of, lend
@@ -237,8 +237,7 @@ def _finish(dataset: Dataset, summaries: list[PartSummary]) -> None:
 def _exclusive(dataset: Dataset, *, resume: bool, fresh: bool) -> Iterator[None]:
     """Keep a second full sweep from the folder while this process lives."""
     folder = dataset.folder
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: is a file, expected a folder")
+    dataset.check(resume=resume, fresh=fresh)  # before a folder is made or a lock laid into it
     existed = folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import polars as pl
 
+from cyclosweep.atomic import nearest_existing
 from cyclosweep.sweep.dataset import dataset_of
 from cyclosweep.sweep.part_file import COMPRESSION
 from cyclosweep.sweep.rows import frame
@@ -94,7 +95,7 @@ def estimate(study: Study, folder: str | Path, rows: int | None = None) -> Estim
 
 
 def rows_left(study: Study, folder: str | Path) -> int:
-    """Variants of a study of which a folder has no file yet.
+    """Variants of a study of which a folder has no whole part yet.
 
     Parameters
     ----------
@@ -109,12 +110,12 @@ def rows_left(study: Study, folder: str | Path) -> int:
     """
     dataset = dataset_of(study, folder)
     space = study.space
-    return space.stop - space.start - sum(part.stop - part.start for part in dataset.present())
+    whole = filter(dataset.is_whole, dataset.present())
+    return space.stop - space.start - sum(part.stop - part.start for part in whole)
 
 
 def _free_bytes(folder: Path) -> int:
-    there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
-    return shutil.disk_usage(there).free
+    return shutil.disk_usage(nearest_existing(folder)).free
 
 
 def _bytes(count: float) -> str:

@@ -19,7 +19,7 @@ from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError, path_of
-from cyclosweep.sweep.dataset import parts_of, read_footer, read_manifest
+from cyclosweep.sweep.dataset_files import parts_of, read_footer, read_manifest
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.study import StudyModel
 from cyclosweep.sweep.summary import PartSummary, Summary, merge
