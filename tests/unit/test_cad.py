@@ -505,6 +505,8 @@ def test_the_command_writes_every_format(tmp_path: Path) -> None:
 WRONG = {
     "ending": (["--out", "a.dfx"], "did you mean .dxf?"),
     "disc": (["--out", "a.dxf", "--disc", "3"], "expected 1 to 2"),
+    "disc of points": (["--out", "a.csv", "--disc", "0"], "disc: found 0, expected 1 to 2"),
+    "thin": (["--out", "a.svg", "--min-wall-mm", "50"], "drive.toml: holes leave too little of"),
     "no folder": (["--out", "none/a.dxf"], "a folder that exists"),
     "itself": (["--out", "drive.csv"], "which is read"),
     "chord error": (["--out", "a.dxf", "--chord-error-mm", "0"], "expected 1e-06 to 1"),

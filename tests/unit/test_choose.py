@@ -175,6 +175,8 @@ BAD = {
     "ending": (["best", "S", "--out", "t.doc"], "found .doc, expected .csv"),
     "variant": (["pick", "S", "2000", "--out", "d.toml"], "no variant 2000, expected one from 0"),
     "negative": (["pick", "S", "-1", "--out", "d.toml"], "-1"),
+    "no drive": (["pick", "S", "1", "--out", "z.txt"], "found z.txt, expected a drive file ending"),
+    "new drive": (["new", "drive", "--out", "z.txt"], "found z.txt, expected a drive file ending"),
     "kind": (["new", "house"], "house"),
 }
 

@@ -231,6 +231,15 @@ def test_several_objectives_and_what_is_to_be_said_of_them(tmp_path: Path) -> No
     assert cs.sink(study, tmp_path, rows_per_part=2) == summary
 
 
+def test_draws_that_repeat_each_other_are_said_to_have_the_same_inputs(tmp_path: Path) -> None:
+    study = cs.Study.of(
+        cs.Space.sobol(DRIVE, 64, criterion=["inside", "statics"], output_pin_count=[6, 8]),
+        objective=cs.Objective("torque_transfer_efficiency"),
+    )
+    [remark] = cs.sink(study, tmp_path).remarks
+    assert remark.endswith("one of several; those listed have the same inputs")
+
+
 def test_only_some_columns_of_the_variants_that_can_be_built(tmp_path: Path) -> None:
     study = cs.Study.of(
         GRID,

@@ -105,6 +105,8 @@ def test_a_space_that_makes_no_sense(make: Callable[[], Any], words: tuple[str, 
         ({"limits": {"status": (1, 2)}}, ("limits.status",)),
         ({"limits": {"hole_web_mm": (3, 2)}}, ("limits.hole_web_mm", "min <= max")),
         ({"limits": {"hole_web_mm": (float("nan"), 2)}}, ("limits.hole_web_mm",)),
+        ({"limits": {"hole_web_mm": (None, None)}}, ("limits.hole_web_mm", "neither min nor max")),
+        ({"solver": "full"}, ("solver: found 'full' with the published model", "components")),
         ({"limits": {"hole_web_mm": ("2", None)}}, ("limits.hole_web_mm", "'2'", "number")),
         ({"objective": cs.Objective("web")}, ("objective", "web")),
     ],
@@ -232,6 +234,12 @@ def test_a_sampled_study_file(tmp_path: Path, method: str, make: Any) -> None:
     assert_frame_equal(cs.sweep(study), cs.sweep(space), check_exact=True)
 
 
+def test_steps_of_a_drawn_axis_are_the_values_among_which_is_drawn(tmp_path: Path) -> None:
+    study = cs.Study.from_toml(study_file(tmp_path, AXIS + SOBOL))
+    found = cs.sweep(study)["eccentricity_mm"].unique().sort().to_list()
+    assert found == pytest.approx([0.3, 0.55, 0.8])
+
+
 def test_a_grid_study_file(tmp_path: Path) -> None:
     path = study_file(
         tmp_path,
@@ -299,7 +307,10 @@ WRONG_FILES: list[tuple[str, tuple[str, ...]]] = [
     (TABLE + "file = 'a.csv'", ("a.csv", "No such file")),
     (TABLE + "file = 'a.csv'\n" + AXIS, ("axes", "table")),
     ("[axes]\neccentricty_mm = { values = [1] }", ("eccentricty_mm", "mean eccentricity_mm?")),
-    ("[axes]\neccentricity_mm = { values = [] }", ("axes.eccentricity_mm", "at least 1")),
+    (
+        "[axes]\neccentricity_mm = { values = [] }",
+        ("eccentricity_mm.values: found [], expected at least 1",),
+    ),
     ("[axes]\neccentricity_mm = { values = ['a'] }", ("eccentricity_mm", "'a'", "number")),
     ("[axes]\neccentricity_mm = { values = [true] }", ("axes.eccentricity_mm", "True", "number")),
     ("[axes]\neccentricity_mm = { values = 3 }", ("axes.eccentricity_mm", "3", "list")),
@@ -317,6 +328,9 @@ WRONG_FILES: list[tuple[str, tuple[str, ...]]] = [
     (AXIS + "[limits]\nweb = { min = 1 }", ("limits.web", "no such column")),
     (AXIS + "[limits]\nhole_web_mm = { min = '1' }", ("limits.hole_web_mm.min", "'1'")),
     (AXIS + "[limits]\nhole_web_mm = { low = 1 }", ("limits.hole_web_mm.low", "unknown key")),
+    (AXIS + "[limits]\nhole_web_mm = {}", ("limits.hole_web_mm", "neither min nor max")),
+    ('solver = "full"\n' + AXIS, ("solver: found 'full' with the published model",)),
+    ('model = "components"\n' + AXIS, ("lacks ring_pin_radius_mm and disc_width_mm",)),
     (AXIS + "[limits]\nhole_web_mm = 3", ("limits.hole_web_mm", "3")),
     (AXIS + "[objective]\nminimise = 'web'", ("objective", "web")),
     (AXIS + "[objective]\nminimize = 'hole_web_mm'", ("objective.minimize", "unknown key")),

@@ -131,7 +131,7 @@ def checked_disc(drive: Drive, disc: int, modification: bool, min_wall_mm: float
     made = _built(drive, given, disc, modification)
     if made.wall_mm < min_wall_mm:
         between = _thinnest(made)
-        what = "break through" if made.wall_mm <= 0 else "leave too little"
+        what = "break through" if made.wall_mm <= 0 else "leave too little of"
         raise DesignError(
             f"{drive.name}: holes {what} the wall {between}: {made.wall_mm:.4g} mm of material, "
             f"expected at least {min_wall_mm:g} mm (min_wall_mm)"

@@ -206,9 +206,8 @@ def _figures(label: str, drive: Drive) -> DriveFigures:
     reason = drive.explain()
     parts_reason = None if reason else drive.part_study().explain(drive.study(), 0)
     has_parts = reason is None and parts_reason is None
-    study = Study.of(
-        Space.grid(drive), model="components" if has_parts else "published", solver="full"
-    )
+    space = Space.grid(drive)
+    study = Study.of(space, model="components", solver="full") if has_parts else Study.of(space)
     row = sweep(study).row(0, named=True)
     results = {
         name: None if row[name] is None else float(row[name])

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from cyclosweep.cli.output import AsJson, fail, print_json, refuse_output
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import DesignError, InputError, did_you_mean
 
 ENDINGS = (".dxf", ".svg", ".csv", ".step", ".stp")
 """Endings of the files that can be written."""
@@ -69,7 +69,7 @@ def export(
             facts = cad.write_points(
                 chosen,
                 out,
-                disc=disc or 1,
+                disc=1 if disc is None else disc,
                 chord_error_mm=chord_error_mm,
                 modification=modification,
                 min_wall_mm=min_wall_mm,
@@ -94,6 +94,9 @@ def export(
                 min_wall_mm=min_wall_mm,
                 housing_bore_radius_mm=housing_bore_radius_mm,
             )
+    except DesignError as error:
+        reason = str(error).removeprefix(f"{chosen.name}: ")
+        raise DesignError(f"{drive}: {reason}") from None
     except OSError as error:
         fail(f"{out}: {error.strerror or error}", 1)
     if as_json:

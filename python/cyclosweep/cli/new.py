@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from cyclosweep.choose.templates import Kind, template
+from cyclosweep.cli.output import refuse_drive_name
 from cyclosweep.errors import InputError
 
 
@@ -27,6 +28,8 @@ def new(
     if out is None:
         print(text, end="")
         return
+    if kind == "drive":
+        refuse_drive_name(out)
     if out.exists():
         raise InputError(f"{out}: exists already, expected the name of a new file")
     write_text(out, text)

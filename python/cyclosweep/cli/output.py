@@ -30,6 +30,7 @@ __all__ = [
     "interruptible",
     "print_json",
     "print_tables",
+    "refuse_drive_name",
     "refuse_folder",
     "refuse_output",
     "refuse_overwriting",
@@ -148,6 +149,18 @@ def refuse_overwriting(out: Path, *, force: bool) -> None:
     """
     if out.exists() and not force:
         raise InputError(f"--out: {out} exists; --force replaces it")
+
+
+def refuse_drive_name(out: Path) -> None:
+    """Refuse a name for a drive file by which no command would find it again.
+
+    Raises
+    ------
+    InputError
+        Unless it ends in ``.toml``; a pipe or ``/dev/stdout`` may have any name.
+    """
+    if out.suffix != ".toml" and (out.is_file() or not out.exists()):
+        raise InputError(f"--out: found {out}, expected a drive file ending in .toml")
 
 
 def _same(path: Path, other: Path) -> bool:

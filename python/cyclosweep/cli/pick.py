@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cyclosweep.cli.output import refuse_output, refuse_overwriting
+from cyclosweep.cli.output import refuse_drive_name, refuse_output, refuse_overwriting
 
 
 def pick(
@@ -27,6 +27,7 @@ def pick(
     from cyclosweep.sweep.stored import open_study
 
     refuse_output(out)
+    refuse_drive_name(out)
     refuse_overwriting(out, force=force)
     stored = open_study(study)
     drive = stored.drive_of(variant, name=name)

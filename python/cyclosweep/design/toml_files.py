@@ -208,6 +208,9 @@ def one_line(error: ValidationError, *tables: type[BaseModel]) -> str:
         choices = first["ctx"]["expected_tags"]
         where = f"{where}.{first['ctx']['discriminator'].strip(_QUOTE)}"
         text = f"{where}: {_not_of(first['ctx']['tag'], choices)}"
+    elif kind == "too_short":
+        least = first["ctx"]["min_length"]
+        text = f"{where}: {_not_of(first['input'], f'at least {least} in the list')}"
     else:
         wanted = first["msg"].removeprefix("Input should be ").removeprefix("a valid ")
         wanted = _EXPECTED.get(kind, wanted)

@@ -80,9 +80,11 @@ class Leaders:
             if name not in ("variant", self.column)
             and len({row[name] for row in self.best[: self.tied]}) > 1
         ]
+        # Draws among a few values repeat each other.
+        where = f"differ in {', '.join(differing)}" if differing else "have the same inputs"
         return [
             f"{words}: {self.tied:,} variants are equally good, so the best is one of several; "
-            f"those listed differ in {', '.join(differing)}"
+            f"those listed {where}"
         ]
 
 

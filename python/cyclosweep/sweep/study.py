@@ -32,6 +32,7 @@ from cyclosweep.sweep.study_checks import (
     check_objectives,
     checked_bounds,
     checked_objectives,
+    checked_solver,
 )
 from cyclosweep.sweep.study_definition import own_definition, part_definition, train_definition
 from cyclosweep.sweep.study_file import read_study_file
@@ -154,7 +155,7 @@ class Study:
         for key, each in (("limits", limits), ("constraints", constraints), ("columns", columns)):
             instance_of(key, {} if each is None else each, Mapping)
         kind = one_of("model", "published" if model is None else model, get_args(StudyModel))
-        engine = one_of("solver", "quadratic" if solver is None else solver, get_args(Engine))
+        engine = checked_solver(solver, kind)
         loads = checked_loads(DEFAULT_LOADS_TN if loads_tn is None else loads_tn)
         if len(set(loads)) != len(loads):
             raise InputError(f"loads_tn: found {list(loads)}, expected each load once")

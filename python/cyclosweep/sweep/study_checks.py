@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Container, Iterable, Mapping
-from typing import cast
+from typing import cast, get_args
 
 import polars as pl
 
+from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers
-from cyclosweep.design.parts import PART_DEFAULTS
-from cyclosweep.errors import InputError, did_you_mean, instance_of
+from cyclosweep.design.parts import PART_DEFAULTS, Engine
+from cyclosweep.errors import InputError, did_you_mean, instance_of, one_of
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.objective import Objective
 
@@ -18,8 +19,10 @@ __all__ = [
     "check_kept",
     "check_limits",
     "check_objectives",
+    "check_parts",
     "checked_bounds",
     "checked_objectives",
+    "checked_solver",
 ]
 
 
@@ -40,11 +43,13 @@ def checked_bounds(name: str, ends: object) -> tuple[str, float, float]:
     Raises
     ------
     InputError
-        Unless they are numbers in order.
+        Unless one of them is there and they are numbers in order.
     """
     if not isinstance(ends, (tuple, list)) or len(ends) != 2:
         raise InputError(f"limits.{name}: found {ends!r}, expected (least or None, most or None)")
     low, high = ends
+    if low is None and high is None:
+        raise InputError(f"limits.{name}: found neither min nor max, expected one of them")
     given = [-math.inf if low is None else low, math.inf if high is None else high]
     least, most = real_numbers(f"limits.{name}", given)
     if not least <= most:
@@ -77,6 +82,57 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
     if len(set(found)) != len(found):
         raise InputError("objective: found one twice, expected each once")
     return tuple(found)
+
+
+def checked_solver(given: object, model: str) -> Engine:
+    """Return how equilibria are found, by default the faster one.
+
+    Parameters
+    ----------
+    given : str or None
+        What was found.
+    model : str
+        The study's model.
+
+    Returns
+    -------
+    {"quadratic", "full"}
+
+    Raises
+    ------
+    InputError
+        For another name, or one that would change nothing.
+    """
+    if given == "full" and model == "published":
+        raise InputError(
+            "solver: found 'full' with the published model, which solves no equilibria; expected "
+            'model = "components" beside it'
+        )
+    return cast(Engine, one_of("solver", given or "quadratic", get_args(Engine)))
+
+
+def check_parts(drive: Drive, varying: Container[str]) -> None:
+    """Refuse a component model of which no variant could be built.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive of the study.
+    varying : container of str
+        Inputs that vary.
+
+    Raises
+    ------
+    InputError
+        With the dimensions for which nothing stands in.
+    """
+    required = [name for name, (kind, *_) in PART_DEFAULTS.items() if kind == "required"]
+    missing = [name for name in required if getattr(drive, name) is None and name not in varying]
+    if missing:
+        raise InputError(
+            f"model: found 'components' of {drive.name}, which lacks {' and '.join(missing)}, "
+            "expected them in the drive file or as axes"
+        )
 
 
 def check_limits(

@@ -16,6 +16,7 @@ from cyclosweep.sweep.derived import check_new_name
 from cyclosweep.sweep.distributions import distribution_from
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Method, Space
+from cyclosweep.sweep.study_checks import check_parts
 from cyclosweep.sweep.table_files import read_table
 
 __all__ = ["StudyFile", "read_study_file"]
@@ -100,7 +101,10 @@ class StudyFile(TomlTable):
         drive = Drive.load(self.drive, beside=folder)
         is_table = self.sample.method == "table"
         space = self._table(drive, folder) if is_table else self._drawn(drive)
-        return space.derive(**self.derived) if self.derived else space
+        space = space.derive(**self.derived) if self.derived else space
+        if self.model == "components":
+            check_parts(drive, space.varying)
+        return space
 
     def bounds(self) -> dict[str, tuple[float | None, float | None]]:
         """Least and greatest value of each limited column, None where there is none."""
