@@ -1,8 +1,9 @@
 """Errors that end in one clear line: bad input, a design that cannot be built, a failed sweep."""
 
+import contextlib
 import difflib
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import TypeVar
@@ -15,6 +16,7 @@ __all__ = [
     "SweepError",
     "did_you_mean",
     "instance_of",
+    "naming",
     "one_of",
     "path_of",
     "refuse_no_file",
@@ -142,6 +144,35 @@ def instance_of(what: str, found: object, *kinds: type) -> None:
     if not isinstance(found, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
         raise InputError(f"{what}: found {_short(found)}, expected {names}")
+
+
+@contextlib.contextmanager
+def naming(source: str | Path) -> Iterator[None]:
+    """Put the file or folder of which something is refused before what is said of it.
+
+    Parameters
+    ----------
+    source : str or Path
+        Where it stands.
+
+    Raises
+    ------
+    InputError
+        The same one; its text begins with the source.
+
+    Examples
+    --------
+    >>> with naming("study.toml"):
+    ...     raise InputError("axes: none, expected at least one")
+    Traceback (most recent call last):
+        ...
+    cyclosweep.errors.InputError: study.toml: axes: none, expected at least one
+    """
+    try:
+        yield
+    except InputError as error:
+        text = str(error)
+        raise InputError(text if text.startswith(str(source)) else f"{source}: {text}") from None
 
 
 def path_of(what: str, found: object) -> Path:

@@ -145,3 +145,10 @@ def test_a_task_is_small(tmp_path: Path) -> None:
     dataset = Dataset(cs.Study.of(space()), tmp_path, ROWS)
     dataset.study.core.evaluate_range(0, 10, [])
     assert len(pickle.dumps((write_parts, dataset, [dataset.part(0)]))) < 20_000
+
+
+def test_what_is_no_address_of_a_scheduler_is_bad_input(tmp_path: Path) -> None:
+    with pytest.raises(cs.InputError, match="scheduler tcp://x: missing port"):
+        cs.sink(
+            cs.Space.grid(cs.Drive.reference_87()), tmp_path, engine="dask", scheduler="tcp://x"
+        )

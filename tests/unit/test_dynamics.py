@@ -267,6 +267,25 @@ def test_a_recorded_torque_is_followed(tmp_path: Path) -> None:
     assert run.table.equals(again.table)
 
 
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("0,0\n0.2,5\n0.1,5\n", "time_s, data row 3: found 0.1 after 0.2, expected times that"),
+        ("0,0\n0.2,nan\n", "column input_nm: expected a number in every row"),
+        ("", "no rows"),
+    ],
+)
+def test_a_recorded_torque_that_makes_no_sense_names_its_file(
+    tmp_path: Path, rows: str, words: str
+) -> None:
+    (tmp_path / "torque.csv").write_text(f"time_s,input_nm\n{rows}")
+    (tmp_path / "event.toml").write_text('kind = "recorded"\nrecording = "torque.csv"\n')
+    with pytest.raises(cs.InputError, match=f"torque.csv: .*{words}"):
+        cs.transient(
+            cs.Train([0.0035], [21.0], grounded=True), cs.Event.from_toml(tmp_path / "event.toml")
+        )
+
+
 def test_a_blocked_output_stops_what_turns() -> None:
     drive = cs.Drive.reference_87()
     train = drive.train(load_inertia_kg_m2=5.0)

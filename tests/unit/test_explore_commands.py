@@ -93,6 +93,8 @@ def test_each_prints_a_table_or_json_and_writes_a_table(
         (["sensitivity", "study.toml", "--results", "twist"], "results: no column twist"),
         (["robust", "reference-87", "--tolerances", TOLERANCES], "no objective"),
         (["robust", "Maße 1", "--tolerances", "none.toml"], "none.toml"),
+        (["best", "Maße 1", "--minimise", "nope"], "Maße 1: objective: no column nope"),
+        (["sweep", "study.toml", "--out", "o", "--scheduler", "tcp://x"], "only for engine dask"),
         (["robust", "a.csv", "b.csv", "--tolerances", TOLERANCES], "expected one folder"),
     ],
 )
@@ -106,6 +108,27 @@ def test_bad_input_is_one_line_and_status_2(
     assert run(monkeypatch, *arguments) == 2
     error = capsys.readouterr().err
     assert message in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("nope_mm = 0.01", "tolerances.nope_mm: no such input"),
+        ("output_pin_count = 1", "tolerances.output_pin_count: a whole number or a word does not"),
+    ],
+)
+def test_a_deviation_that_does_not_fit_names_the_tolerance_file(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    line: str,
+    message: str,
+) -> None:
+    (folder / "wrong.toml").write_text(f"[tolerances]\n{line}\n")
+    assert run(monkeypatch, "robust", "Maße 1", "--tolerances", "wrong.toml") == 2
+    error = capsys.readouterr().err
+    assert f"wrong.toml: {message}" in error
     assert error.count("\n") == 1
 
 

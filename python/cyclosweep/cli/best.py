@@ -10,7 +10,7 @@ import typer
 from cyclosweep.cli.exploring import check_out, plain_rows, say_if_unfinished
 from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, naming
 
 if TYPE_CHECKING:
     import polars as pl
@@ -58,7 +58,7 @@ def best(
     stored = open_study(study)
     say_if_unfinished(study)
     goals = _goals(pareto, minimise, maximise, stored)
-    with interruptible("nothing was written"):
+    with interruptible("nothing was written"), naming(study):
         if pareto:
             table = pareto_front(study, goals, limit)
             count = f"{table.height:,} variants on the front"

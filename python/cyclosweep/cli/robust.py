@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,7 +22,7 @@ from cyclosweep.cli.exploring import (
 )
 from cyclosweep.cli.frames import FrameTable
 from cyclosweep.cli.output import AsJson, interruptible, print_json, print_tables
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, naming
 
 if TYPE_CHECKING:
     import polars as pl
@@ -73,7 +75,7 @@ def robust(
 
     check_out(out, *designs, tolerances)
     spread = Tolerances.from_toml(tolerances)
-    with interruptible("nothing was written"):
+    with interruptible("nothing was written"), _naming_deviations(tolerances):
         wanted, base, table, study = _designs(designs, minimise, maximise, limit, candidates, drive)
         found = robust_choice(
             table,
@@ -143,6 +145,18 @@ def _designs(
     if drive is not None:
         raise InputError("--drive: only for a table of designs")
     return _stated(wanted), None, [Drive.load(path) for path in given], None
+
+
+@contextlib.contextmanager
+def _naming_deviations(file: Path) -> Iterator[None]:
+    """Name the tolerance file where a deviation does not fit the designs."""
+    try:
+        yield
+    except InputError as error:
+        if not str(error).startswith("tolerances."):
+            raise
+        with naming(file):
+            raise
 
 
 def _limits_of(study: StoredStudy) -> list[str]:

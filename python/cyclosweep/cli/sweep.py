@@ -55,9 +55,11 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """Sweep a study to a folder of Parquet parts; killed, the same command goes on from there."""
+    from cyclosweep.sweep.executors import executor_of
     from cyclosweep.sweep.shards import sink
 
     refuse_folder(out)
+    executor_of(engine, workers=workers, scheduler=scheduler)
     with interruptible(LEFT):
         swept = _study(study, rows)
         _say_size(swept, out, fresh=fresh, yes=yes)

@@ -287,6 +287,8 @@ def _recorded(train: Train, event: Event) -> dict[str | int, Any]:
         table = pl.read_csv(path, comment_prefix="#")
     except (OSError, pl.exceptions.PolarsError) as error:
         raise InputError(f"{path}: {' '.join(str(error).split())[:120]}") from None
+    if not table.height:
+        raise InputError(f"{path}: no rows, expected at least one")
     torques: dict[str | int, Any] = {}
     places = {"input_nm": 0, "output_nm": len(train.names) - 1}
     for column in ("time_s", *places):
@@ -294,11 +296,18 @@ def _recorded(train: Train, event: Event) -> dict[str | int, Any]:
             if column == "output_nm":
                 continue
             raise InputError(f"{path}: column {column}: missing, found {', '.join(table.columns)}")
-        if not table[column].dtype.is_numeric() or table[column].null_count():
+        values = table[column]
+        if not values.dtype.is_numeric() or not values.is_finite().all() or values.null_count():
             raise InputError(f"{path}: column {column}: expected a number in every row")
     if "output_nm" in table.columns and train.grounded:
         raise InputError(f"{path}: column output_nm: the output is locked, expected input_nm alone")
     times = table["time_s"].cast(pl.Float64).to_numpy()
+    if len(falls := np.flatnonzero(np.diff(times) < 0)):
+        before, after = times[falls[0]], times[falls[0] + 1]
+        raise InputError(
+            f"{path}: column time_s, data row {falls[0] + 2}: found {after:g} after {before:g}, "
+            "expected times that do not fall"
+        )
     for column, node in places.items():
         if column in table.columns:
             torques[node] = (times, table[column].cast(pl.Float64).to_numpy())

@@ -104,7 +104,7 @@ def dask_executor(workers: int | None, scheduler: str | None) -> Iterator[Execut
     Raises
     ------
     InputError
-        When ``distributed`` is not installed.
+        When ``distributed`` is not installed, or the scheduler is no address.
     SweepError
         When the scheduler cannot be reached.
     """
@@ -129,6 +129,8 @@ def dask_executor(workers: int | None, scheduler: str | None) -> Iterator[Execut
                 client = stack.enter_context(Client(scheduler, timeout=_CONNECT_S))
             except OSError as error:
                 raise SweepError(f"scheduler {scheduler}: {error}") from None
+            except ValueError as error:  # what is no address
+                raise InputError(f"scheduler {scheduler}: {error}") from None
         # Not pure: a part that is tried again is a new task, not the failed one's result.
         executor = client.get_executor(retries=1, pure=False)
         executor._max_workers = max(sum(client.nthreads().values()), workers or 1)

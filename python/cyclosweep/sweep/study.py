@@ -17,7 +17,7 @@ from cyclosweep.design.numbers import checked_loads
 from cyclosweep.design.part_units import TRAIN_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS, TRAIN_INPUTS, Engine
 from cyclosweep.design.units import quantity
-from cyclosweep.errors import InputError, instance_of, one_of
+from cyclosweep.errors import InputError, instance_of, naming, one_of
 from cyclosweep.notebook import html_table
 from cyclosweep.plugins import COLUMNS, CONSTRAINTS, Column
 from cyclosweep.sweep.derived import check_new_name, fixed_inputs
@@ -240,7 +240,7 @@ class Study:
             One line that names the file, the key, what was found and what was expected.
         """
         file = read_study_file(path)
-        try:
+        with naming(path):
             return cls.of(
                 file.space(Path(path).parent),
                 loads_tn=file.loads_tn,
@@ -253,9 +253,6 @@ class Study:
                 keep=file.kept_columns(),
                 only_ok=file.only_ok,
             )
-        except InputError as error:
-            text = str(error)
-            raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
 
     @functools.cached_property
     def core(self) -> _core.Study:

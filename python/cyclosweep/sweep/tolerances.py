@@ -16,7 +16,7 @@ import cyclosweep._core as _core
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.toml_files import read_toml, refuse_other_kind
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, naming
 from cyclosweep.sweep.axes import is_count, known_input
 from cyclosweep.sweep.distributions import Distribution, distribution_from, uniform
 
@@ -95,7 +95,7 @@ class Tolerances:
         """
         table = read_toml(path)
         refuse_other_kind(table, "tolerances", path)
-        try:
+        with naming(path):
             for key in table:
                 if key not in _KEYS:
                     raise InputError(f"{key}: no such key{did_you_mean(key, _KEYS)}")
@@ -108,8 +108,6 @@ class Tolerances:
             if read.get("batches") and "batch_size" not in table:
                 raise InputError("batch_size: missing, expected how many pieces share a batch")
             return cls(read.get("tolerances", {}), read.get("batches", {}), size)
-        except InputError as error:
-            raise InputError(f"{path}: {error}") from None
 
     def __repr__(self) -> str:
         batches = f", batches of {self.batch_size:,}" if self.batches else ""
@@ -216,9 +214,14 @@ def nominal_value(drive: Drive, name: str) -> float:
     InputError
         For an unknown input, one without a value, a whole number or the criterion.
     """
-    known_input(drive, name)
+    try:
+        known_input(drive, name)
+    except InputError as error:
+        raise InputError(f"tolerances.{error}") from None
     if is_count(name) or name == "criterion":
-        raise InputError(f"tolerances.{name}: no length or other real number, so it has none")
+        raise InputError(
+            f"tolerances.{name}: a whole number or a word does not deviate, expected another input"
+        )
     published = drive.values()
     value = published[name] if name in published else getattr(drive, name)
     if value is None or math.isnan(value):
