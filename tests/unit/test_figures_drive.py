@@ -105,7 +105,7 @@ def test_the_profile_touches_every_ring_pin() -> None:
     lobes, ring, pin, e = 11, 50.0, 4.0, 1.5
     outline = disc_profile(
         lobes, ring_pin_circle_radius_mm=ring, ring_pin_radius_mm=pin, eccentricity_mm=e,
-        points_per_lobe=2000,
+        chord_error_mm=1e-6,
     )  # fmt: skip
     for theta in (0.0, 0.7, 4.0):
         turn = -theta / lobes
@@ -115,6 +115,49 @@ def test_the_profile_touches_every_ring_pin() -> None:
             at = math.tau * k / (lobes + 1)
             centre = ring * np.array([math.cos(at), math.sin(at)])
             assert np.hypot(*(here - centre).T).min() == pytest.approx(pin, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("lobes", "ring", "pin", "e"),
+    [(29, 52.5, 3.5, 1.25), (87, 75.0, 2.0, 0.62), (11, 50.0, 2.0, 4.1), (3, 30.0, 8.0, 6.0)],
+)
+@pytest.mark.parametrize("chord_error_mm", [1e-2, 1e-3])
+def test_chords_of_the_profile_keep_to_it(
+    lobes: int, ring: float, pin: float, e: float, chord_error_mm: float
+) -> None:
+    sizes = {"ring_pin_circle_radius_mm": ring, "ring_pin_radius_mm": pin, "eccentricity_mm": e}
+    outline = disc_profile(lobes, **sizes, chord_error_mm=chord_error_mm)
+    true = disc_profile(lobes, **sizes, chord_error_mm=1e-7)
+    lobe = true[: len(true) // lobes : 7]
+    chords = np.diff(outline, axis=0)
+    from_start = lobe[:, None] - outline[None, :-1]
+    share = np.clip((from_start * chords).sum(axis=2) / (chords**2).sum(axis=1), 0, 1)
+    off = np.linalg.norm(from_start - share[:, :, None] * chords, axis=2).min(axis=1)
+    assert 0.4 * chord_error_mm < off.max() < chord_error_mm
+
+
+def test_the_drawn_disc_has_the_holes_that_are_cut_and_no_corners(tmp_path: Path) -> None:
+    from matplotlib.patches import Circle, Polygon
+
+    drive = cs.Drive.from_toml(ROOT / "examples" / "catalogue-29.toml")
+    drive = drive.replace(hole_clocking_deg=3.0)
+    turn, ratio = math.radians(20.0), drive.ratio
+    figure = disc_figure(drive, mesh_deg=20.0)
+    pins = [*artists(figure, "active-pin"), *artists(figure, "idle-pin")]
+    # Up and across the picture are along and across ring pin 0; the disc has turned back.
+    drawn = [pin.center[::-1] for pin in pins if isinstance(pin, Circle)]
+    [hole] = cs.cad.disc.checked_disc(drive, 1, True, 1.0).holes_mm[:1]
+    cut = math.atan2(hole[1], hole[0]) - turn / ratio
+    circle = drive.output_pin_circle_radius_mm
+    place = circle * np.array([math.cos(cut), math.sin(cut)])
+    assert np.linalg.norm(np.array(drawn) - place, axis=1).min() < 1e-9
+    assert len(drawn) == drive.output_pin_count
+    [profile] = artists(figure, "profile")
+    assert isinstance(profile, Polygon)
+    steps = np.diff(np.asarray(profile.get_xy()), axis=0)
+    steps = steps[np.hypot(*steps.T) > 0]
+    bends = np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))
+    assert np.degrees(np.abs(bends)).max() < 12
 
 
 def test_the_line_of_the_twist_is_the_model_s(reference: cs.Drive) -> None:

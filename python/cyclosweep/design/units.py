@@ -22,7 +22,11 @@ INPUTS: dict[str, Quantity] = {
     "eccentricity_mm": Quantity("e", "mm", "eccentricity of the input shaft"),
     "ring_pin_circle_radius_mm": Quantity("R", "mm", "radius of the ring pins' circle"),
     "hole_clocking_deg": Quantity(
-        "", "deg", "clocking of the hole pattern from the position symmetric about ring pin 0"
+        "",
+        "deg",
+        "clocking of the hole pattern: of the published model from the position symmetric about "
+        "ring pin 0, with holes half a pitch on either side of it; of the component model and "
+        "drawings from the position with a hole at ring pin 0",
     ),
     "output_pin_count": Quantity("N_OP", "1", "output pins, equispaced, 3 to 64"),
     "output_pin_circle_radius_mm": Quantity("R_OP", "mm", "radius of the output pins' circle"),
