@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import subprocess
 import sys
@@ -145,6 +146,25 @@ def test_a_map_of_a_whole_grid_has_contours_one_with_gaps_has_cells(table: pl.Da
     drawn: Any = mesh.get_array()
     assert drawn.compressed() == pytest.approx(cells[np.isfinite(cells)])
     assert cut(figure) == []
+
+
+def test_ticks_of_a_map_stand_apart_and_among_the_values() -> None:
+    clearances = [0.0, 0.005, 0.01]
+    frame = pl.DataFrame(
+        [(x, y, x + y) for x in clearances for y in (0.0, 2.5e-3, 5e-3, 7.5e-3) if x + y < 0.015],
+        schema=["hole_clearance_mm", "ring_clearance_mm", "lost_motion_3pct_arcmin"],
+        orient="row",
+    )
+    figure = response_figure(frame, *frame.columns)
+    figure.draw_without_rendering()
+    panel = figure.axes[0]
+    for axis, low, high in ((panel.xaxis, 0.0, 0.01), (panel.yaxis, 0.0, 7.5e-3)):
+        ticks = axis.get_ticklocs()
+        assert len(ticks) >= 3
+        assert ticks.min() >= low - 1e-9
+        assert ticks.max() <= high + 1e-9
+        boxes = [label.get_window_extent() for label in axis.get_ticklabels()]
+        assert not any(a.overlaps(b) for a, b in itertools.pairwise(boxes))
 
 
 def test_pages_are_small_whatever_the_table(table: pl.DataFrame) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from cyclosweep.explore.tables import Conditions, Table
 from cyclosweep.figures.rows import How, cells_of
@@ -12,10 +14,18 @@ from cyclosweep.figures.style import INK, SEQUENTIAL, new_figure, note, styled
 from cyclosweep.figures.words import axis_label
 
 if TYPE_CHECKING:
+    from matplotlib.axis import Axis
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 __all__ = ["response_figure"]
+
+Reals = npt.NDArray[np.float64]
+
+_TICKS = (6, 4, 3, 2, 1)
+"""Steps between ticks that are tried, the most that stand apart are taken."""
+_LABEL_GAP = 0.5
+"""Least distance between two labels of ticks, in their height."""
 
 
 @styled
@@ -78,8 +88,28 @@ def response_figure(
         panel.plot(cells.x[at[:, 1]], cells.y[at[:, 0]], ".", color=INK, markersize=1.2)
     bar = figure.colorbar(mappable, ax=panel, pad=0.02)
     bar.set_label(axis_label(result))
-    panel.locator_params(nbins=6)
     panel.set_xlabel(axis_label(x))
     panel.set_ylabel(axis_label(y))
     note(figure, cells.said)
+    _set_ticks(figure, panel.xaxis, cells.x)
+    _set_ticks(figure, panel.yaxis, cells.y)
     return figure
+
+
+def _set_ticks(figure: Figure, axis: Axis, values: Reals) -> None:
+    """Set ticks among the values that there are, so few that their labels stand apart.
+
+    Cells reach half a step beyond the outermost values, where a length might be below zero.
+    """
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = float(values[0]), float(values[-1])
+    rounding = 1e-9 * (high - low)
+    for most in _TICKS:
+        ticks = np.asarray(MaxNLocator(most).tick_values(low, high))
+        axis.set_ticks(ticks[(ticks >= low - rounding) & (ticks <= high + rounding)])
+        figure.draw_without_rendering()
+        boxes = [label.get_window_extent() for label in axis.get_ticklabels()]
+        gap = _LABEL_GAP * boxes[0].height
+        if not any(a.padded(gap / 2).overlaps(b.padded(gap / 2)) for a, b in pairwise(boxes)):
+            break
