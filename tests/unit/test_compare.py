@@ -92,6 +92,19 @@ def test_yielding_pins_are_said() -> None:
     assert "output pins yield at their roots: 1.53 times" in remarks(figures, "warning")
 
 
+def test_what_stands_in_for_numbers_left_out_is_said() -> None:
+    drive = cs.Drive.from_toml(COMPONENTS).replace(friction_ring=None, pin_yield_strength_mpa=None)
+    said = remarks(cs.compare(drive).figures[0], "note")
+    _, found, numbers = said.partition("rest on what stands in for numbers left out: ")
+    assert found
+    assert "friction_ring 0.05" in numbers
+    assert "pin_yield_strength_mpa 750" in numbers
+    assert "disc_3_reach_mm" not in numbers
+    given = cs.compare(drive.replace(friction_ring=0.04)).figures[0]
+    assert "friction_ring" not in remarks(given, "note").partition("left out: ")[2]
+    assert "left out" not in remarks(cs.compare(cs.Drive.reference_87()).figures[0], "note")
+
+
 def test_a_drive_that_cannot_be_built_is_shown_with_the_reason() -> None:
     drive = cs.Drive.reference_87()
     found = cs.compare([drive, drive.replace(output_pin_diameter_mm=60.0)])

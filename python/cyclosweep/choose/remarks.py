@@ -50,7 +50,7 @@ def remarks_on(
     list of Remark
         Errors first, then warnings, then notes.
     """
-    found = [*_errors(reason), *_warnings(drive, results), *_notes(drive, parts_reason)]
+    found = [*_errors(reason), *_warnings(drive, results), *_notes(drive, reason, parts_reason)]
     order: tuple[Level, ...] = ("error", "warning", "note")
     return sorted(found, key=lambda remark: order.index(remark.level))
 
@@ -103,7 +103,7 @@ def _warnings(drive: Drive, results: Mapping[str, float | None]) -> Iterator[Rem
         )
 
 
-def _notes(drive: Drive, parts_reason: str | None) -> Iterator[Remark]:
+def _notes(drive: Drive, reason: str | None, parts_reason: str | None) -> Iterator[Remark]:
     marks = Counter(mark.partition(":")[0].strip() for mark in drive.provenance.values())
     assumed = [
         key for key, mark in drive.provenance.items() if mark.partition(":")[0].strip() == "assumed"
@@ -122,6 +122,22 @@ def _notes(drive: Drive, parts_reason: str | None) -> Iterator[Remark]:
         yield Remark("note", "free play is zero: every twist is that of the elastic parts alone")
     if parts_reason is not None:
         yield Remark("note", f"no component model: {parts_reason}")
+    elif reason is None and (numbers := list(_standing_in(drive))):
+        yield Remark(
+            "note",
+            "the component model and its efficiency rest on what stands in for numbers left out: "
+            + ", ".join(numbers),
+        )
+
+
+def _standing_in(drive: Drive) -> Iterator[str]:
+    """Numbers of the component model for which a default stands in, with their values."""
+    reaches = [f"disc_{disc}_reach_mm" for disc in range(1, drive.disc_count + 1)]
+    for key, value, mark in drive.part_table().iter_rows():
+        is_used = key in reaches or not key.endswith("_reach_mm")
+        if is_used and getattr(drive, key) is None and value is not None:
+            default = mark.removeprefix("assumed: ")
+            yield f"{key} {default if default.startswith('as ') else f'{value:g}'}"
 
 
 def _is_given(drive: Drive, key: str) -> bool:
