@@ -103,12 +103,13 @@ def checked_solver(given: object, model: str) -> Engine:
     InputError
         For another name, or one that would change nothing.
     """
-    if given == "full" and model == "published":
+    engine = one_of("solver", "quadratic" if given is None else given, get_args(Engine))
+    if engine == "full" and model == "published":
         raise InputError(
             "solver: found 'full' with the published model, which solves no equilibria; expected "
             'model = "components" beside it'
         )
-    return cast(Engine, one_of("solver", given or "quadratic", get_args(Engine)))
+    return cast(Engine, engine)
 
 
 def check_parts(drive: Drive, varying: Container[str]) -> None:
