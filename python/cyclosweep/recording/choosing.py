@@ -160,6 +160,12 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
             if n.role == role and not n.is_command and n.column not in taken
             and _can_be(role, numbers[n.column])
         ]  # fmt: skip
+        if role in ("crank_deg", "temperature_c"):  # a recording may lack them: nothing is asked
+            unknown = [n for n in candidates if n.unknown_unit is not None]
+            candidates = [n for n in candidates if n.unknown_unit is None]
+            choice.assumed += [
+                f"{n.column}: unit {n.unknown_unit!r} is not known: not read." for n in unknown
+            ]
         _choose_one(role, candidates, numbers, choice)
     _note_current(named, numbers, choice)
     return choice
@@ -182,7 +188,7 @@ def _choose_one(
         The result is added to it.
     """
     canonical = [n for n in candidates if n.is_canonical]
-    ranks = [_RANK.get(n.kind, 1) for n in candidates]
+    ranks = [2 if n.unknown_unit is not None else _RANK.get(n.kind, 1) for n in candidates]
     best = canonical or [n for n, r in zip(candidates, ranks, strict=True) if r == min(ranks)]
     needed = role in _FLAGS
     if not best:

@@ -19,10 +19,11 @@ from cyclosweep.recording.run_proposal import propose_limit, propose_runs, propo
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
 from cyclosweep.recording.stated_units import contradiction, stated_unit
-from cyclosweep.recording.units import find_unit
+from cyclosweep.recording.units import UNIT_EXAMPLES, find_unit
 
 __all__ = ["propose"]
 
+_WAYS = {"torque_nm": "say --torque-unit UNIT", "angle_deg": "say --angle-unit UNIT"}
 _KINDS = {"force": "a force", "current": "a current", "counts": "counts of an encoder"}
 
 
@@ -159,6 +160,13 @@ def _column(
     dict
     """
     column: dict[str, Any] = {"column": named.column}
+    if named.unknown_unit is not None:
+        way = _WAYS.get(role, f"give unit or scale under columns.{role} in settings for --meta")
+        made.open.append(
+            f"{named.column}: unit {named.unknown_unit!r} is not known, expected "
+            f"{UNIT_EXAMPLES[role]}; {way}."
+        )
+        return column
     if named.is_canonical or role == "run":
         stated = find_unit(named.unit, role) if named.unit is not None else None
         if stated is not None and (stated.factor, stated.offset) != (1.0, 0.0):

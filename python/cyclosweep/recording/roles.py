@@ -10,6 +10,7 @@ from cyclosweep.recording.units import (
     UNIT_EXAMPLES,
     find_unit,
     split_name,
+    unknown_unit,
 )
 
 __all__ = ["COMMAND", "Named", "describe", "name_weight", "with_unit"]
@@ -58,6 +59,8 @@ class Named:
         The name says that it was asked for, not measured.
     is_canonical : bool
         It is a canonical name, which carries its unit.
+    unknown_unit : str or None
+        Unit that the file states for it and that is not known.
     """
 
     column: str
@@ -66,6 +69,7 @@ class Named:
     kind: str | None
     is_command: bool
     is_canonical: bool
+    unknown_unit: str | None = None
 
 
 def describe(column: str, unit: str | None = None) -> Named:
@@ -90,9 +94,14 @@ def describe(column: str, unit: str | None = None) -> Named:
     True
     """
     if column in QUANTITIES:
-        return Named(column, column, unit or CANONICAL_UNITS.get(column), None, False, True)
+        known_unit, unknown = (unit, None) if unit is None or find_unit(unit) else (None, unit)
+        own = known_unit or CANONICAL_UNITS.get(column)
+        return Named(column, column, own, None, False, True, unknown)
     bare, written, _ = split_name(column)
-    unit = unit if unit is not None and find_unit(unit) else written
+    unknown = None
+    if unit is None or find_unit(unit) is None:
+        unknown = None if written is not None else unit or unknown_unit(column)
+        unit = written
     words = _words_of(bare)
     role = _role_of(bare.strip(), words)
     known = None if unit is None else find_unit(unit, role) or find_unit(unit)
@@ -110,7 +119,7 @@ def describe(column: str, unit: str | None = None) -> Named:
     if role is not None and unit is not None and find_unit(unit, role) is None:
         role = None  # "torque error [%]", "position [mm]": the unit is of something else
     is_command = any(word in COMMAND or word.startswith("soll") for word in words)
-    return Named(column, role, unit, kind, is_command, False)
+    return Named(column, role, unit, kind, is_command, False, None if role == "run" else unknown)
 
 
 def with_unit(named: Named, role: str, unit: str) -> Named:
@@ -138,7 +147,7 @@ def with_unit(named: Named, role: str, unit: str) -> Named:
     if known is None:
         flag = "--torque-unit" if role == "torque_nm" else "--angle-unit"
         raise InputError(f"{flag}: found {unit!r}, expected a unit such as {UNIT_EXAMPLES[role]}")
-    return replace(named, unit=unit, kind=known.kind, is_canonical=False)
+    return replace(named, unit=unit, kind=known.kind, is_canonical=False, unknown_unit=None)
 
 
 def name_weight(cell: str) -> int:

@@ -6,8 +6,8 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.metadata import Column, Metadata, conversion
-from cyclosweep.recording.roles import describe
-from cyclosweep.recording.units import MEANINGS, find_unit, split_name
+from cyclosweep.recording.roles import Named, describe
+from cyclosweep.recording.units import MEANINGS, UNIT_EXAMPLES, find_unit, split_name
 
 __all__ = ["contradiction", "stated_unit", "take_stated_units"]
 
@@ -86,6 +86,8 @@ def take_stated_units(
         found = stated_unit(table, source.column)
         where = f"{meta_path}, key columns.{name}" if name in meta.columns else f"{path}"
         _refuse_wrong_replacement(where, source, found)
+        if found is None and source.unit is None and source.scale == 1.0:
+            _refuse_unknown(path, name, describe(source.column, table.units.get(source.column)))
         if found is None or source.instead_of is not None:
             continue
         stated, certain = found
@@ -141,6 +143,30 @@ def _refuse_wrong_replacement(where: str, source: Column, found: tuple[str, bool
         raise InputError(
             f"{where}: instead_of: found {source.instead_of!r}, but the file {said} for column "
             f"{source.column!r}"
+        )
+
+
+def _refuse_unknown(path: Path, name: str, stated: Named) -> None:
+    """Refuse a unit that the file states and nobody knows, where the settings say nothing.
+
+    Parameters
+    ----------
+    path : Path
+        The recording's file.
+    name : str
+        Canonical column.
+    stated : Named
+        What name and unit of the file's column say.
+
+    Raises
+    ------
+    InputError
+        With the unit, and what would be one.
+    """
+    if stated.unknown_unit is not None and name in UNIT_EXAMPLES:
+        raise InputError(
+            f"{path}, column {stated.column}: unit {stated.unknown_unit!r} is not known, expected "
+            f"{UNIT_EXAMPLES[name]}; give unit or scale under columns.{name} in the settings"
         )
 
 

@@ -15,6 +15,7 @@ __all__ = [
     "factor_of",
     "find_unit",
     "split_name",
+    "unknown_unit",
 ]
 
 Kind = Literal["torque", "force", "current", "angle", "counts", "time", "temperature"]
@@ -87,14 +88,18 @@ class Unit:
 _TORQUE = {
     "n m": 1.0,
     "nm": 1.0,
-    "newton meter": 1.0,
-    "newton metre": 1.0,
+    **dict.fromkeys(
+        ("newton meter", "newton metre", "newton meters", "newton metres", "newtonmeter"), 1.0
+    ),
     "n cm": 1e-2,
     "ncm": 1e-2,
     "n mm": 1e-3,
     "nmm": 1e-3,
     "mn m": 1e-3,
     "mnm": 1e-3,
+    **dict.fromkeys(("µn m", "µnm", "μn m", "μnm", "un m", "unm"), 1e-6),
+    **dict.fromkeys(("dn m", "dnm"), 1e-1),
+    **dict.fromkeys(("dan m", "danm"), 10.0),
     "cn m": 1e-2,
     "cnm": 1e-2,
     "kn m": 1e3,
@@ -103,18 +108,20 @@ _TORQUE = {
     "knmm": 1.0,
     **dict.fromkeys(
         ("lb in", "lbf in", "in lb", "in lbf", "lbin", "inlb", "lbs in", "in lbs", "inlbs",
-         "lbfin", "inlbf", "pound inch", "inch pound"),
+         "lbfin", "inlbf", "pound inch", "inch pound", "pound inches", "inch pounds"),
         POUND_FORCE_N * INCH_M,
     ),
     **dict.fromkeys(
         ("lb ft", "lbf ft", "ft lb", "ft lbf", "lbft", "ftlb", "lbs ft", "ft lbs", "ftlbs",
-         "lbfft", "ftlbf", "pound foot", "foot pound"),
+         "lbfft", "ftlbf", "pound foot", "foot pound", "pound feet", "foot pounds", "foot lbs"),
         POUND_FORCE_N * 12 * INCH_M,
     ),
     **dict.fromkeys(
         ("oz in", "ozf in", "in oz", "in ozf", "ozin", "inoz"), POUND_FORCE_N * INCH_M / 16
     ),
-    **dict.fromkeys(("kgf m", "kp m", "kgfm", "kpm"), KILOPOND_N),
+    **dict.fromkeys(
+        ("kgf m", "kp m", "kgfm", "kpm", "kg m", "kgm", "m kg", "mkg", "m kp", "mkp"), KILOPOND_N
+    ),
     **dict.fromkeys(("kgf cm", "kp cm", "kgfcm", "kg cm"), KILOPOND_N / 100),
 }  # fmt: skip
 _FORCE = {
@@ -129,29 +136,43 @@ _FORCE = {
 }
 _CURRENT = {"a": 1.0, "amp": 1.0, "amps": 1.0, "ampere": 1.0, "ma": 1e-3}
 _ANGLE = {
-    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°", "grad"), 1.0),
+    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°", "grad", "altgrad"), 1.0),
     "mdeg": 1e-3,
     **dict.fromkeys(("rad", "radian", "radians"), math.degrees(1.0)),
     "mrad": math.degrees(1e-3),
     **dict.fromkeys(("urad", "µrad", "μrad"), math.degrees(1e-6)),
-    **dict.fromkeys(("arcmin", "arc min", "'", "′"), 1 / 60),
-    **dict.fromkeys(("arcsec", "arc sec", '"', "″"), 1 / 3600),
     **dict.fromkeys(
-        ("rev", "revs", "revolution", "revolutions", "turn", "turns", "rot", "u", "umdr"), 360.0
+        ("arcmin", "arc min", "'", "′", "arcmins", "arcminute", "arcminutes", "arc minute",
+         "arc minutes", "minutes of arc", "bogenmin", "bogenminute", "bogenminuten",
+         "winkelminute", "winkelminuten"),
+        1 / 60,
     ),
-    "gon": 0.9,
-}
+    **dict.fromkeys(
+        ("arcsec", "arc sec", '"', "″", "arcsecs", "arcsecond", "arcseconds", "arc second",
+         "arc seconds", "seconds of arc", "bogensek", "bogensekunde", "bogensekunden",
+         "winkelsekunde", "winkelsekunden"),
+        1 / 3600,
+    ),
+    **dict.fromkeys(
+        ("rev", "revs", "revolution", "revolutions", "turn", "turns", "rot", "u", "umdr",
+         "umdrehung", "umdrehungen"),
+        360.0,
+    ),
+    **dict.fromkeys(("gon", "gons", "neugrad"), 0.9),
+}  # fmt: skip
 _COUNTS = dict.fromkeys(
-    ("count", "counts", "cts", "tick", "ticks", "inc", "incs", "increments", "inkremente", "qc"),
+    ("count", "counts", "cts", "tick", "ticks", "inc", "incs", "increments", "ink", "inkr",
+     "inkremente", "qc"),
     1.0,
-)
+)  # fmt: skip
 _TIME = {
-    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden"), 1.0),
+    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds", "millisekunden"), 1e-3),
     **dict.fromkeys(("us", "µs", "μs", "usec"), 1e-6),
     "ns": 1e-9,
-    **dict.fromkeys(("min", "mins", "minute", "minutes"), 60.0),
-    **dict.fromkeys(("h", "hr", "hour", "hours"), 3600.0),
+    **dict.fromkeys(("min", "mins", "minute", "minutes", "minuten"), 60.0),
+    **dict.fromkeys(("h", "hr", "hour", "hours", "std", "stunde", "stunden"), 3600.0),
+    **dict.fromkeys(("d", "day", "days", "tag", "tage"), 86400.0),
 }
 _TEMPERATURE: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("c", "degc", "deg c", "°c", "° c", "℃", "celsius"), (1.0, 0.0)),
@@ -166,6 +187,11 @@ _SIMPLE: dict[Kind, dict[str, float]] = {
     "counts": _COUNTS,
     "time": _TIME,
 }
+
+OTHER_UNITS = frozenset(
+    ("%", "V", "mV", "mV/V", "mm", "µm", "rpm", "U/min", "1/min", "bar", "Hz", "W", "kW")
+)
+"""Units of columns that a recording may have besides its own, none of a torque, angle or clock."""
 
 _IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[({<](?P<unit>[^\[\](){}<>]*)[\])}>]\s*$")
 _AFTER_SIGN = re.compile(r"^(?P<name>.*?)(?:\s*/\s*|,\s*|\s+in\s+)(?P<unit>[^/,]+)$")
@@ -195,6 +221,8 @@ def find_unit(text: str, column: str | None = None) -> Unit | None:
     True
     """
     plain = text.strip().strip("[](){}<>").strip()
+    if plain.startswith("MN"):  # mega or, in capitals throughout, milli: a factor of 10^9
+        return None
     tidy = " ".join(re.sub(r"[·⋅∙•*.\-_×]", " ", plain).split())
     kinds = QUANTITIES[column] if column else (*_SIMPLE, "temperature")
     for kind in kinds:
@@ -261,8 +289,10 @@ def split_name(header: str) -> tuple[str, str | None, bool]:
     >>> split_name("twist_mrad")
     ('twist', 'mrad', False)
     """
-    if (match := _IN_BRACKETS.match(header)) and find_unit(match["unit"]):
-        return match["name"], match["unit"].strip(), True
+    if match := _IN_BRACKETS.match(header):
+        # What stands in them is no part of a name: "Zeit [1/100 s]" is not in seconds.
+        known = find_unit(match["unit"])
+        return (match["name"], match["unit"].strip(), True) if known else (header, None, False)
     if (match := _AFTER_SIGN.match(header)) and find_unit(match["unit"]):
         return match["name"], match["unit"].strip(), False
     if match := _LAST_WORDS.match(header):
@@ -270,8 +300,41 @@ def split_name(header: str) -> tuple[str, str | None, bool]:
         for count in (2, 1):
             unit = " ".join(words[-count:])
             if len(words) > count and (known := find_unit(unit)):
-                # A bare letter after a name is more often an index or an axis than a unit.
-                if len(unit) == 1 and known.kind != "time":
+                # A bare letter after a name is an index or an axis, unless it is one of a clock.
+                if len(unit) == 1 and unit.casefold() not in "sh":
                     break
                 return " ".join(words[:-count]), unit, False
     return header, None, False
+
+
+def unknown_unit(header: str) -> str | None:
+    """Find a unit that a name states in brackets and that is not known.
+
+    In square brackets stands a unit, a dash for none, or the number of an element; in others also
+    a word about the column, as in ``Torque (filtered)``.
+
+    Parameters
+    ----------
+    header : str
+        Name of a column as the file has it.
+
+    Returns
+    -------
+    str or None
+        As written; None where none is stated, or one that is known.
+
+    Examples
+    --------
+    >>> unknown_unit("Torque [10 Nm]"), unknown_unit("Torque (mV/V)")
+    ('10 Nm', 'mV/V')
+    >>> unknown_unit("Torque [Nm]"), unknown_unit("Torque (filtered)"), unknown_unit("Torque[2]")
+    (None, None, None)
+    """
+    match = _IN_BRACKETS.match(header)
+    if match is None:
+        return None
+    text = match["unit"].strip()
+    if find_unit(text) or text.isdigit() or not text.strip("-– "):
+        return None
+    is_square = header.rstrip().endswith("]")
+    return text if is_square or text in OTHER_UNITS or text[0].isdigit() else None
