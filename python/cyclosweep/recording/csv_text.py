@@ -224,10 +224,11 @@ def _placed(content: bytes, place: TextTable, options: TableOptions) -> CsvText:
         notes.append(f"Names of the columns found in line {place.line}.")
     if place.units:
         notes.append(
-            "Row of units below the names: "
+            "Row of units: "
             + ", ".join(f"{name} [{unit}]" for name, unit in place.units.items())
             + "."
         )
+    notes += place.passed
     start, separator = place.start, place.separator
     if place.blanks:
         body = re.sub(

@@ -4,16 +4,17 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from cyclosweep.recording.cells import MISSING, is_clock, is_number
+from cyclosweep.recording.messages import shown
 from cyclosweep.recording.roles import name_weight
-from cyclosweep.recording.units import find_unit
+from cyclosweep.recording.units import OTHER_UNITS, find_unit
 
-__all__ = ["SAMPLE_ROWS", "Layout", "find_layout"]
+__all__ = ["SAMPLE_ROWS", "Layout", "bare_unit", "find_layout", "passed_note"]
 
 SAMPLE_ROWS = 250
 """Rows looked at to find the table: preambles of acquisition programs have tens of lines."""
 
-_OTHER_UNITS = {"1", "%", "V", "mV", "mm", "rpm", "1/min", "bar", "Hz", "W", "text", "string"}
-"""Units of columns that a recording may have besides its own."""
+_NO_UNITS = {"1", "text", "string"}
+"""What a row of units says of columns that have none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,17 +26,46 @@ class Layout:
     header : int or None
         Row of the names; None where numbers stand without names.
     units : int or None
-        Row of units below the names.
+        Row of units below the names, or right above them.
     first : int
         First row of values.
     size : int
         Cells with numbers in the rows looked at, to compare ways to divide a line.
+    passed : tuple of int
+        Rows of text between names and numbers that are no units.
     """
 
     header: int | None
     units: int | None
     first: int
     size: int
+    passed: tuple[int, ...] = ()
+
+
+def bare_unit(cell: str) -> str:
+    """Unit in a cell without brackets; empty where a dash says that there is none."""
+    text = cell.strip().strip("[]()").strip()
+    return "" if text in {"-", "--", "–"} else text
+
+
+def passed_note(words: str, number: int, row: Sequence[str]) -> str:
+    """Say that a row of text between names and numbers is passed over.
+
+    Parameters
+    ----------
+    words : str
+        What the format calls a row.
+    number : int
+        Its number, from 1.
+    row : sequence of str
+        Its cells.
+
+    Returns
+    -------
+    str
+    """
+    text = shown("; ".join(cell.strip() for cell in row if cell.strip()))
+    return f"{words} {number} between names and numbers is passed over: {text}."
 
 
 def find_layout(rows: Sequence[Sequence[str]], wanted: Collection[str] = ()) -> Layout | None:
@@ -71,9 +101,15 @@ def find_layout(rows: Sequence[Sequence[str]], wanted: Collection[str] = ()) -> 
     if header is None:
         return Layout(None, None, first, size)
     between = [k for k in range(header + 1, first) if any(cell.strip() for cell in rows[k])]
-    units = next((k for k in between if _is_units(rows[k])), None)
-    bad = [k for k in between if any(is_number(c) for c in rows[k]) and not _is_units(rows[k])]
-    return Layout(header, units, bad[0] if bad else first, size)
+    units = next((k for k in between if _has_units(rows[k])), None)
+    bad = [k for k in between if any(is_number(c) for c in rows[k]) and k != units]
+    first = bad[0] if bad else first
+    passed = tuple(k for k in between if k < first and k != units)
+    if units is None:
+        above = next((k for k in range(header - 1, -1, -1) if any(c.strip() for c in rows[k])), 0)
+        fits = len(rows[above]) == len(rows[header])
+        units = above if above < header and fits and _is_units(rows[above]) else None
+    return Layout(header, units, first, size, passed)
 
 
 def _header(rows: Sequence[Sequence[str]], first: int, wanted: Collection[str]) -> int | None:
@@ -122,10 +158,23 @@ def _numbers(row: Sequence[str]) -> int:
 
 
 def _is_units(row: Sequence[str]) -> bool:
-    """Whether every cell of a row is a unit or empty, and at least one is a unit."""
-    filled = [cell.strip().strip("[]()").strip() for cell in row]
-    filled = [cell for cell in filled if cell not in {"", "-", "--"}]
-    known = [find_unit(cell) is not None for cell in filled]
-    return any(known) and all(
-        ok or cell in _OTHER_UNITS for ok, cell in zip(known, filled, strict=True)
+    """Whether every cell of a row is a unit or empty, and at least one is a unit.
+
+    In square brackets any text is a unit, whether it is known or not.
+    """
+    filled = [cell.strip() for cell in row if bare_unit(cell)]
+    return any(find_unit(cell) for cell in filled) and all(
+        find_unit(cell)
+        or bare_unit(cell) in OTHER_UNITS | _NO_UNITS
+        or (cell.startswith("[") and cell.endswith("]"))
+        for cell in filled
     )
+
+
+def _has_units(row: Sequence[str]) -> bool:
+    """Whether a row of text below the names states units, though some may not be known."""
+    filled = [bare_unit(cell) for cell in row if bare_unit(cell)]
+    if any(is_number(text) and text not in _NO_UNITS for text in filled):
+        return False
+    bracketed = all(cell.strip().startswith("[") for cell in row if bare_unit(cell))
+    return bool(filled) and (bracketed or any(find_unit(text) for text in filled))

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
-from cyclosweep.recording.layout import SAMPLE_ROWS, Layout, find_layout
+from cyclosweep.recording.layout import SAMPLE_ROWS, Layout, bare_unit, find_layout, passed_note
 
 __all__ = ["SEPARATORS", "TextTable", "find_text_table"]
 
@@ -37,6 +37,8 @@ class TextTable:
         Units in a row of their own, by column.
     above : bool
         Whether something stands above the names.
+    passed : tuple of str
+        Notes on lines between names and values that are passed over.
     """
 
     line: int
@@ -47,6 +49,7 @@ class TextTable:
     names: list[str]
     units: dict[str, str]
     above: bool
+    passed: tuple[str, ...]
 
 
 def find_text_table(
@@ -99,12 +102,8 @@ def find_text_table(
         names.pop()
     units: dict[str, str] = {}
     if layout.units is not None:
-        cells = [cell.strip().strip("[]()").strip() for cell in rows[layout.units]]
-        units = {
-            name: unit
-            for name, unit in zip(names, cells, strict=False)
-            if name and unit not in {"", "-", "--"}
-        }
+        cells = [bare_unit(cell) for cell in rows[layout.units]]
+        units = {name: unit for name, unit in zip(names, cells, strict=False) if name and unit}
     body = layout.first
     return TextTable(
         layout.header + 1,
@@ -116,6 +115,7 @@ def find_text_table(
         units,
         any(text.strip() and not passed for text, passed in
             zip(texts[: layout.header], skip, strict=False)),
+        tuple(passed_note("Line", row + 1, rows[row]) for row in layout.passed),
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from cyclosweep.errors import InputError
 from cyclosweep.recording.file_table import GridTable, spelling
 from cyclosweep.recording.formats.installed import needs
-from cyclosweep.recording.layout import SAMPLE_ROWS, find_layout
+from cyclosweep.recording.layout import SAMPLE_ROWS, bare_unit, find_layout, passed_note
 from cyclosweep.recording.messages import one_line
 from cyclosweep.recording.metadata import TableOptions
 
@@ -100,8 +100,8 @@ def _table(
     names = [name.strip() for name in sample[layout.header]]
     units: dict[str, str] = {}
     if layout.units is not None:
-        cells = [cell.strip().strip("[]()").strip() for cell in sample[layout.units]]
-        units = {n: u for n, u in zip(names, cells, strict=False) if n and u not in {"", "-"}}
+        cells = [bare_unit(cell) for cell in sample[layout.units]]
+        units = {n: u for n, u in zip(names, cells, strict=False) if n and u}
     body = rows[layout.first :]
     columns: dict[str, Any] = {}
     for place, name in enumerate(names):
@@ -115,6 +115,7 @@ def _table(
     texts = (c for column in columns.values() for c in column[:200] if isinstance(c, str))
     decimal, thousands = spelling(texts)
     notes = [f"Names of the columns found in row {layout.header + 1}."] if layout.header else []
+    notes += [passed_note("Row", row + 1, sample[row]) for row in layout.passed]
     return GridTable(
         path, columns, units, notes, layout.first + 1,
         options.decimal or decimal, options.thousands or thousands,
