@@ -10,6 +10,7 @@ from pathlib import Path
 
 from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import is_number
+from cyclosweep.recording.digit_groups import told_apart
 from cyclosweep.recording.file_table import spelling
 from cyclosweep.recording.messages import one_line, shown
 from cyclosweep.recording.metadata import TableOptions
@@ -264,10 +265,22 @@ def _spelt(text: CsvText, options: TableOptions) -> CsvText:
     decimal, thousands = spelling(cells)
     if text.decimal == "," and decimal == "." and not thousands:
         decimal = ","
+    notes = list(text.notes)
+    told = told_apart(text.content[text.start :], text.separator)
+    if (
+        told is not None
+        and thousands in {"", decimal}
+        and not options.decimal
+        and not options.thousands
+    ):
+        decimal, thousands = told
+        notes = [note for note in notes if "decimal commas" not in note or decimal == ","]
+        notes.append(
+            f"Thousands divided by {thousands!r}, as {decimal!r} is the decimal sign elsewhere."
+        )
     decimal, thousands = options.decimal or decimal, options.thousands or thousands
     if thousands == decimal:
         thousands = ""
-    notes = list(text.notes)
     if decimal == "," and not any("decimal commas" in note for note in notes):
         notes.append(f"Cells divided by '{text.separator}', decimal commas.")
     return replace(

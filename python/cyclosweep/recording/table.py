@@ -84,7 +84,8 @@ def _frame(path: Path, text: CsvText, kinds: Mapping[str, pl.DataType]) -> pl.Da
     try:
         if not text.thousands:
             return _parse(text, kinds)
-        if not words:  # a time may hold the same signs
+        # A time may hold the same signs, and a separator stands between cells, too.
+        if not words and text.thousands != text.separator:
             return _parse(without_thousands(text), kinds)
     except pl.exceptions.NoDataError:
         return pl.DataFrame(schema=dict(kinds))

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.digit_groups import told_apart
 from cyclosweep.recording.file_table import GridTable, spelling
 from cyclosweep.recording.formats.installed import needs
 from cyclosweep.recording.layout import SAMPLE_ROWS, bare_unit, find_layout, passed_note
@@ -112,8 +113,10 @@ def _table(
                 f"{path}, row {layout.header + 1}: column {name} appears more than once"
             )
         columns[name] = [row[place] if place < len(row) else "" for row in body]
-    texts = (c for column in columns.values() for c in column[:200] if isinstance(c, str))
+    texts = [c for column in columns.values() for c in column if isinstance(c, str)]
     decimal, thousands = spelling(texts)
+    if thousands in {"", decimal}:
+        decimal, thousands = told_apart("\n".join(texts).encode(), "\n") or (decimal, thousands)
     notes = [f"Names of the columns found in row {layout.header + 1}."] if layout.header else []
     notes += [passed_note("Row", row + 1, sample[row]) for row in layout.passed]
     return GridTable(
