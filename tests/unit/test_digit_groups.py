@@ -17,7 +17,7 @@ TORQUE = np.array([0, 3333, 6667, 10000, 150000, 200000])
 def rows(decimal: str, group: str, separator: str = ";") -> str:
     """Table with whole torques in groups of three digits and other numbers with a fraction."""
     quote = '"' if separator == "," else ""
-    return "Zeit [s]{0}Drehmoment [mNm]{0}Winkel [deg]\n".format(separator) + "".join(
+    return f"Zeit [s]{separator}Drehmoment [mNm]{separator}Winkel [deg]\n" + "".join(
         separator.join(
             f"{quote}{cell}{quote}"
             for cell in (

@@ -6,7 +6,7 @@ __all__ = ["told_apart"]
 
 
 def told_apart(content: bytes, separator: str) -> tuple[str, str] | None:
-    """Tell by each other what points and commas mean, in a text that has both.
+    r"""Tell by each other what points and commas mean, in a text that has both.
 
     Numbers such as 3.333 and 10.000 may be whole ones in groups of three digits. They are where
     all numbers with that sign can be, and numbers with the other sign cannot, as 0,5 beside them.
@@ -25,9 +25,9 @@ def told_apart(content: bytes, separator: str) -> tuple[str, str] | None:
 
     Examples
     --------
-    >>> told_apart(b"0,5;3.333\\n30,0;200.000", ";")
+    >>> told_apart(b"0,5;3.333\n30,0;200.000", ";")
     (',', '.')
-    >>> told_apart(b"0,5;3.333\\n30,0;200.00", ";") is None
+    >>> told_apart(b"0,5;3.333\n30,0;200.00", ";") is None
     True
     """
     if b"," not in content or b"." not in content:

@@ -9,10 +9,11 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.design.nominal_line import Side
 from cyclosweep.errors import DesignError
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.signals import wraps_at_360
 from cyclosweep.recording.structure import DEAD_ZONE_SHARE
 from cyclosweep.recording.units import factor_of
 
-__all__ = ["Guess", "explain", "slope_of", "unit_by_steps"]
+__all__ = ["FAR", "Guess", "explain", "overload", "slope_of", "unit_by_jumps", "unit_by_steps"]
 
 ANGLE_UNITS = {
     name: factor_of(name, "angle_deg")
@@ -32,6 +33,19 @@ FEWEST_LEVELS = 12
 CLEAR = 2.0
 """A guess counts if the drive comes out within this factor of its file, and every other guess fits
 worse by it: the nearest two units, radians and turns, differ by 6.3."""
+
+CLEAR_OF_BOTH = 1.25
+"""The same where unit and side are both guessed: with six units at two shafts, one of them comes
+within a factor of two of almost any slope."""
+
+FAR = 10.0
+"""Factor beyond which a compliance is another unit's or shaft's, not a softer drive's."""
+
+MOST_LOAD = 5.0
+"""Largest torque over the rated one that a test reaches: drives stand that in an emergency stop."""
+
+WHOLE_TURN = 0.95
+"""Share of a turn that the readings of a dial which wraps cover at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +97,53 @@ def unit_by_steps(angle: Floats) -> str | None:
     return None
 
 
+def unit_by_jumps(angle: Floats, torque_nm: Floats) -> str | None:
+    """Tell the unit of a dial that wraps by its jumps, which are a turn.
+
+    Parameters
+    ----------
+    angle : ndarray of float, shape (n,)
+        Angle in the file's unit.
+    torque_nm : ndarray of float, shape (n,)
+        Torque [N m].
+
+    Returns
+    -------
+    str or None
+        None where it does not wrap.
+    """
+    known = np.isfinite(angle) & np.isfinite(torque_nm)
+    if np.count_nonzero(known) < FEWEST_LEVELS:
+        return None
+    for unit, degrees in ANGLE_UNITS.items():
+        turned = angle[known] * degrees
+        if np.ptp(turned) > WHOLE_TURN * 360.0 and wraps_at_360(turned, torque_nm[known]):
+            return unit
+    return None
+
+
+def overload(torque_nm: float, drive: Drive, side: Side) -> float:
+    """Torque over the rated one of a shaft.
+
+    Parameters
+    ----------
+    torque_nm : float
+        Magnitude of the torque [N m].
+    drive : Drive
+        The drive file.
+    side : {"input", "output"}
+        The shaft.
+
+    Returns
+    -------
+    float
+    """
+    rated = drive.output_torque_nm
+    if side == "input":
+        rated = max(rated / drive.ratio, drive.nominal_torque_nm)
+    return torque_nm / rated
+
+
 def slope_of(torque_nm: Floats, angle: Floats) -> float | None:
     """Slope of angle over torque beside a free play, by least squares.
 
@@ -111,7 +172,9 @@ def slope_of(torque_nm: Floats, angle: Floats) -> float | None:
     return slope if slope > 0 and math.isfinite(slope) else None
 
 
-def explain(slope: float, drive: Drive, unit: str | None, side: Side | None) -> Guess | None:
+def explain(
+    slope: float, drive: Drive, unit: str | None, side: Side | None, torque_nm: float
+) -> Guess | None:
     """Find the unit and the side with which a slope is nearest to the drive's own.
 
     Parameters
@@ -123,7 +186,9 @@ def explain(slope: float, drive: Drive, unit: str | None, side: Side | None) -> 
     unit : str or None
         Unit of the angle where it is known, which is then deg.
     side : {"input", "output"} or None
-        The shaft where it is known.
+        The shaft where it is known; else one of those that bear the torque.
+    torque_nm : float
+        Largest magnitude of the torque [N m].
 
     Returns
     -------
@@ -131,7 +196,9 @@ def explain(slope: float, drive: Drive, unit: str | None, side: Side | None) -> 
         None where the drive has no line.
     """
     found: list[tuple[float, str, Side, float]] = []
-    sides: tuple[Side, ...] = ("input", "output") if side is None else (side,)
+    both: tuple[Side, ...] = ("input", "output")
+    able = [each for each in both if overload(torque_nm, drive, each) <= MOST_LOAD]
+    sides = [side] if side is not None else able or both
     for shaft in sides:
         try:
             nominal = drive.nominal_line(shaft).compliance_deg_per_nm
@@ -141,7 +208,8 @@ def explain(slope: float, drive: Drive, unit: str | None, side: Side | None) -> 
             factor = slope * degrees / nominal
             found.append((abs(math.log(factor)), name, shaft, factor))
     found.sort()
-    clear = found[0][0] < math.log(CLEAR) and (
+    near = CLEAR_OF_BOTH if unit is None and len(sides) > 1 else CLEAR
+    clear = found[0][0] < math.log(near) and (
         len(found) == 1 or found[1][0] - found[0][0] > math.log(CLEAR) / 2
     )
     return Guess(found[0][1], found[0][2], found[0][3], clear)

@@ -1,23 +1,22 @@
 """The metadata file that a recording needs, proposed from its names, units, numbers and drive."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from shlex import quote
 from typing import Any
 
 import numpy as np
 
-from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import BadCellError
 from cyclosweep.recording.choosing import Choice
 from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.fit_to_drive import fit_to_drive
 from cyclosweep.recording.metadata import Column
-from cyclosweep.recording.nominal import explain, slope_of, unit_by_steps
-from cyclosweep.recording.proposed import Known, Proposal, values_of
-from cyclosweep.recording.roles import Named, with_unit
+from cyclosweep.recording.proposed import Known, Proposal
+from cyclosweep.recording.roles import Named, reads_like_counts, with_unit
 from cyclosweep.recording.run_proposal import propose_limit, propose_runs, propose_ticks
 from cyclosweep.recording.samples import Floats
-from cyclosweep.recording.signals import unwrap
 from cyclosweep.recording.stated_units import contradiction, stated_unit
 from cyclosweep.recording.units import UNIT_EXAMPLES, find_unit
 
@@ -60,6 +59,8 @@ def propose(
     for role, unit in (("torque_nm", known.torque_unit), ("angle_deg", known.angle_unit)):
         if unit is not None and role in choice.roles:
             choice.roles[role] = _with_unit(table, choice.roles[role], role, unit)
+    if "angle_deg" in choice.roles:
+        choice.roles["angle_deg"] = _with_counts(choice.roles["angle_deg"], numbers, known)
     for named in choice.roles.values():
         if named.column in bad:
             cell, flag = bad[named.column], f"--missing {quote(bad[named.column].cell)}"
@@ -75,7 +76,7 @@ def propose(
     torque = choice.roles.get("torque_nm")
     angle = choice.roles.get("angle_deg")
     if torque is not None and angle is not None and not made.open:
-        _fit_to_drive(numbers, columns, angle, known, made, "angle_deg" in settled)
+        fit_to_drive(numbers, columns, angle, known, made, is_settled="angle_deg" in settled)
     if known.side is not None:
         made.meta["side"] = known.side
     if known.drive_name is not None:
@@ -137,6 +138,30 @@ def _with_unit(table: FileTable, named: Named, role: str, unit: str) -> Named:
     return found
 
 
+def _with_counts(angle: Named, numbers: dict[str, Floats], known: Known) -> Named:
+    """Take an angle without a unit as counts where the user, or its whole numbers and name say so.
+
+    Parameters
+    ----------
+    angle : Named
+        What name and unit of the angle say.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Columns of the file.
+    known : Known
+        What the user says.
+
+    Returns
+    -------
+    Named
+    """
+    if angle.unit is not None or angle.unknown_unit is not None or angle.is_canonical:
+        return angle
+    values = numbers[angle.column]
+    values = values[np.isfinite(values)]
+    whole = bool((values == np.rint(values)).all()) and reads_like_counts(angle.column)
+    return replace(angle, kind="counts") if whole or known.counts_per_turn else angle
+
+
 def _column(
     role: str, named: Named, known: Known, made: Proposal, is_dated: bool
 ) -> dict[str, Any]:
@@ -196,122 +221,11 @@ def _column(
             said = f"{named.column} holds {_KINDS[named.kind]}: say {flag}"
             if named.kind == "force" and named.unit is None:  # its name alone says so
                 said += ", or, where it is a torque, --torque-unit 'N m'"
+            if named.kind == "counts" and named.unit is None:
+                said += ", or, where it is an angle, --angle-unit UNIT"
             made.open.append(f"{said}.")
         else:
             column[key] = value
+            if named.kind == "counts":
+                column["unit"] = named.unit or "counts"
     return column
-
-
-def _fit_to_drive(
-    numbers: dict[str, Floats],
-    columns: dict[str, dict[str, Any]],
-    angle: Named,
-    known: Known,
-    made: Proposal,
-    is_settled: bool,
-) -> None:
-    """Tell unit of the angle, side and modulo by the drive where the file does not.
-
-    Parameters
-    ----------
-    numbers : dict of str to ndarray of float, shape (rows,)
-        Columns of the file.
-    columns : dict
-        Proposed columns; the angle's is completed.
-    angle : Named
-        What name and unit of the angle say.
-    known : Known
-        What the user says.
-    made : Proposal
-        Side, assumptions and questions are added to it.
-    is_settled : bool
-        The settings say how the angle is read.
-    """
-    torque, turned = (
-        values_of("torque_nm", columns, numbers),
-        values_of("angle_deg", columns, numbers),
-    )
-    stated = is_settled or angle.unit is not None or angle.is_canonical
-    by_steps = None if stated else unit_by_steps(turned)
-    if by_steps is not None:
-        if by_steps != "deg":
-            columns["angle_deg"]["unit"] = by_steps
-        turned = values_of("angle_deg", columns, numbers)
-        made.assumed.append(
-            f"Unit of {angle.column} not stated: {by_steps}, by its steps, of which a power of two "
-            "make a turn."
-        )
-        stated = True
-    slope = slope_of(torque, turned)
-    guess = None
-    if known.drive is not None and slope is not None:
-        guess = explain(slope, known.drive, "deg" if stated else None, known.side)
-    if not (is_settled or angle.unit is not None or angle.is_canonical):
-        made.remarks["columns.angle_deg"] = ""
-    if not stated and guess is None:
-        made.assumed.append(f"Unit of {angle.column} not stated: degrees assumed (--angle-unit).")
-    if guess is not None and not guess.clear:
-        text = (
-            f"the compliance is {guess.factor:.3g} times the drive's at the {guess.side} shaft, "
-            "the nearest of all"
-        )
-        if stated:
-            made.checks.append(f"In these units {text}: check units, side and drive.")
-        else:
-            made.open.append(
-                f"{angle.column} states no unit, and none fits the drive: in {guess.unit} {text}. "
-                "Say --angle-unit UNIT."
-            )
-        if known.side is None:
-            made.meta["side"] = guess.side
-            made.remarks["side"] = ""
-            made.assumed.append(f"Side not given: {guess.side} shaft, the nearer of the two.")
-    if guess is not None and guess.clear:
-        reason = f"the compliance is then {guess.factor:.2f} times the drive's"
-        if not stated and guess.unit != "deg":
-            columns["angle_deg"]["unit"] = guess.unit
-        if not stated:
-            made.assumed.append(f"Unit of {angle.column} not stated: {guess.unit}, {reason}.")
-        if known.side is None:
-            made.meta["side"] = guess.side
-            made.remarks["side"] = ""
-            made.assumed.append(f"Side not given: {guess.side} shaft, {reason}.")
-    if "modulo" in columns["angle_deg"]:
-        return
-    period = _period(values_of("angle_deg", columns, numbers), torque, known.drive)
-    if period is not None:
-        columns["angle_deg"]["modulo"] = period
-        made.remarks["columns.angle_deg"] = ""
-        made.assumed.append(f"{angle.column} jumps by {period:g} deg: known modulo that.")
-
-
-def _period(angle_deg: Floats, torque_nm: Floats, drive: Drive | None) -> float | None:
-    """Period of an angle that wraps, of those that encoders have.
-
-    Parameters
-    ----------
-    angle_deg : ndarray of float, shape (n,)
-        Angle [deg].
-    torque_nm : ndarray of float, shape (n,)
-        Torque [N m].
-    drive : Drive or None
-        With the ratio of a geared encoder.
-
-    Returns
-    -------
-    float or None
-        The period [deg]; None where it does not wrap, or by a dial's 360 deg, which reading undoes.
-    """
-    known = np.isfinite(angle_deg) & np.isfinite(torque_nm)
-    angle, torque = angle_deg[known], torque_nm[known]
-    if len(angle) < 3 or not np.ptp(torque):
-        return None
-    span = float(np.ptp(angle))
-    for period in [360.0 / drive.ratio] if drive is not None else []:
-        jumps = np.count_nonzero(np.abs(np.diff(angle)) > 0.5 * period)
-        if not jumps or not 0.8 * period < span <= 1.001 * period:
-            continue
-        whole, _ = unwrap(angle, period)
-        if abs(np.corrcoef(whole, torque)[0, 1]) > abs(np.corrcoef(angle, torque)[0, 1]):
-            return float(f"{period:.7g}")
-    return None

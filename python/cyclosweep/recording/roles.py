@@ -13,7 +13,7 @@ from cyclosweep.recording.units import (
     unknown_unit,
 )
 
-__all__ = ["COMMAND", "Named", "describe", "name_weight", "with_unit"]
+__all__ = ["COMMAND", "Named", "describe", "name_weight", "reads_like_counts", "with_unit"]
 
 _WORDS: dict[str, tuple[str, ...]] = {
     "torque_nm": ("torque", "moment", "drehmoment", "tq", "trq", "md", "mt", "couple", "torsion"),
@@ -37,6 +37,8 @@ COMMAND = frozenset(
      "demand", "desired", "reference", "ref", "limit", "error", "err", "sp")
 )  # fmt: skip
 """Words that mark what was asked for, not what was measured."""
+_COUNT_WORDS = ("encoder", "enc", "resolver", "count", "counts", "cnt", "inc", "ink", "inkr",
+                "inkremente", "increments", "ticks", "striche", "impulse", "pulses")  # fmt: skip
 _FORCE_WORDS = ("force", "kraft", "load", "last", "loadcell")
 _CURRENT_WORDS = ("current", "strom", "iq", "amps", "ampere")
 
@@ -148,6 +150,11 @@ def with_unit(named: Named, role: str, unit: str) -> Named:
         flag = "--torque-unit" if role == "torque_nm" else "--angle-unit"
         raise InputError(f"{flag}: found {unit!r}, expected a unit such as {UNIT_EXAMPLES[role]}")
     return replace(named, unit=unit, kind=known.kind, is_canonical=False, unknown_unit=None)
+
+
+def reads_like_counts(column: str) -> bool:
+    """Whether a name speaks of an encoder, whose whole numbers are counts."""
+    return any(word in _COUNT_WORDS for word in _words_of(column))
 
 
 def name_weight(cell: str) -> int:
