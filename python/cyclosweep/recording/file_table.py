@@ -11,11 +11,10 @@ import polars as pl
 from cyclosweep.recording.cells import (
     MISSING,
     BadCellError,
-    clock_seconds,
-    is_clock,
     is_number,
     spelt_number,
 )
+from cyclosweep.recording.clocks import clock_seconds, is_clock
 from cyclosweep.recording.samples import Floats
 
 __all__ = ["FileTable", "GridTable", "spelling"]
@@ -152,8 +151,9 @@ class GridTable:
 
     def _seconds(self, name: str, cells: list[Any]) -> Floats:
         """Times of a column as seconds since the first, with a note."""
-        seconds = clock_seconds(cells, f"{self.path}, row", self.first_row, name, self.missing)
-        self.notes.append(f"{name} holds times of day or dates: seconds since the first are taken.")
+        where = f"{self.path}, row"
+        seconds, note = clock_seconds(cells, where, self.first_row, name, self.missing)
+        self.notes.append(note)
         return seconds
 
     def _is_missing(self, cell: object) -> bool:

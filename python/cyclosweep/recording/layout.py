@@ -3,7 +3,8 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from cyclosweep.recording.cells import MISSING, is_clock, is_number
+from cyclosweep.recording.cells import MISSING, is_number
+from cyclosweep.recording.clocks import is_clock
 from cyclosweep.recording.messages import shown
 from cyclosweep.recording.roles import name_weight
 from cyclosweep.recording.units import OTHER_UNITS, find_unit

@@ -10,6 +10,7 @@ import numpy as np
 from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import BadCellError
 from cyclosweep.recording.choosing import Choice
+from cyclosweep.recording.clocks import unit_of_count
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.fit_to_drive import fit_to_drive
 from cyclosweep.recording.metadata import Column
@@ -67,7 +68,10 @@ def propose(
             made.open.append(f"{cell.where}. Mend the cell, or pass over such rows: {flag}.")
     dated = {name for name in table.header if any(f"{name} holds " in n for n in table.notes)}
     columns = {
-        role: dict(settled.get(role) or _column(role, n, known, made, n.column in dated))
+        role: dict(
+            settled.get(role)
+            or _column(role, n, known, made, None if n.column in dated else numbers[n.column])
+        )
         for role, n in choice.roles.items()
     }
     options = known.table.model_dump(exclude_defaults=True)
@@ -163,7 +167,7 @@ def _with_counts(angle: Named, numbers: dict[str, Floats], known: Known) -> Name
 
 
 def _column(
-    role: str, named: Named, known: Known, made: Proposal, is_dated: bool
+    role: str, named: Named, known: Known, made: Proposal, values: Floats | None
 ) -> dict[str, Any]:
     """Column, unit and what the unit needs.
 
@@ -177,8 +181,8 @@ def _column(
         What the user says.
     made : Proposal
         What is assumed or open is added to it.
-    is_dated : bool
-        The column holds dates or times of day.
+    values : ndarray of float, shape (rows,), or None
+        Its numbers; None where they are dates or times of day, which need no unit.
 
     Returns
     -------
@@ -199,8 +203,12 @@ def _column(
         return column
     if named.unit is not None:
         column["unit"] = named.unit
-    elif is_dated:
+    elif values is None:
         return column
+    elif role == "time_s" and (count := unit_of_count(values)) is not None:
+        column["unit"], since = count
+        made.assumed.append(f"Unit of {named.column} not stated: {column['unit']}, by {since}.")
+        made.remarks[f"columns.{role}"] = ""
     elif named.kind == "force":
         if known.lever_arm_m is not None:
             column["unit"] = "N"

@@ -12,11 +12,10 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import (
     MISSING,
     BadCellError,
-    clock_seconds,
-    is_clock,
     is_number,
     spelt_number,
 )
+from cyclosweep.recording.clocks import clock_seconds, is_clock
 from cyclosweep.recording.csv_text import CsvText, thousands_in, without_thousands
 from cyclosweep.recording.messages import one_line
 
@@ -150,8 +149,9 @@ def _clocks_read(
         For a cell that is no time.
     """
     for name in clocks:
-        seconds = clock_seconds(frame[name].to_list(), f"{path}, data row", 1, name, text.missing)
-        text.notes.append(f"{name} holds dates or times of day: seconds since the first are taken.")
+        cells = frame[name].to_list()
+        seconds, note = clock_seconds(cells, f"{path}, data row", 1, name, text.missing)
+        text.notes.append(note)
         frame = frame.with_columns(pl.Series(name, seconds))
     return frame
 

@@ -44,7 +44,7 @@ def unread_columns(meta: Metadata, sources: Mapping[str, Column], table: FileTab
             continue
         for column in others:
             named = describe(column, table.units.get(column))
-            if named.role == name and not named.is_command and _varies(table, column):
+            if named.role == name and not named.is_command and _varies(table, column, name):
                 remarks.append(
                     Fault(
                         "column_unread",
@@ -57,8 +57,8 @@ def unread_columns(meta: Metadata, sources: Mapping[str, Column], table: FileTab
     return remarks
 
 
-def _varies(table: FileTable, column: str) -> bool:
-    """Whether a column holds numbers, more than one of them.
+def _varies(table: FileTable, column: str, name: str) -> bool:
+    """Whether a column holds numbers, more than one of them; text may be a clock nobody knows.
 
     Parameters
     ----------
@@ -66,6 +66,8 @@ def _varies(table: FileTable, column: str) -> bool:
         The file.
     column : str
         One of its columns.
+    name : str
+        Canonical column that it could be.
 
     Returns
     -------
@@ -74,5 +76,5 @@ def _varies(table: FileTable, column: str) -> bool:
     try:
         values = table.read([column], [])[column]
     except InputError:
-        return False
+        return name == "time_s"
     return values.drop_nulls().drop_nans().n_unique() > 1
