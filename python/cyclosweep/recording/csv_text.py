@@ -174,6 +174,10 @@ def open_csv(content: bytes, path: Path, options: TableOptions, wanted: Collecti
     head = content[start:stop].decode("utf-8", "replace").strip("\r\n")
     separator = max(SEPARATORS, key=head.count)
     place = find_text_table(content, options.header_row, wanted)
+    if options.header_row is not None:
+        if place is None:
+            raise _no_names(content, path, options.header_row)
+        return _placed(content, place, options)
     if place is not None and (place.line != line or place.body_line != line or place.blanks):
         return _placed(content, place, options)
     if len(head.split()) > 1 and all(is_number(cell) for cell in head.split()):
@@ -202,6 +206,33 @@ def open_csv(content: bytes, path: Path, options: TableOptions, wanted: Collecti
     decimal, thousands = ("," if decimal_comma else "."), ""
     text = CsvText(content, stop, line, line, separator, decimal, thousands, names, {}, notes)
     return _spelt(text, options)
+
+
+def _no_names(content: bytes, path: Path, row: int) -> InputError:
+    """Say that no names stand in the line that the user gives.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole text.
+    path : Path
+        The file, for the message.
+    row : int
+        The line, from 1.
+
+    Returns
+    -------
+    InputError
+    """
+    lines = content.rstrip().split(b"\n")
+    if row > len(lines):
+        found = f"{row} in a text of {len(lines)} lines"
+    else:
+        found = f"{shown(lines[row - 1].decode('utf-8', 'replace').strip())} in line {row}"
+    return InputError(
+        f"{path}, key table.header_row: found {found}, expected the names of columns above rows of "
+        "numbers"
+    )
 
 
 def _placed(content: bytes, place: TextTable, options: TableOptions) -> CsvText:

@@ -69,7 +69,9 @@ def passed_note(words: str, number: int, row: Sequence[str]) -> str:
     return f"{words} {number} between names and numbers is passed over: {text}."
 
 
-def find_layout(rows: Sequence[Sequence[str]], wanted: Collection[str] = ()) -> Layout | None:
+def find_layout(
+    rows: Sequence[Sequence[str]], wanted: Collection[str] = (), names: int | None = None
+) -> Layout | None:
     """Find the longest stretch of rows with numbers, and the names above it.
 
     Parameters
@@ -78,13 +80,19 @@ def find_layout(rows: Sequence[Sequence[str]], wanted: Collection[str] = ()) -> 
         Cells of the first rows.
     wanted : collection of str
         Names that the metadata give; a row that has one is the row of names.
+    names : int, optional
+        Row of the names, where the user says.
 
     Returns
     -------
     Layout or None
-        None where no row has numbers.
+        None where no row has numbers, or that of the user has, or no names.
     """
     numbers = [_numbers(row) for row in rows]
+    if names is not None:
+        if names >= len(rows) or numbers[names] or not any(cell.strip() for cell in rows[names]):
+            return None
+        numbers[:names] = [0] * names
     size, first = 0, 0
     start = None
     for at in range(len(rows) + 1):
@@ -98,7 +106,7 @@ def find_layout(rows: Sequence[Sequence[str]], wanted: Collection[str] = ()) -> 
             start = None
     if not size:
         return None
-    header = _header(rows, first, wanted)
+    header = _header(rows, first, wanted) if names is None else names
     if header is None:
         return Layout(None, None, first, size)
     between = [k for k in range(header + 1, first) if any(cell.strip() for cell in rows[k])]

@@ -97,6 +97,32 @@ def open_table(path: Path, options: TableOptions, wanted: Collection[str]) -> Fi
     return found.passing_over(options.missing) if isinstance(found, GridTable) else found
 
 
+def _refuse_idle(path: Path, options: TableOptions, *useful: str) -> None:
+    """Refuse options that a format has no use for, as a sheet of a text.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    options : TableOptions
+        What the metadata say about the table.
+    *useful : str
+        Those that are of use.
+
+    Raises
+    ------
+    InputError
+        With the key.
+    """
+    lacks = {"sheet": "has no sheets", "header_row": "names its columns itself"}
+    for key, why in lacks.items():
+        found = getattr(options, key)
+        if found is not None and key not in useful:
+            raise InputError(
+                f"{path}, key table.{key}: found {found!r}, but this file {why}; leave it out"
+            )
+
+
 def _open(path: Path, options: TableOptions, wanted: Collection[str]) -> FileTable:
     """Open a file by its format.
 
@@ -116,16 +142,20 @@ def _open(path: Path, options: TableOptions, wanted: Collection[str]) -> FileTab
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
     if table.is_parquet(path):
+        _refuse_idle(path, options)
         return _ParquetTable(path, table.parquet_columns(path), {}, [])
+    zipped = head.startswith(b"PK\x03\x04") and zipfile.is_zipfile(path)
+    if ending in WORKBOOKS or zipped or head.startswith(b"\xd0\xcf\x11\xe0"):
+        return read_excel(path, options, wanted)
+    is_tree = head.startswith((b"\x89HDF\r\n\x1a\n", b"MATLAB", b"TDSm"))
+    if is_tree or ending in {"mat", "tdms"}:
+        _refuse_idle(path, options, "sheet")
     if head.startswith((b"\x89HDF\r\n\x1a\n", b"MATLAB 7.3")):
         return read_hdf5(path, options)
     if head.startswith(b"MATLAB 5.0") or ending == "mat":
         return read_mat5(path, options)
     if head.startswith(b"TDSm") or ending == "tdms":
         return read_tdms(path, options)
-    zipped = head.startswith(b"PK\x03\x04") and zipfile.is_zipfile(path)
-    if ending in WORKBOOKS or zipped or head.startswith(b"\xd0\xcf\x11\xe0"):
-        return read_excel(path, options, wanted)
     if not head:
         read_bytes(path)  # says that the file is empty
     return _text_table(path, ending, options, wanted)
@@ -152,7 +182,10 @@ def _text_table(
     content = to_utf8(read_bytes(path), path)
     start = content[:64].lstrip()
     if start.startswith(b"LabVIEW Measurement"):
+        _refuse_idle(path, options)
         return read_lvm(path, content, options.missing)
     if ending in {"json", "jsonl"} or (start[:1] in b"{[" and start[1:].lstrip()[:1] in b'"{['):
+        _refuse_idle(path, options, "sheet")
         return read_json(path, content, options)
+    _refuse_idle(path, options, "header_row")
     return _CsvTable(path, open_csv(content, path, options, wanted))

@@ -71,7 +71,10 @@ def find_text_table(
     TextTable or None
         None where no table with names is found.
     """
-    lines = content[:_SAMPLE_BYTES].split(b"\n")[:SAMPLE_ROWS]
+    if header_row is None:
+        lines = content[:_SAMPLE_BYTES].split(b"\n")[:SAMPLE_ROWS]
+    else:
+        lines = content.split(b"\n", header_row + SAMPLE_ROWS)[: header_row + SAMPLE_ROWS]
     texts = [line.decode("utf-8", "replace").rstrip("\r") for line in lines]
     skip = [text.startswith("#") or text.lower().startswith("sep=") for text in texts]
     best: tuple[int, Layout, list[list[str]], str] | None = None
@@ -80,9 +83,7 @@ def find_text_table(
             continue
         divide = _divider(separator)
         rows = [[] if passed else divide(text) for text, passed in zip(texts, skip, strict=True)]
-        if header_row is not None:
-            rows[: header_row - 1] = [[] for _ in rows[: header_row - 1]]
-        layout = find_layout(rows, wanted)
+        layout = find_layout(rows, wanted, None if header_row is None else header_row - 1)
         if layout is None or sum(bool(cell.strip()) for cell in rows[layout.first]) < 2:
             continue
         if layout.header is None:

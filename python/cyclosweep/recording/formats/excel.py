@@ -60,9 +60,10 @@ def read_excel(path: Path, options: TableOptions, wanted: Collection[str]) -> Gr
             "sheet as CSV"
         ) from None
     if not tables:
-        raise InputError(
-            f"{path}: no sheet with a row of names above numbers, found {', '.join(names)}"
+        row = (
+            "a row of names" if options.header_row is None else f"names in row {options.header_row}"
         )
+        raise InputError(f"{path}: no sheet with {row} above numbers, found {', '.join(names)}")
     sheet, table = max(tables, key=lambda found: len(set(found[1].columns) & set(wanted)))
     others = [name for name, _ in tables if name != sheet]
     if others:
@@ -92,10 +93,10 @@ def _table(
     GridTable or None
         None where the sheet has no names above numbers.
     """
-    sample = [["" if cell is None else str(cell) for cell in row] for row in rows[:SAMPLE_ROWS]]
-    if options.header_row is not None:
-        sample[: options.header_row - 1] = [[] for _ in sample[: options.header_row - 1]]
-    layout = find_layout(sample, wanted)
+    looked_at = rows[: (options.header_row or 0) + SAMPLE_ROWS]
+    sample = [["" if cell is None else str(cell) for cell in row] for row in looked_at]
+    given = None if options.header_row is None else options.header_row - 1
+    layout = find_layout(sample, wanted, given)
     if layout is None or layout.header is None:
         return None
     names = [name.strip() for name in sample[layout.header]]
