@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from cyclosweep.recording.faults import Fault
-from cyclosweep.recording.samples import Samples
+from cyclosweep.recording.samples import Floats, Samples
 
 MIN_SAMPLES = 8
 """Fewest samples from which stiffness, free play, datum and a scatter can be estimated."""
@@ -15,6 +15,9 @@ ABSURD = 1e10
 
 GAP_FACTOR = 20.0
 """A step of the clock beyond so many median steps is a gap."""
+
+UNRELATED = 0.05
+"""Correlation up to which an angle does not follow the torque."""
 
 SMALLEST_TORQUE_NM = 1e-12
 """Largest torque up to which a recording is empty: no sensor reads less."""
@@ -198,12 +201,17 @@ def _range(recording: Samples) -> list[Fault]:
 
 
 def _relation(recording: Samples) -> list[Fault]:
-    """Refuse an angle that does not follow the torque at all."""
+    """Refuse an angle that does not follow the torque at all.
+
+    Neither in size nor in order: a single sample far off decides the one, and a long rest before
+    a short load the other.
+    """
     torque, angle = recording.torque_nm, recording.angle_deg
     if angle is None or len(torque) < 30 or not np.ptp(torque) or not np.ptp(angle):
         return []
     relation = float(np.corrcoef(torque, angle)[0, 1])
-    if np.isfinite(relation) and abs(relation) > 0.05:
+    in_order = float(np.corrcoef(_ranks(torque), _ranks(angle))[0, 1])
+    if max(abs(relation), abs(in_order)) > UNRELATED:
         return []
     return [
         Fault(
@@ -213,3 +221,8 @@ def _relation(recording: Samples) -> list[Fault]:
             "and twist of one test?",
         )
     ]
+
+
+def _ranks(values: Floats) -> Floats:
+    """Places of values in the order of their size, equal ones in one place."""
+    return np.unique(values, return_inverse=True)[1].astype(np.float64)

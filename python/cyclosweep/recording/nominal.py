@@ -8,6 +8,7 @@ import numpy as np
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.nominal_line import Side
 from cyclosweep.errors import DesignError
+from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import wraps_at_360
 from cyclosweep.recording.structure import DEAD_ZONE_SHARE
@@ -46,6 +47,12 @@ MOST_LOAD = 5.0
 
 WHOLE_TURN = 0.95
 """Share of a turn that the readings of a dial which wraps cover at least."""
+
+WILD = 12.0
+"""Misfit over the usual one, as a standard deviation, of samples that are left out of a slope."""
+
+PASSES = 3
+"""Times that a slope is found, each without the samples that are far off the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +175,14 @@ def slope_of(torque_nm: Floats, angle: Floats) -> float | None:
     columns = [torque, np.ones_like(torque)]
     if torque.min() < 0 < torque.max():
         columns.append(np.sign(torque))
-    slope = abs(float(np.linalg.lstsq(np.column_stack(columns), angle, rcond=None)[0][0]))
+    terms = np.column_stack(columns)
+    kept = np.ones(len(angle), dtype=np.bool_)
+    slope = 0.0
+    for _ in range(PASSES):  # single samples far off, which a diagnosis leaves out, decide nothing
+        found = np.linalg.lstsq(terms[kept], angle[kept], rcond=None)[0]
+        slope = abs(float(found[0]))
+        misfit = np.abs(angle - terms @ found)
+        kept = misfit <= max(WILD * robust_sigma(misfit), 1e-9 * np.ptp(angle[kept]))
     return slope if slope > 0 and math.isfinite(slope) else None
 
 

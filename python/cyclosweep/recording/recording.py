@@ -219,7 +219,7 @@ class Recording(Samples):
             "torque_nm": torque,
             "angle_deg": _floats("angle_deg", angle_deg),
             "time_s": _floats("time_s", time_s),
-            "run": _numbers("run", np.ones(len(torque)) if run is None else run, np.int64),
+            "run": _numbers("run", np.ones(len(torque)) if run is None else run),
             "crank_deg": _floats("crank_deg", crank_deg),
             "temperature_c": _floats("temperature_c", temperature_c),
             "unscored": _floats("unscored", known.pop("unscored", None)),
@@ -375,7 +375,7 @@ def _floats(name: str, values: ArrayLike | None) -> Floats | None:
     return None if values is None else _numbers(name, values)
 
 
-def _numbers(name: str, values: ArrayLike, kind: type = np.float64) -> NDArray[Any]:
+def _numbers(name: str, values: ArrayLike) -> Floats:
     """Make an array of numbers of one dimension, or say what is none.
 
     Parameters
@@ -384,15 +384,13 @@ def _numbers(name: str, values: ArrayLike, kind: type = np.float64) -> NDArray[A
         What it is called in a message.
     values : array_like
         Numbers.
-    kind : type
-        Type of the array's values.
 
     Returns
     -------
     ndarray, shape (n,)
     """
     try:
-        array: NDArray[Any] = np.asarray(values, dtype=kind)
+        array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: expected numbers, one a sample") from None
     if array.ndim != 1:

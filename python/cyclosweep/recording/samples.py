@@ -64,7 +64,10 @@ class Samples:
             given = getattr(self, name)
             if given is None:
                 continue
-            array: NDArray[Any] = np.asarray(given, dtype=kind)
+            array: NDArray[Any] = np.asarray(given)
+            if kind is np.int64 and array.dtype.kind == "f":
+                _refuse_fractions(name, array)
+            array = np.asarray(array, dtype=kind)
             if array.ndim != 1 or len(array) != len(self.torque_nm):
                 raise InputError(
                     f"{name}: found shape {array.shape}, expected ({len(self.torque_nm)},)"
@@ -110,3 +113,24 @@ class Samples:
                 if name != "unscored" and (array := getattr(self, name)) is not None
             }
         )
+
+
+def _refuse_fractions(name: str, values: NDArray[Any]) -> None:
+    """Refuse numbers that are not whole, which a change of type would cut off.
+
+    Parameters
+    ----------
+    name : str
+        What they are called in the message.
+    values : ndarray, shape (n,)
+        Numbers.
+
+    Raises
+    ------
+    InputError
+        With the first of them.
+    """
+    wrong = np.flatnonzero(~(np.isfinite(values) & (values == np.rint(values))))
+    if len(wrong):
+        found = values.flat[wrong[0]]
+        raise InputError(f"{name}, sample {wrong[0] + 1}: found {found:g}, expected an integer")
