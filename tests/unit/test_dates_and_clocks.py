@@ -9,7 +9,7 @@ import pytest
 
 import cyclosweep as cs
 from tests.support.arrays import present
-from tests.unit.test_inspect import inspected, loop
+from tests.unit.test_inspect import inspected, loop, write
 
 
 def clock(tmp_path: Path, cells: list[str], name: str = "Zeit") -> tuple[cs.Recording, str]:
@@ -74,3 +74,16 @@ def test_a_clock_that_is_not_understood_is_remarked_on(tmp_path: Path) -> None:
     rows = "".join(f"at {k},{t:g},{a:g}\n" for k, (t, a) in samples)
     path.write_text("Zeit,torque_nm,angle_deg\n" + rows)
     assert [fault.kind for fault in cs.Recording.read(path).faults] == ["column_unread"]
+
+
+@pytest.mark.parametrize("is_rounded", [True, False])
+def test_rows_of_a_tick_are_averaged_only_where_the_torque_stands(
+    tmp_path: Path, is_rounded: bool
+) -> None:
+    time, torque, angle, _ = loop()
+    rows = np.arange(len(time)) if is_rounded else np.arange(len(time)) // 4 * 4
+    path = write(tmp_path / "loop.csv", "time_s,torque_nm,angle_deg", np.floor(time), torque[rows],
+                 angle[rows])  # fmt: skip
+    found = inspected(path)
+    assert ("merge" in found["metadata"]) is not is_rounded
+    assert any("The clock is rounded" in text for text in found["assumed"]) is is_rounded

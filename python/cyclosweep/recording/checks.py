@@ -156,8 +156,8 @@ def _clock(recording: Samples) -> list[Fault]:
             Fault(
                 "clock_ticks",
                 None,
-                f"{ticks} samples share a clock tick with the one before; [merge] same_time = true "
-                "averages them.",
+                f"{ticks} samples share a clock tick with the one before; where they are one "
+                "reading, [merge] same_time = true averages them.",
             )
         )
     if len(forward):
