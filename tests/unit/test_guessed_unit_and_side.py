@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import cyclosweep as cs
 from tests.unit.test_inspect import inspected, loop, run, write
 
 DRIVE = ("--drive", "reference-87")
@@ -77,3 +78,19 @@ def test_a_dial_that_wraps_is_put_together_first(
     assert found["checks"] == []
     if scale != 1.0:
         assert found["metadata"]["columns"]["angle_deg"]["unit"] == "arcmin"
+
+
+def test_a_drive_that_cannot_be_built_is_refused_though_its_stiffness_is_given(
+    tmp_path: Path,
+) -> None:
+    drive = cs.Drive.reference_87().replace(
+        eccentricity_mm=30.0, output_stiffness_nm_per_arcmin=140.0, shaft=()
+    )
+    drive.to_toml(tmp_path / "drive.toml")
+    _, torque, angle, _ = loop("output")
+    path = write(tmp_path / "loop.csv", "torque_nm,angle_deg", torque, angle)
+    result = run("inspect", str(path), "--drive", str(tmp_path / "drive.toml"))
+    assert result.returncode == 2
+    assert "eccentricity too large" in result.stderr
+    with pytest.raises(cs.DesignError, match="eccentricity too large"):
+        cs.diagnose(cs.Recording.read(path), drive)

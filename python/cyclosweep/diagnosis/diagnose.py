@@ -28,7 +28,7 @@ from cyclosweep.diagnosis.repair import repair
 from cyclosweep.diagnosis.sliding import find_sliding, sliding_diagnosis
 from cyclosweep.diagnosis.verification import verify
 from cyclosweep.display import Steps, shown_steps
-from cyclosweep.errors import instance_of
+from cyclosweep.errors import DesignError, instance_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 
@@ -72,10 +72,15 @@ def diagnose(
     ------
     InputError
         The recording has no angle, no drive is known, or ``without`` names no effect.
+    DesignError
+        The drive cannot be built.
     """
     check_measured(recording)
     drive = drive if drive is not None else drive_of(recording)
     instance_of("drive", drive, Drive)
+    why = drive.explain()  # a stiffness of its own gives even such a drive a line
+    if why is not None:
+        raise DesignError(f"{drive.name}: {why}")
     check_options(tolerance_deg, seed)
     effects = considered_effects(without)
     # The matrices are small: a second thread of the linear algebra costs several times the time,

@@ -218,7 +218,7 @@ def inspect(
 
 
 def _refuse_drive(known: Known) -> None:
-    """Refuse a drive that has no line to compare the recording with.
+    """Refuse a drive that cannot be built, or has no line to compare the recording with.
 
     Raises
     ------
@@ -229,8 +229,11 @@ def _refuse_drive(known: Known) -> None:
         return
     try:
         known.drive.nominal_line("output")
+        why = known.drive.explain()  # a stiffness of its own gives any drive a line
     except DesignError as error:
-        raise InputError(f"drive {known.drive_name or known.drive.name}: {error}") from None
+        why = str(error)
+    if why is not None:
+        raise InputError(f"drive {known.drive_name or known.drive.name}: {why}")
 
 
 def _roles(choice: Choice, made: Proposal) -> dict[str, tuple[str, str | None]]:
