@@ -11,7 +11,7 @@ from cyclosweep.diagnosis.compose import compose
 from cyclosweep.diagnosis.conclude import conclude
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_of
+from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_for
 from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.model_error_table import with_error_table
 from cyclosweep.diagnosis.one_history import identify_over_runs
@@ -28,7 +28,6 @@ from cyclosweep.diagnosis.repair import repair
 from cyclosweep.diagnosis.sliding import find_sliding, sliding_diagnosis
 from cyclosweep.diagnosis.verification import verify
 from cyclosweep.display import Steps, shown_steps
-from cyclosweep.errors import DesignError, instance_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 
@@ -76,11 +75,7 @@ def diagnose(
         The drive cannot be built.
     """
     check_measured(recording)
-    drive = drive if drive is not None else drive_of(recording)
-    instance_of("drive", drive, Drive)
-    why = drive.explain()  # a stiffness of its own gives even such a drive a line
-    if why is not None:
-        raise DesignError(f"{drive.name}: {why}")
+    drive = drive_for(recording, drive)
     check_options(tolerance_deg, seed)
     effects = considered_effects(without)
     # The matrices are small: a second thread of the linear algebra costs several times the time,

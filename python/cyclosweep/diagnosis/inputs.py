@@ -5,7 +5,7 @@ from pathlib import Path
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import finite_number, whole_number
-from cyclosweep.errors import InputError, instance_of, one_of
+from cyclosweep.errors import DesignError, InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects import effects as all_effects
@@ -39,6 +39,35 @@ def check_options(tolerance_deg: float | None, seed: int) -> None:
     whole_number("seed", seed)
     if tolerance_deg is not None and finite_number("tolerance_deg", tolerance_deg) <= 0:
         raise InputError(f"tolerance_deg: found {tolerance_deg:g}, expected degrees above zero")
+
+
+def drive_for(recording: Recording, drive: Drive | None) -> Drive:
+    """Return the drive that is given, or the one that the metadata name; it can be built.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    drive : Drive or None
+        What the caller gives.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    InputError
+        None is known, or what is given is something else.
+    DesignError
+        It cannot be built, though a stiffness of its own may give it a line.
+    """
+    drive = drive if drive is not None else drive_of(recording)
+    instance_of("drive", drive, Drive)
+    why = drive.explain()
+    if why is not None:
+        raise DesignError(f"{drive.name}: {why}")
+    return drive
 
 
 def drive_of(recording: Recording) -> Drive:
