@@ -152,7 +152,7 @@ def main() -> None:
         message = getattr(error, "format_message", error.__str__)()
         fail(f"{' '.join(message.split()).rstrip('.')}; see --help", 2)
     except typer.Abort:
-        fail("interrupted", 1)
+        fail("interrupted", INTERRUPTED)
     except (InputError, DesignError) as error:
         if is_interruption(error):
             sys.exit(INTERRUPTED)

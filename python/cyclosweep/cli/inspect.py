@@ -91,9 +91,9 @@ def inspect(
     from cyclosweep.recording.metadata import TableOptions
 
     if out is not None:
-        refuse_overwriting(out, force=force)
         if out.is_dir() or not out.parent.is_dir():
             raise InputError(f"--out: found {out}, expected a file in a folder that exists")
+        refuse_overwriting(out, force=force)
         if out.exists() and recording.exists() and out.samefile(recording):
             raise InputError(f"--out: {out} is the recording itself, expected another file")
     for name, value in (("lever-arm", lever_arm), ("counts-per-turn", counts)):

@@ -208,10 +208,11 @@ def refused(recording: Recording, drive: Drive, refusal: NoDiagnosisError, seed:
     -------
     Diagnosis
     """
+    reason = refusal.reason if refusal.reason.endswith(("?", ".")) else f"{refusal.reason}."
     answer = Answer(
         verdict=refusal.verdict,
-        statement=f"{recording.name}: {refusal.reason.rstrip('.')}.",
-        summary=f"{refusal.reason[:1].upper()}{refusal.reason[1:].rstrip('.')}.",
+        statement=f"{recording.name}: {reason}",
+        summary=f"{reason[:1].upper()}{reason[1:]}",
         do_now=f"{refusal.mend[:1].upper()}{refusal.mend[1:]}.",
         noise=NoiseEstimate(resolution_deg=recording.angle_resolution_deg),
         repaired=Repair(holdout="nothing"),

@@ -6,6 +6,7 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.messages import shown
 
 __all__ = [
+    "MINUS",
     "MISSING",
     "BadCellError",
     "is_number",
@@ -16,6 +17,11 @@ __all__ = [
 MISSING = [
     *("", "NA", "N/A", "na", "n/a", "n.a.", "null", "NULL", "None", "-", "--", "---", "----"),
     *("#N/A", "#NV", "#NUM!", "#VALUE!", "#DIV/0!", "k.A."),
+    *(
+        f"{sign}1.#{text}"
+        for sign in ("", "-")
+        for text in ("QNAN", "QNAN0", "SNAN", "IND", "IND00", "IND0000", "INF", "INF00")
+    ),
 ]
 """Cell contents that stand for a value that is not there.
 
@@ -23,10 +29,16 @@ The texts of an amplifier beyond its range, such as OVERLOAD, are none of them: 
 load, so whoever reads the file has to say that its rows are to be passed over.
 """
 
+MINUS = "\N{MINUS SIGN}"
+"""Sign that word processors and some locales write before negative numbers."""
+
 _GROUPED = re.compile(r"[+-]?\d{1,3}(?:(?P<sign>[.,'’  ])\d{3})(?:(?P=sign)\d{3})*(?:[.,]\d*)?")
 _PLAIN = re.compile(
-    r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
+    r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
 )
+
+
+_FORTRAN = re.compile(r"[+-]?[\d.]+[dD][+-]?\d+")
 
 
 class BadCellError(InputError):
@@ -61,6 +73,8 @@ def number_in(cell: str) -> float | None:
     """Value of a cell, None where it is not a number."""
     if "_" in cell:
         return None
+    if _FORTRAN.fullmatch(cell):
+        cell = cell.lower().replace("d", "e")
     try:
         return float(cell)
     except ValueError:
@@ -69,7 +83,7 @@ def number_in(cell: str) -> float | None:
 
 def is_number(cell: str) -> bool:
     """Whether a cell is a number in any spelling: 1362.82, 1.362,820 or 1,362.82."""
-    cell = cell.strip()
+    cell = cell.strip().replace(MINUS, "-")
     return bool(_PLAIN.fullmatch(cell) or _GROUPED.fullmatch(cell))
 
 
@@ -97,7 +111,7 @@ def spelt_number(cell: str, decimal: str, thousands: str) -> float | None:
     >>> spelt_number("1.36,2", ",", ".") is None
     True
     """
-    cell = cell.strip()
+    cell = cell.strip().replace(MINUS, "-")
     if thousands and (grouped := _GROUPED.fullmatch(cell)) and grouped["sign"] in thousands:
         cell = cell.replace(grouped["sign"], "")
     if decimal == ",":

@@ -16,6 +16,9 @@ ABSURD = 1e10
 GAP_FACTOR = 20.0
 """A step of the clock beyond so many median steps is a gap."""
 
+ANEW = 0.02
+"""Share of the clock's range from its first reading up to which it has started anew."""
+
 UNRELATED = 0.05
 """Correlation up to which an angle does not follow the torque."""
 
@@ -140,13 +143,18 @@ def _clock(recording: Samples) -> list[Fault]:
     back = np.flatnonzero((step < 0) & within)
     if len(back):
         at = int(back[0])
+        times = "once" if len(back) == 1 else f"{len(back)} times, first"
+        anew = time[back + 1] - time[0] <= ANEW * np.ptp(time)
+        advice = ""
+        if len(back) <= len(time) // MIN_SAMPLES and anew.all():
+            advice = " Where the clock starts anew with each test, number them in a column run."
         faults.append(
             Fault(
                 "time_backwards",
                 "DATA_FAULT",
-                f"Time runs backwards {len(back)} times, first at sample {at + 2} of run "
-                f"{run[at + 1]} ({time[at]:g} s, then {time[at + 1]:g} s): the order of events is "
-                "unknown.",
+                f"Time runs backwards {times} at sample {at + 2} of run {run[at + 1]} "
+                f"({time[at]:g} s, then {time[at + 1]:g} s): the order of events is unknown."
+                f"{advice}",
             )
         )
     forward = step[within & (step > 0)]
@@ -167,11 +175,16 @@ def _clock(recording: Samples) -> list[Fault]:
                 Fault(
                     "gaps",
                     None,
-                    f"{np.count_nonzero(gaps)} gaps in the clock, the longest "
-                    f"{step[gaps].max():g} s: what happened in them is unknown.",
+                    f"{gap_count(int(np.count_nonzero(gaps)))} in the clock, the longest "
+                    f"{step[gaps].max():g} s: what happened then is unknown.",
                 )
             )
     return faults
+
+
+def gap_count(count: int) -> str:
+    """Say how many gaps a clock has."""
+    return f"{count or 'no'} {'gap' if count == 1 else 'gaps'}"
 
 
 def _range(recording: Samples) -> list[Fault]:

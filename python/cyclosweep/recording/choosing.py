@@ -8,8 +8,9 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import BadCellError
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.metadata import CANONICAL_COLUMNS
-from cyclosweep.recording.roles import Named, describe
+from cyclosweep.recording.roles import Named, describe, role_by_name
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.units import MEANINGS, UNIT_EXAMPLES
 
 __all__ = ["Choice", "choose", "numbers_of"]
 
@@ -166,9 +167,71 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
             choice.assumed += [
                 f"{n.column}: unit {n.unknown_unit!r} is not known: not read." for n in unknown
             ]
+        if not candidates and role in (*_FLAGS, "time_s"):
+            why = _why_not(role, table, numbers)
+            if why is not None:
+                (choice.assumed if role == "time_s" else choice.open).append(why)
+                continue
         _choose_one(role, candidates, numbers, choice)
     _note_current(named, numbers, choice)
     return choice
+
+
+def _why_not(role: str, table: FileTable, numbers: dict[str, Floats]) -> str | None:
+    """Say why a column whose name reads like a canonical one cannot be it.
+
+    Parameters
+    ----------
+    role : str
+        Canonical column.
+    table : FileTable
+        The file.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Its columns of numbers.
+
+    Returns
+    -------
+    str or None
+        None where no name does, or what it says is a command.
+    """
+    for column in dict.fromkeys(table.header):
+        named = describe(column, table.units.get(column))
+        if role_by_name(column) != role or named.is_command or table.header.count(column) > 1:
+            continue
+        if column in numbers and named.role is None and named.kind is not None:
+            return (
+                f"{column} reads like {MEANINGS[role]}, but {named.unit!r} is a unit of "
+                f"{named.kind}, expected {UNIT_EXAMPLES[role]}. Name another column, or, where the "
+                f"file is wrong, give unit and instead_of under columns.{role} in settings for "
+                "--meta."
+            )
+        if column not in numbers:
+            left = "the clock is not read" if role == "time_s" else "mend such cells"
+            return f"{_first_text(table, column)}: {left}."
+    return None
+
+
+def _first_text(table: FileTable, column: str) -> str:
+    """Where text stands in a column, what was found and what was expected.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    column : str
+        Its column.
+
+    Returns
+    -------
+    str
+    """
+    try:
+        table.read([column], [])
+    except BadCellError as error:
+        return error.where
+    except InputError as error:
+        return str(error).rstrip(".")
+    return f"column {column} holds too few numbers"
 
 
 def _choose_one(

@@ -219,7 +219,10 @@ def drop_missing(columns: Columns, notes: list[str]) -> tuple[Columns, tuple[Fau
             continue
         keep &= finite
     if dropped := int((~keep).sum()):
-        text = f"{dropped} of {len(keep)} samples without a finite value dropped."
+        text = (
+            f"{dropped} of {len(keep)} samples without a finite value dropped, the first of them "
+            f"sample {int(np.argmin(keep)) + 1}."
+        )
         notes.append(text)
         if dropped > MISSING_SHARE * len(keep):
             faults = (Fault("missing_values", "DATA_FAULT", text),)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cyclosweep.errors import InputError
-from cyclosweep.recording.cells import is_number
+from cyclosweep.recording.cells import MINUS, is_number
 from cyclosweep.recording.digit_groups import told_apart
 from cyclosweep.recording.file_table import spelling
 from cyclosweep.recording.messages import one_line, shown
@@ -170,6 +170,8 @@ def open_csv(content: bytes, path: Path, options: TableOptions, wanted: Collecti
     """
     if b"\n" not in content:
         content = content.replace(b"\r", b"\n")
+    if MINUS.encode() in content:
+        content = re.sub(MINUS.encode() + rb"(?=[\d.,])", b"-", content)
     start, stop, line = _header_line(content, path)
     head = content[start:stop].decode("utf-8", "replace").strip("\r\n")
     separator = max(SEPARATORS, key=head.count)

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cyclosweep.recording.checks import GAP_FACTOR
+from cyclosweep.recording.checks import GAP_FACTOR, gap_count
 from cyclosweep.recording.recording import Recording
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.structure import HOLD_SAMPLES
@@ -126,8 +126,8 @@ def _clock_facts(recording: Recording) -> str:
     step = np.diff(time)
     within = (np.diff(recording.run) == 0) & (step > 0)
     if not within.any():
-        return "stands still"
+        return "stands still" if not np.any(step < 0) else "runs backwards"
     median = float(np.median(step[within]))
     gaps = np.count_nonzero(within & (step > GAP_FACTOR * median))
     text = f"{1 / median:.4g} Hz (a sample every {median:.4g} s), {np.ptp(time):.4g} s long"
-    return f"{text}, {gaps or 'no'} gaps"
+    return f"{text}, {gap_count(int(gaps))}"

@@ -13,7 +13,15 @@ from cyclosweep.recording.units import (
     unknown_unit,
 )
 
-__all__ = ["COMMAND", "Named", "describe", "name_weight", "reads_like_counts", "with_unit"]
+__all__ = [
+    "COMMAND",
+    "Named",
+    "describe",
+    "name_weight",
+    "reads_like_counts",
+    "role_by_name",
+    "with_unit",
+]
 
 _WORDS: dict[str, tuple[str, ...]] = {
     "torque_nm": ("torque", "moment", "drehmoment", "tq", "trq", "md", "mt", "couple", "torsion"),
@@ -150,6 +158,12 @@ def with_unit(named: Named, role: str, unit: str) -> Named:
         flag = "--torque-unit" if role == "torque_nm" else "--angle-unit"
         raise InputError(f"{flag}: found {unit!r}, expected a unit such as {UNIT_EXAMPLES[role]}")
     return replace(named, unit=unit, kind=known.kind, is_canonical=False, unknown_unit=None)
+
+
+def role_by_name(column: str) -> str | None:
+    """Canonical column that a name stands for, whatever its unit."""
+    bare = split_name(column)[0]
+    return _role_of(bare.strip(), _words_of(bare))
 
 
 def reads_like_counts(column: str) -> bool:

@@ -155,7 +155,10 @@ def _commented_names(
     """
     for row in range(len(texts) - 1, -1, -1):
         if texts[row].startswith("#"):
-            names = divide(re.sub(r"^#+\s*", "", texts[row]))
+            text = re.sub(r"^#+\s*", "", texts[row])
+            names = divide(text)
+            if len(names) != width:  # blanks between names and units, too
+                names = re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", text)
             return (row, names) if len(names) == width else None
         if texts[row].strip():
             return None
