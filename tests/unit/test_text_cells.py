@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -93,3 +94,14 @@ def test_a_folder_as_out_is_not_said_to_be_replaced(tmp_path: Path) -> None:
     assert result.returncode == 2
     assert "expected a file" in result.stderr
     assert "--force" not in result.stderr
+
+
+def test_an_interruption_has_the_status_that_shells_expect(tmp_path: Path) -> None:
+    path = write(tmp_path / "loop.csv", "torque_nm,angle_deg", *loop()[1:3])
+    with mock.patch("cyclosweep.diagnosis.diagnose", side_effect=KeyboardInterrupt):
+        arguments = ("diagnose", str(path), "--drive", "reference-87", "--out")
+        result = run(*arguments, str(tmp_path / "out"))
+    assert result.returncode == 130
+    assert result.stderr.startswith("cyclosweep: interrupted; ")
+    with mock.patch("cyclosweep.recording.inspection.inspect", side_effect=KeyboardInterrupt):
+        assert run("inspect", str(path)).returncode == 130

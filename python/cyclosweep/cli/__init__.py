@@ -33,7 +33,13 @@ from cyclosweep.cli import (
     torque_twist,
     validate,
 )
-from cyclosweep.cli.output import fail, is_interruption, keep_interruptions, survive_encoding
+from cyclosweep.cli.output import (
+    INTERRUPTED,
+    fail,
+    is_interruption,
+    keep_interruptions,
+    survive_encoding,
+)
 from cyclosweep.errors import DesignError, InputError, SweepError
 
 __all__ = ["main"]
@@ -43,9 +49,6 @@ _UsageError = cast(type[Exception], typer.BadParameter.__bases__[0])
 
 READER_ENDED = 141
 """Exit status where the reader of a pipe has ended: 128 and the number of SIGPIPE, as of shells."""
-
-INTERRUPTED = 130
-"""Exit status after Ctrl-C: 128 and the number of SIGINT, as of shells."""
 
 app = typer.Typer(
     add_completion=False,

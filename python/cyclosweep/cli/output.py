@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 __all__ = [
+    "INTERRUPTED",
     "AsJson",
     "fail",
     "folder_named",
@@ -202,6 +203,10 @@ def refuse_folder(folder: Path) -> None:
         raise InputError(line) from None
 
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C: 128 and the number of SIGINT, as of shells."""
+
+
 def fail(error: object, status: int) -> NoReturn:
     """Print in one line what went wrong and exit."""
     print(f"cyclosweep: {error}", file=sys.stderr)
@@ -214,7 +219,7 @@ def interruptible(left: str) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        fail(f"interrupted; {left}", 1)
+        fail(f"interrupted; {left}", INTERRUPTED)
 
 
 def keep_interruptions() -> None:
