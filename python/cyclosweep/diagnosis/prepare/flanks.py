@@ -121,8 +121,6 @@ class Flanks:
             loaded = (np.abs(torque) > self.loaded_scored_nm) & scored
         run = np.zeros(len(torque), dtype=np.int64) if run is None else run
         inside = angle - self.datum_deg - self.compliance_deg_per_nm * torque
-        least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
-        inside -= _moved_datum(inside - sign * play, sign * loaded, run, least)
         side = np.where(inside >= 0, 1.0, -1.0)
         side[loaded] = sign[loaded]
         if scored is not None:
@@ -136,7 +134,10 @@ class Flanks:
         side = sides_by_jumps(torque, angle, side, loaded, run, line)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
-        contact = loaded | pushed | (depth < margin)
+        least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
+        moved = _moved_datum(inside - sign * play, sign * loaded, run, least)
+        near = (depth < margin) & (play - np.abs(inside - moved) < margin)
+        contact = loaded | pushed | near
         # A shaft may have been turned against the other flank without load. Where readings lie
         # there under a torque that pushes it away, the law is curved and all are in contact.
         one_way = sign == self.only_direction if self.only_direction is not None else loaded
