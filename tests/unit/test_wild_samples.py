@@ -21,9 +21,9 @@ def test_one_wild_angle(tmp_path: Path, place: int) -> None:
     assert found["checks"] == []
     recording = cs.Recording.read(path)
     assert recording.blocking_fault is None
-    found = cs.diagnose(recording, full=False)
-    assert found.verdict not in {"DATA_FAULT", "INSUFFICIENT_DATA"}
-    assert "single_outliers" in {fault.kind for fault in found.recording.faults}
+    answer = cs.diagnose(recording, full=False)
+    assert answer.verdict not in {"DATA_FAULT", "INSUFFICIENT_DATA"}
+    assert "single_outliers" in {fault.kind for fault in answer.recording.faults}
 
 
 @pytest.mark.parametrize("run", [[1.2] * 5 + [1.7] * 5, [1.0] * 9 + [np.nan]])
