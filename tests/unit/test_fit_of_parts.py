@@ -9,6 +9,7 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.choose.fit_of_parts import misfits
+from cyclosweep.design.disc_stack import overlaps
 
 CATALOGUE = Path(__file__).parents[2] / "examples" / "catalogue-29.toml"
 
@@ -57,3 +58,8 @@ def test_what_does_not_fit_is_said(drive: cs.Drive, changes: dict[str, Any], wor
 def test_nothing_is_said_of_parts_that_fit(drive: cs.Drive) -> None:
     assert not list(misfits(drive))
     assert not list(misfits(cs.Drive.reference_87()))
+
+
+def test_discs_that_are_no_neighbours_may_stand_in_one_another() -> None:
+    assert list(overlaps([9.0, 24.0, 10.0], 13.5)) == [(1, 3, 1.0)]
+    assert not list(overlaps([9.0, 24.0, 39.0], 13.5))

@@ -14,6 +14,7 @@ from cyclosweep.cad.disc import Disc
 from cyclosweep.cad.drawing import eccentric_radius_mm
 from cyclosweep.cad.fitting import splines_within
 from cyclosweep.cad.profile import DiscProfile, turning
+from cyclosweep.design.disc_stack import overlaps
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import DesignError, InputError
 
@@ -80,16 +81,13 @@ def save_step(
 
 def _check_overlap(name: str, discs: list[Disc]) -> None:
     """Refuse discs that stand in one another along the axis."""
-    for first in discs:
-        for second in discs[first.number :]:
-            apart = abs(second.middle_mm - first.middle_mm)
-            if apart < first.width_mm:
-                raise DesignError(
-                    f"{name}: discs {first.number} and {second.number} overlap: their middles are "
-                    f"{apart:.6g} mm apart (disc_{first.number}_reach_mm, "
-                    f"disc_{second.number}_reach_mm), expected at least their width, "
-                    f"{first.width_mm:.6g}"
-                )
+    width = discs[0].width_mm
+    for first, second, apart in overlaps([disc.middle_mm for disc in discs], width):
+        raise DesignError(
+            f"{name}: discs {first} and {second} overlap: their middles are {apart:.6g} mm apart "
+            f"(disc_{first}_reach_mm, disc_{second}_reach_mm), expected at least their width, "
+            f"{width:.6g}"
+        )
 
 
 def _spline(b3d: Any, profile: DiscProfile, piece: tuple[Reals, Reals], turn: Reals) -> Any:

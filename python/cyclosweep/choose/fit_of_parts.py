@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 
+from cyclosweep.design.disc_stack import overlaps
 from cyclosweep.design.drive import Drive
 
 __all__ = ["misfits"]
@@ -48,12 +48,11 @@ def _along_the_axis(drive: Drive) -> Iterator[str]:
     reaches = [getattr(drive, f"disc_{k}_reach_mm") for k in range(1, drive.disc_count + 1)]
     if width is None or any(reach is None for reach in reaches):
         return
-    for (first, here), (second, there) in pairwise(enumerate(reaches, 1)):
-        if abs(there - here) < width:
-            yield (
-                f"discs {first} and {second}, {width:g} mm wide, stand in one another: their "
-                f"middles are {abs(there - here):.4g} mm apart"
-            )
+    for first, second, apart in overlaps(reaches, width):
+        yield (
+            f"discs {first} and {second}, {width:g} mm wide, stand in one another: their middles "
+            f"are {apart:.4g} mm apart"
+        )
     if min(reaches) < 0.5 * width:
         yield f"a disc stands in the flange: its middle is {min(reaches):g} mm from it"
     if max(reaches) + 0.5 * width > drive.output_pin_length_mm:

@@ -299,13 +299,10 @@ def _spelt(text: CsvText, options: TableOptions) -> CsvText:
     if text.decimal == "," and decimal == "." and not thousands:
         decimal = ","
     notes = list(text.notes)
-    told = told_apart(text.content[text.start :], text.separator)
-    if (
-        told is not None
-        and thousands in {"", decimal}
-        and not options.decimal
-        and not options.thousands
-    ):
+    told = None
+    if thousands in {"", decimal} and not (options.decimal or options.thousands):
+        told = told_apart(text.content[text.start :], text.separator)
+    if told is not None:
         decimal, thousands = told
         notes = [note for note in notes if "decimal commas" not in note or decimal == ","]
         notes.append(

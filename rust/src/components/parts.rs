@@ -203,14 +203,28 @@ impl Parts {
         if bend <= radius {
             return Err(PartError::Undercut { radius, bend });
         }
-        let gap =
-            values[PartInput::RingClearance as usize] + values[PartInput::ProfileOffset as usize];
-        let root = profile.ring_radius - radius - profile.eccentricity - gap;
-        let hole = scalar(Input::OutputPinCircleRadius)
-            + 0.5 * scalar(Input::OutputPinDiameter)
-            + scalar(Input::BushWall)
-            + profile.eccentricity
-            + values[PartInput::HoleClearance as usize];
+        let pins = std::array::from_fn(|disc| {
+            PinFlexibility::at(
+                values[PartInput::Reach1 as usize + disc],
+                scalar(Input::OutputPinDiameter),
+                scalar(Input::OutputPinBore),
+                scalar(Input::YoungsModulus),
+                scalar(Input::PoissonRatio),
+                fixed.root,
+            )
+        });
+        let parts = Self {
+            scalars: *scalars,
+            values,
+            counts: [lobes, discs, output_pins],
+            profile,
+            torque: scalar(Input::OutputTorque),
+            shaft_compliance,
+            pins,
+        };
+        let root =
+            parts.profile.ring_radius - radius - parts.profile.eccentricity - parts.ring_gap();
+        let hole = parts.scalar(Input::OutputPinCircleRadius) + parts.hole_radius();
         if hole >= root {
             return Err(PartError::HolesBreakProfile { hole, root });
         }
@@ -227,25 +241,7 @@ impl Parts {
                 });
             }
         }
-        let pins = std::array::from_fn(|disc| {
-            PinFlexibility::at(
-                values[PartInput::Reach1 as usize + disc],
-                scalar(Input::OutputPinDiameter),
-                scalar(Input::OutputPinBore),
-                scalar(Input::YoungsModulus),
-                scalar(Input::PoissonRatio),
-                fixed.root,
-            )
-        });
-        Ok(Self {
-            scalars: *scalars,
-            values,
-            counts: [lobes, discs, output_pins],
-            profile,
-            torque: scalar(Input::OutputTorque),
-            shaft_compliance,
-            pins,
-        })
+        Ok(parts)
     }
 
     /// Value of an input of the published model. SI.
@@ -293,6 +289,12 @@ impl Parts {
     #[must_use]
     pub const fn hole_radius(&self) -> f64 {
         self.bush_radius() + self.scalar(Input::Eccentricity) + self.value(PartInput::HoleClearance)
+    }
+
+    /// Gap (m) at every ring pin along its normal.
+    #[must_use]
+    pub const fn ring_gap(&self) -> f64 {
+        self.value(PartInput::RingClearance) + self.value(PartInput::ProfileOffset)
     }
 
     /// Relative curvature (1/m) of hole and output pin.
@@ -349,7 +351,7 @@ impl Parts {
             ring_radius: self.profile.ring_radius,
             pin_circle_radius: self.scalar(Input::OutputPinCircleRadius),
             hole_clocking: std::f64::consts::TAU * self.scalar(Input::HoleClocking),
-            ring_gap: self.value(PartInput::RingClearance) + self.value(PartInput::ProfileOffset),
+            ring_gap: self.ring_gap(),
             ring_enlargement: self.value(PartInput::RingCircleEnlargement)
                 + self.value(PartInput::ProfileShift),
             profile_rotation: self.value(PartInput::ProfileRotation),
