@@ -8,6 +8,8 @@ import pytest
 
 from cyclosweep.diagnosis.identify import naming, travel_check
 from cyclosweep.diagnosis.identify import testability as sizes
+from cyclosweep.diagnosis.identify.fit_state import Linearisation
+from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.law_in_class import LawCheck
 from cyclosweep.diagnosis.identify.naming import names_that_hold
 from cyclosweep.diagnosis.identify.terms import Term
@@ -18,6 +20,7 @@ from cyclosweep.diagnosis.identify.testability import (
 from cyclosweep.diagnosis.identify.travel_check import without_faint_waves
 from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
 from tests.support.searches import search_of
@@ -79,7 +82,7 @@ def test_an_interval_that_holds_zero_withdraws_a_law_whatever_its_strength(
 ) -> None:
     search = search_of(friction(0.3), CREEP)
     both = fitted(search, [rubbing(), Term(find("creep"), dict(CREEP.shape))]).fit
-    size = float(np.max(np.abs(sizes.size_of(both, 1))))
+    size = float(np.max(np.abs(sizes.recalibrated_twist(both, 1))))
     asked: list[np.ndarray] = []
 
     def of_size(_: object, __: object, covariance: np.ndarray) -> float:
@@ -117,6 +120,12 @@ def test_what_alone_explains_a_recording_is_at_work_whatever_its_shape() -> None
     assert of_any_size(search, found.fit) == set()
 
 
+def with_sensitivity(fitted: FittedStructure, sensitivity: Floats) -> FittedStructure:
+    """The same fit with other slopes."""
+    slopes = Linearisation(fitted.linearisation.target, lambda: sensitivity)
+    return replace(fitted, linearisation=slopes)
+
+
 def test_a_law_that_the_others_can_replace_whole_has_any_size() -> None:
     # The covariance of least squares knows nothing of a direction in which nothing changes.
     search = search_of(friction(0.3), CREEP)
@@ -124,7 +133,7 @@ def test_a_law_that_the_others_can_replace_whole_has_any_size() -> None:
     twice = both.sensitivity.copy()
     place = both.amplitude_places(1)[0]
     twice[:, len(both.beta)] = twice[:, place]
-    found = replace(both, sensitivity=twice)
+    found = with_sensitivity(both, twice)
     assert of_any_size(search, both) == set()
     assert of_any_size(search, found) == {"creep"}
 
@@ -138,7 +147,7 @@ def test_parameters_that_make_up_for_each_other_are_known_within_their_bounds(
     first, second = len(both.beta), len(both.beta) + 1
     twins = louder * both.sensitivity
     twins[:, second] = twins[:, first]
-    found = replace(both, sensitivity=twins)
+    found = with_sensitivity(both, twins)
     bounded = found.covariance_within_bounds
     one, other = (
         (each.to_scale(each.quantity.upper) - each.to_scale(each.quantity.lower)) ** 2 / 12.0

@@ -12,7 +12,7 @@ from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.identify.fit import ContactFit, fit
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.identify.testability import (
-    size_of,
+    recalibrated_twist,
     spread_of_size,
 )
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
@@ -62,7 +62,7 @@ def test_standard_error_of_a_size_is_its_spread(
     for _ in range(40):
         angle = plain + made(torque, plain) + 0.2 * rng.normal(size=len(torque))
         found = fitted(name, shape, angle, torque, run)
-        sizes.append(np.max(np.abs(size_of(found, 0))))
+        sizes.append(np.max(np.abs(recalibrated_twist(found, 0))))
         errors.append(spread_of_size(found, 0, found.covariance_within_bounds))
     # Forty draws tell a spread within a quarter, nineteen times in twenty.
     assert np.median(errors) == pytest.approx(np.std(sizes), rel=0.35)

@@ -13,7 +13,7 @@ from cyclosweep.diagnosis.identify.model_error_terms import (
 )
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
@@ -41,7 +41,7 @@ def test_a_small_loop_is_no_error_of_a_law_without_memory(
     small = friction(SMALL_DEG)
     search = search_of(large, small)
     found = of(search, large, small)
-    share = float(np.std(size_of(found, 1))) / search.baseline.fit.rmse_deg
+    share = float(np.std(recalibrated_twist(found, 1))) / search.baseline.fit.rmse_deg
     assert LEAST_OF_RECORDED < share < LEAST_OF_MISMATCH
     names = {
         term.name

@@ -21,7 +21,7 @@ from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger, without_small_laws
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.simulation.effects import find
@@ -304,6 +304,6 @@ def test_two_look_alikes_of_one_class_are_one_curve() -> None:
         search,
         [Term(find("clearance_takeup"), KINKS), Term(find("contact_stiffening"), {"turn_nm": 5.0})],
     )
-    size = [size_of(both.fit, k) for k in range(2)]
+    size = [recalibrated_twist(both.fit, k) for k in range(2)]
     assert np.corrcoef(size[0], size[1])[0, 1] > 0.8
     assert len(held(without_small_laws(both.fit, all_hold(both)))) == 1

@@ -6,11 +6,20 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from cyclosweep.diagnosis.identify import refine as refinement
 from cyclosweep.diagnosis.identify.candidate import Candidate
+from cyclosweep.diagnosis.identify.fit import fit
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
 from cyclosweep.diagnosis.identify.fit_state import Expansion
 from cyclosweep.diagnosis.identify.joint_fit import JointFit
-from cyclosweep.diagnosis.identify.refine import EXPANSIONS, FAR_ABOVE, MOST_RISES, refine
+from cyclosweep.diagnosis.identify.refine import (
+    EXPANSIONS,
+    FAR_ABOVE,
+    MOST_RISES,
+    ROUNDS_FAR_OFF,
+    STEPS_A_ROUND,
+    refine,
+)
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.simulation.effects.base import Parameter
 from cyclosweep.simulation.effects.history import Floats
@@ -79,8 +88,53 @@ def test_a_search_fits_no_structure_twice_from_the_same_parent(
     assert len(asked) == len(set(asked)) > 3
 
 
-@pytest.mark.parametrize(("rival", "asked"), [(3e4, 4), (0.9e4, 2)])
-def test_refinement_is_given_up_where_it_stays_far_above_a_rival(rival: float, asked: int) -> None:
-    work = Wandering([9e4, 5e4, 4e4, 4e4])
+@pytest.mark.parametrize(
+    ("left", "rival", "asked"),
+    [
+        ([9e4, 5e4, 4e4, 4e4], 3e4, 4),
+        ([9e4, 5e4, 4e4, 4e4], 0.9e4, 2),
+        ([9e4, 4e4, 1.9e4, 1.8e4, 1.8e4], 1e3, 4),
+    ],
+    ids=["near it", "far above it", "far above it, and falling fast for two times"],
+)
+def test_refinement_is_given_up_where_it_stays_far_above_a_rival(
+    left: Sequence[float], rival: float, asked: int
+) -> None:
+    work = Wandering(left)
     refine(cast(JointFit, work), np.zeros(1), BOUNDS, 6, rival)
     assert len(work.seen) == asked
+
+
+@pytest.mark.parametrize(("rival", "longer"), [(np.inf, True), (1.0, False)])
+def test_far_above_a_rival_a_refinement_has_few_rounds_at_a_time(
+    monkeypatch: pytest.MonkeyPatch, rival: float, longer: bool
+) -> None:
+    allowed = list[int]()
+
+    def counted(residual: object, start: Floats, *rest: Any, **freshness: bool) -> Any:
+        allowed.append(rest[2])
+        return start, np.zeros((1, 1)), True
+
+    monkeypatch.setattr(refinement, "minimise", counted)
+    refine(cast(JointFit, Wandering([9e4])), np.zeros(1), BOUNDS, 20, rival)
+    assert (allowed[0] > STEPS_A_ROUND * ROUNDS_FAR_OFF) is longer
+
+
+def test_slopes_of_a_fit_are_measured_once_and_only_where_they_are_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search = search_of(friction(0.3))
+    asked = list[Floats]()
+    measure = JointFit.slopes
+
+    def counted(self: JointFit, values: Floats) -> Floats:
+        asked.append(values)
+        return measure(self, values)
+
+    monkeypatch.setattr(JointFit, "slopes", counted)
+    found = fit(search.problem, search.noise, (), search.baseline.fit)
+    assert found.chi2 > 0
+    assert not asked
+    assert found.residual @ found.residual <= found.chi2
+    assert found.tangent.shape[1] == 3
+    assert len(asked) == 1

@@ -32,7 +32,7 @@ class Decay:
 def test_minima_are_found_with_fewer_residuals_than_by_differences() -> None:
     ours, theirs = Decay(), Decay()
     for start in ((1.0, 1.0, 0.6, 0.0), (3.0, 0.4, 0.2, 1.5), (1.5, 2.0, 0.9, 1.0)):
-        found, _ = minimise(ours, np.array(start), ANYWHERE, UNITS, 60)
+        found, _, _ = minimise(ours, np.array(start), ANYWHERE, UNITS, 60)
         assert np.abs(np.abs(found) - TRUE).max() < 0.02
         least_squares(theirs, np.array(start), bounds=ANYWHERE, ftol=1e-5, xtol=1e-5)
     assert ours.asked < 0.8 * theirs.asked
@@ -40,7 +40,7 @@ def test_minima_are_found_with_fewer_residuals_than_by_differences() -> None:
 
 def test_a_minimum_beyond_a_bound_ends_at_the_bound_with_the_others_at_their_best() -> None:
     upper = np.array([10.0, 1.0, 10.0, 10.0])
-    found, _ = minimise(Decay(), np.array([1.0, 0.5, 0.6, 0.0]), (-upper, upper), UNITS, 60)
+    found, _, _ = minimise(Decay(), np.array([1.0, 0.5, 0.6, 0.0]), (-upper, upper), UNITS, 60)
     best = least_squares(Decay(), np.array([1.0, 0.5, 0.6, 0.0]), bounds=(-upper, upper))
     assert found[1] == 1.0
     ours, theirs = (float(np.sum(Decay()(x) ** 2)) for x in (found, best.x))
@@ -52,7 +52,7 @@ def test_a_parameter_without_effect_does_not_stop_the_others() -> None:
         return np.array([values[0] - 3.0, 1e-9 * values[1], values[0] ** 2 - 9.0])
 
     bounds = (np.full(2, -5.0), np.full(2, 5.0))
-    found, _ = minimise(residual, np.array([0.5, 0.0]), bounds, np.ones(2), 40)
+    found, _, _ = minimise(residual, np.array([0.5, 0.0]), bounds, np.ones(2), 40)
     assert found[0] == pytest.approx(3.0, abs=1e-3)
 
 
@@ -69,9 +69,35 @@ def test_a_step_is_never_larger_than_slopes_are_worth() -> None:
 
 def test_known_slopes_are_not_measured_again() -> None:
     first = Decay()
-    found, slopes = minimise(first, np.array([1.0, 1.0, 0.6, 0.0]), ANYWHERE, UNITS, 60)
+    found, slopes, _ = minimise(first, np.array([1.0, 1.0, 0.6, 0.0]), ANYWHERE, UNITS, 60)
     fresh, known = Decay(), Decay()
     near = found + 0.05
     minimise(fresh, near, ANYWHERE, UNITS, 1)
     minimise(known, near, ANYWHERE, UNITS, 1, slopes)
     assert known.asked == fresh.asked - len(TRUE)
+
+
+def test_slopes_measured_at_the_end_serve_a_residual_that_hardly_differs() -> None:
+    """A refinement repeats itself with a residual that has moved a little."""
+
+    class Moved(Decay):
+        def __call__(self, values: Floats) -> Floats:
+            return super().__call__(values) + 1e-5 * TIMES
+
+    near = TRUE + 1e-4
+    noisy = np.random.default_rng(3).standard_normal(len(TIMES))
+    found, slopes, fresh = minimise(
+        lambda values: Decay()(values) + 0.02 * noisy, near, ANYWHERE, UNITS, 60
+    )
+    assert fresh
+    trusting, measuring = Moved(), Moved()
+    one, _, _ = minimise(trusting, found, ANYWHERE, UNITS, 60, slopes, fresh=True)
+    other, _, _ = minimise(measuring, found, ANYWHERE, UNITS, 60, slopes)
+    assert trusting.asked < measuring.asked
+    assert one == pytest.approx(other, abs=1e-3)
+
+
+def test_slopes_of_a_search_that_ran_out_of_steps_are_not_called_fresh() -> None:
+    """Taken for measured ones, they ended a friction at a hundred times its misfit."""
+    _, _, fresh = minimise(Decay(), np.array([1.0, 1.0, 0.6, 0.0]), ANYWHERE, UNITS, 3)
+    assert not fresh

@@ -28,7 +28,7 @@ from cyclosweep.diagnosis.identify.stage import FAINT, visibility
 from cyclosweep.diagnosis.identify.staged_search import search_in_stages
 from cyclosweep.diagnosis.identify.starting_terms import starting_terms
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_left, size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist, size_left
 from cyclosweep.diagnosis.identify.verdict import Decision
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
@@ -150,9 +150,9 @@ def test_what_has_shrunk_to_a_fraction_of_what_it_was_goes_however_small_the_mis
     search = search_of(kinks, EffectValue("contact_stiffening", {"turn_nm": 3.0}, (0.12,)))
     stiffening, takeup = Term(find("contact_stiffening"), {"turn_nm": 3.0}), term_of(kinks)
     alone, found = structure(search, stiffening).fit, structure(search, stiffening, takeup).fit
-    size = float(np.std(size_of(found, 0)))
+    size = float(np.std(recalibrated_twist(found, 0)))
     assert size > LEAST_OF_MISMATCH * mismatch(search)
-    assert size < 0.2 * np.std(size_of(alone, 0))
+    assert size < 0.2 * np.std(recalibrated_twist(alone, 0))
     kept = without_model_error(found, alone, mismatch(search))
     assert {term.name for term in kept} == {"clearance_takeup"}
 
@@ -161,7 +161,7 @@ def test_what_is_left_of_an_effect_is_what_nothing_fitted_takes_up() -> None:
     search = search_of(CREEP, SHIFTED)
     creep, shifted = term_of(CREEP), term_of(SHIFTED)
     found = structure(search, creep).fit
-    largest = float(np.max(np.abs(size_of(structure(search, creep, shifted).fit, 1))))
+    largest = float(np.max(np.abs(recalibrated_twist(structure(search, creep, shifted).fit, 1))))
     assert size_left(found, shifted) == pytest.approx(largest, rel=0.1)
     assert size_left(found, creep) < 1e-6 * largest
 
@@ -241,7 +241,7 @@ def test_a_dial_beside_which_an_accepted_side_load_grows_is_not_accepted() -> No
     )
     alone = structure(search, loaded).fit
     both = structure(search, loaded, dial).fit
-    assert np.std(size_of(both, 0)) > 1.5 * np.std(size_of(alone, 0))
+    assert np.std(recalibrated_twist(both, 0)) > 1.5 * np.std(recalibrated_twist(alone, 0))
     kept = without_model_error(both, alone, mismatch(search))
     assert {term.name for term in kept} == {"load_asymmetry"}
 

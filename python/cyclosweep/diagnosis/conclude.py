@@ -111,7 +111,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     """
     history = search.baseline.fit.history
     check_compliance(search.problem, drive, history.compliance_deg_per_nm)
-    if search.baseline.fit.beta[1] <= 0.0:
+    if search.baseline.fit.line_compliance_deg_per_nm <= 0.0:
         check_positive(search.problem.history.compliance_deg_per_nm)
     tolerance = DEFAULT_TOLERANCE * history.largest_twist_deg
     if tolerance_deg is not None:
@@ -152,7 +152,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     decision = _with_names_that_hold(search, decision, naming, explained.share or 0.0)
     if decision.verdict == "INSUFFICIENT_DATA":
         accepted = search.baseline
-    check_positive(float(accepted.fit.beta[1]))
+    check_positive(accepted.fit.line_compliance_deg_per_nm)
     decision = no_more_than_fits(decision, accepted, search, explained.share or 0.0)
     beyond_accepted = beyond_baseline
     if accepted is not search.baseline:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.prepare.problem import COMPLIANCE
 from cyclosweep.simulation.effects.history import Floats, History
 
 HALF = 0.5
@@ -36,7 +37,8 @@ def compliance_with_curve(fitted: FittedStructure) -> tuple[float, float]:
         In deg/(N m); those of the line where nothing bends it, or where the loads above half the
         largest one are too few for a slope.
     """
-    line, error = float(fitted.beta[1]), float(fitted.line_errors[1])
+    line = fitted.line_compliance_deg_per_nm
+    error = float(fitted.line_errors[COMPLIANCE])
     bending, problem = bending_terms(fitted), fitted.problem
     torque = fitted.history.elastic_nm
     rows = problem.fitted & (np.abs(torque) >= HALF * np.abs(torque[problem.fitted]).max())
@@ -44,16 +46,16 @@ def compliance_with_curve(fitted: FittedStructure) -> tuple[float, float]:
     through = through[:, : 2 if problem.one_sided else 3]
     if not bending or np.linalg.matrix_rank(through) < through.shape[1]:
         return line, error
-    weights = np.linalg.pinv(through)[1]
+    weights = np.linalg.pinv(through)[COMPLIANCE]
 
     def slope(at: FittedStructure) -> float:
-        twist = at.beta[1] * torque
+        twist = at.line_compliance_deg_per_nm * torque
         for k in bending:
             twist = twist + at.contribution(k)
         return float(weights @ twist[rows])
 
     here, covariance = slope(fitted), fitted.covariance
-    places = [1]
+    places = [COMPLIANCE]
     for k in bending:
         places += [*fitted.amplitude_places(k), *fitted.nonlinear_places(k)]
     by_parameter = np.zeros(len(places))

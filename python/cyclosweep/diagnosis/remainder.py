@@ -12,7 +12,7 @@ from cyclosweep.diagnosis.identify.candidate import Candidate
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import recalibration, size_left, size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist, recalibration, size_left
 from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
@@ -167,7 +167,7 @@ def _of_class(concluded: Conclusion) -> Remainder:
     fitted = concluded.accepted.fit
     gone = {check.name for check in concluded.naming.withdrawn}
     sizes = [
-        float(np.max(np.abs(size_of(fitted, index))))
+        float(np.max(np.abs(recalibrated_twist(fitted, index))))
         for index, term in enumerate(fitted.terms)
         if term.name in gone
     ]
@@ -192,7 +192,7 @@ def _unnamed_term(best: Candidate) -> Remainder | None:
         Remainder(
             shape=term.unnamed.family,
             place=term.unnamed.place,
-            size_deg=float(np.max(np.abs(size_of(fitted, index)))),
+            size_deg=float(np.max(np.abs(recalibrated_twist(fitted, index)))),
         )
         for index, term in enumerate(fitted.terms)
         if term.unnamed is not None
@@ -201,7 +201,7 @@ def _unnamed_term(best: Candidate) -> Remainder | None:
         return max(shapes, key=lambda shape: shape.size_deg)
     for index, (term, named) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
         if not named and term.effect is not None:
-            size = float(np.max(np.abs(size_of(fitted, index))))
+            size = float(np.max(np.abs(recalibrated_twist(fitted, index))))
             return Remainder(shape=term.effect.family, place="all along", size_deg=size)
     return None
 

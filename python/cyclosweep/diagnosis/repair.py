@@ -7,7 +7,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.elasticity import compliance_with_curve
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.prepare.problem import COMPLIANCE, DATUM, FREE_PLAY, Problem
 from cyclosweep.recording.cleaning import REVERSED
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.result import Baseline, CalibratedParameter, LearnedError
@@ -79,7 +79,7 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     )
     if model.one_history:
         model = replace(model, notes=(ONE_HISTORY, *model.notes))
-    if base.beta[1] <= 0.0:
+    if base.line_compliance_deg_per_nm <= 0.0:
         model = replace(model, notes=(*model.notes, FALLING))
     if REVERSED in problem.recording.notes:
         model = replace(model, notes=(*model.notes, TURNED_ROUND))
@@ -130,20 +130,20 @@ def calibrated_parameters(
         ),
         "compliance_deg_per_nm": CalibratedParameter(
             nominal=nominal,
-            estimate=float(fitted.beta[1]),
-            std_error=finite(errors[1]),
+            estimate=fitted.line_compliance_deg_per_nm,
+            std_error=finite(errors[COMPLIANCE]),
             unit="deg/(N m)",
         ),
         "free_play_deg": CalibratedParameter(
             nominal=problem.nominal_free_play_deg,
             estimate=fitted.history.free_play_deg,
-            std_error=None if problem.one_sided else finite(errors[2]),
+            std_error=None if problem.one_sided else finite(errors[FREE_PLAY]),
             unit="deg",
         ),
         "datum_deg": CalibratedParameter(
             nominal=0.0,
             estimate=fitted.history.datum_deg,
-            std_error=finite(errors[0]),
+            std_error=finite(errors[DATUM]),
             unit="deg",
         ),
     }
@@ -171,7 +171,7 @@ def calibration_of(base: FittedStructure, problem: Problem) -> Mapping[str, Cali
         Where the fitted line falls, that read off the flanks, without standard errors.
     """
     fitted = calibrated_parameters(base, problem)
-    if base.beta[1] > 0.0:
+    if base.line_compliance_deg_per_nm > 0.0:
         return fitted
     read = problem.history
     values = {

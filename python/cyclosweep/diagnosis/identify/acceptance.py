@@ -14,7 +14,7 @@ from cyclosweep.diagnosis.identify.model_error_terms import (
 )
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.diagnosis.identify.verdict import Decision, likely, probabilities
 from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, worth
 
@@ -206,7 +206,7 @@ def _doubtful(search: Search, best: Candidate) -> frozenset[str]:
     for k, (term, recognised) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
         if term.name in search.start.names:
             continue
-        clear = float(np.std(size_of(fitted, k))) >= TIMES_WHAT_IS_LEFT * left
+        clear = float(np.std(recalibrated_twist(fitted, k))) >= TIMES_WHAT_IS_LEFT * left
         if not (recognised and clear) or worth(search, term.name, best) < INDISPENSABLE:
             found.add(term.name)
     return frozenset(found)

@@ -26,7 +26,7 @@ from cyclosweep.diagnosis.identify.run_offsets_check import (
 from cyclosweep.diagnosis.identify.scatter_check import without_widest_scatter
 from cyclosweep.diagnosis.identify.starting_terms import TIED_DIGITS
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.simulation.effects.history import Floats
 
 MOST_CLASSES = 4
@@ -88,7 +88,7 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
     taken = {each.behaviour for each in stand_ins if each.behaviour}
     for term in fitted.terms:
         taken |= set(own_classes(term)) if term.name in withdrawn else set()
-    sizes = [size_of(fitted, index) for index in range(len(fitted.terms))]
+    sizes = [recalibrated_twist(fitted, index) for index in range(len(fitted.terms))]
     checks = [
         check
         for indices, own in groups

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
+from cyclosweep.diagnosis.identify.fit_state import Linearisation
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.joint_fit import JointFit
 from cyclosweep.diagnosis.identify.path_law import path_law
@@ -14,7 +15,7 @@ from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction, Predicti
 from cyclosweep.diagnosis.identify.refine import refine
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, folds, restrict
 from cyclosweep.result import Finding
@@ -85,7 +86,7 @@ class ContactFit(FittedStructure):
                 EffectValue(term.name, plain, tuple(map(float, amplitudes)), term.in_series)
             )
         return Model(
-            compliance_deg_per_nm=float(self.beta[1]),
+            compliance_deg_per_nm=self.line_compliance_deg_per_nm,
             free_play_deg=self.history.free_play_deg,
             datum_deg=self.history.datum_deg,
             side=self.problem.recording.side,
@@ -245,19 +246,16 @@ def fit(
         values = refine(work, values, (lower, upper), rounds, near)
     else:
         work.expand_at(values)
-    found = work.linearise(values)
-    tangent = orthonormal(found.sensitivity, 1e-6)
+    found, beta = work.solution(values)
     return ContactFit(
         problem=problem,
         noise=work.noise,
-        terms=found.terms,
-        beta=found.beta,
+        terms=found,
+        beta=beta,
         history=work.history,
         mean_deg=work.mean,
-        residual=found.target - tangent @ (tangent.T @ found.target),
-        chi2=float(found.target @ found.target),
-        tangent=tangent,
-        sensitivity=found.sensitivity,
+        chi2=float(work.target @ work.target),
+        linearisation=Linearisation(work.target, partial(work.slopes, values)),
         fit_parameters=parameters,
     )
 

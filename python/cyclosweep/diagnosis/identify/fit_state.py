@@ -1,8 +1,13 @@
 """What a joint fit in progress hands on: where it stands, and its slopes there."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
 
 from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats, History
 
 
@@ -34,23 +39,38 @@ class Expansion:
     terms: tuple[Term, ...]
 
 
-@dataclass(frozen=True, eq=False)
 class Linearisation:
-    """A structure at its solution, linearised.
+    """Slopes of a structure at its solution, measured when they are first asked for.
 
-    Attributes
+    Most structures that a search fits are no better than those it has, and nobody asks.
+
+    Parameters
     ----------
-    terms : tuple of Term
-        With their values.
-    beta : ndarray
-        Linear parameters.
     target : ndarray, shape (fitted,)
         White residual of unit variance, as it is.
-    sensitivity : ndarray, shape (fitted, p)
-        Whitened derivative by every parameter: linear ones first, then nonlinear ones.
+    slopes : callable
+        Returns the sensitivity.
     """
 
-    terms: tuple[Term, ...]
-    beta: Floats
-    target: Floats
-    sensitivity: Floats
+    def __init__(self, target: Floats, slopes: Callable[[], Floats]) -> None:
+        self.target = target
+        self._slopes: Callable[[], Floats] | None = slopes
+
+    @cached_property
+    def sensitivity(self) -> Floats:
+        """Whitened derivative by every parameter, shape (fitted, p): linear ones first."""
+        assert self._slopes is not None
+        found = self._slopes()
+        # What it was measured with, all columns of a fit, is needed no longer.
+        self._slopes = None
+        return found
+
+    @cached_property
+    def tangent(self) -> Floats:
+        """Orthonormal basis of the tangent space in the whitened metric, shape (fitted, q)."""
+        return orthonormal(self.sensitivity, 1e-6)
+
+    @cached_property
+    def residual(self) -> Floats:
+        """White residual less what lies in the tangent space, shape (fitted,)."""
+        return np.asarray(self.target - self.tangent @ (self.tangent.T @ self.target))

@@ -16,11 +16,12 @@ import numpy as np
 
 from cyclosweep.diagnosis.identify.covariance import covariance_of
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.fit_state import Linearisation
 from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction, Prediction, TorqueZero
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
-from cyclosweep.diagnosis.prepare.problem import Problem
+from cyclosweep.diagnosis.prepare.problem import COMPLIANCE, Problem
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.simulate import Model
@@ -52,14 +53,10 @@ class FittedStructure(ABC):
         All rows with the fitted path.
     mean_deg : ndarray, shape (n,)
         Modelled twist of all rows, with the flank read off the recording [deg].
-    residual : ndarray, shape (fitted,)
-        White residual of unit variance.
     chi2 : float
-        Its sum of squares.
-    tangent : ndarray, shape (fitted, q)
-        Orthonormal basis of the tangent space in the whitened metric.
-    sensitivity : ndarray, shape (fitted, p)
-        Whitened derivative by every parameter: linear ones first, then nonlinear ones.
+        Sum of squares of the white residual.
+    linearisation : Linearisation
+        Its slopes by all parameters.
     fit_parameters : tuple of FitParameter
         The nonlinear parameters.
     """
@@ -70,11 +67,24 @@ class FittedStructure(ABC):
     beta: Floats
     history: History
     mean_deg: Floats
-    residual: Floats
     chi2: float
-    tangent: Floats
-    sensitivity: Floats
+    linearisation: Linearisation
     fit_parameters: tuple[FitParameter, ...]
+
+    @property
+    def residual(self) -> Floats:
+        """White residual of unit variance, shape (fitted,)."""
+        return self.linearisation.residual
+
+    @property
+    def tangent(self) -> Floats:
+        """Orthonormal basis of the tangent space in the whitened metric, shape (fitted, q)."""
+        return self.linearisation.tangent
+
+    @property
+    def sensitivity(self) -> Floats:
+        """Whitened derivative by every parameter, shape (fitted, p): linear ones first."""
+        return self.linearisation.sensitivity
 
     @property
     def loss(self) -> float:
@@ -83,6 +93,11 @@ class FittedStructure(ABC):
         Chi-squared is no such measure under heavy tails: there it forgets what is far off.
         """
         return self.chi2
+
+    @property
+    def line_compliance_deg_per_nm(self) -> float:
+        """Compliance of the line beside the effects [deg/(N m)]."""
+        return float(self.beta[COMPLIANCE])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -277,7 +292,7 @@ class FittedStructure(ABC):
 
         A law that the whole drive may follow counts for it.
         """
-        line = float(self.beta[1])
+        line = self.line_compliance_deg_per_nm
         springs = [size for term, size in self.elastic_parts if term.is_whole_spring]
         whole = line + sum(float(size[0]) for size in springs)
         return line > 0.0 and whole >= LEAST_OF_SLOPE * self.problem.history.compliance_deg_per_nm

@@ -22,7 +22,7 @@ from cyclosweep.diagnosis.identify.other_laws import left_beyond_noise
 from cyclosweep.diagnosis.identify.scan import evidence
 from cyclosweep.diagnosis.identify.search import Search
 from cyclosweep.diagnosis.identify.signs import with_right_signs
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 
 MOST_OWN_GROWTH = 1.5
 """Size of a law in its freer form over its size before, from which it has taken the place of other
@@ -89,7 +89,9 @@ def freer_instead_of_others(
         others = tuple(t for t in best.fit.terms if t.name in start.names and t is not term)
         same = [k for k, each in enumerate(start.fit.terms) if each.name == term.name]
         known = sum(amplitude_count(start.fit, k) for k in same)
-        before = size_of(start.fit, same[0]) if same else size_of(best.fit, index)
+        before = (
+            recalibrated_twist(start.fit, same[0]) if same else recalibrated_twist(best.fit, index)
+        )
         for terms, _ in freer_laws(best, search.library, index, whole_class=True):
             charge = term.effect.penalty(terms[index].shape)
             if charge <= term.effect.penalty(term.shape):
@@ -101,7 +103,7 @@ def freer_instead_of_others(
                 continue
             if makes_others_grow(joint, len(others), start.fit):
                 continue
-            if np.std(size_of(joint, len(others))) > MOST_OWN_GROWTH * np.std(before):
+            if np.std(recalibrated_twist(joint, len(others))) > MOST_OWN_GROWTH * np.std(before):
                 continue
             rank = amplitude_count(joint, len(others)) - known
             added = float(evidence(search.gain(start.fit, joint), rank))

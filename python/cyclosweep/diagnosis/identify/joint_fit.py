@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
 from cyclosweep.diagnosis.identify.fit_parameters import FitParameter, usual_change
-from cyclosweep.diagnosis.identify.fit_state import Expansion, Linearisation
+from cyclosweep.diagnosis.identify.fit_state import Expansion
 from cyclosweep.diagnosis.identify.fitted_structure import LEAST_BESIDE_SPRING
 from cyclosweep.diagnosis.identify.friction_path import friction_path
 from cyclosweep.diagnosis.identify.path_law import (
@@ -17,7 +17,13 @@ from cyclosweep.diagnosis.identify.path_law import (
 )
 from cyclosweep.diagnosis.identify.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise
-from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.diagnosis.prepare.problem import (
+    COMPLIANCE,
+    DATUM,
+    FREE_PLAY,
+    Problem,
+    line_design,
+)
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip import on_shared_elements
 
@@ -199,12 +205,12 @@ class JointFit:
         beta = _solve(white, self._shifted, hold)
         least = LEAST_BESIDE_SPRING * self.problem.history.compliance_deg_per_nm
         held = dict[int, float]()
-        if beta[1] < least and any(term.is_whole_spring for term in terms):
+        if beta[COMPLIANCE] < least and any(term.is_whole_spring for term in terms):
             # The line may be nothing beside such a spring; the simulation divides by it.
-            held[1] = least
-        if self._bounds_play and beta[2] < 0.0:
+            held[COMPLIANCE] = least
+        if self._bounds_play and beta[FREE_PLAY] < 0.0:
             # No play is negative; where a curve has taken its place it is nothing.
-            held[2] = 0.0
+            held[FREE_PLAY] = 0.0
         if held:
             places = list(held)
             rest = self._shifted - white[:, places] @ np.array(list(held.values()))
@@ -212,7 +218,7 @@ class JointFit:
             for place, value in held.items():
                 others = np.insert(others, place, value)
             # Beside a wave of the angle the line itself may then have no stiffness.
-            beta = others if others[1] > 0.0 else beta
+            beta = others if others[COMPLIANCE] > 0.0 else beta
         return history, design, white, beta
 
     def _evaluate(self, values: Floats) -> tuple[History, Floats, Floats]:
@@ -266,11 +272,11 @@ class JointFit:
         -------
         History
         """
-        play = history.free_play_deg if self.problem.one_sided else max(float(beta[2]), 0.0)
-        compliance = float(beta[1])
+        play = history.free_play_deg if self.problem.one_sided else max(float(beta[FREE_PLAY]), 0.0)
+        compliance = float(beta[COMPLIANCE])
         if compliance <= 0:
             compliance = history.compliance_deg_per_nm
-        datum = float(beta[0])
+        datum = float(beta[DATUM])
         if self.problem.one_sided:
             datum -= float(history.side[self.use][0]) * play
         state: dict[str, float | Floats] = {
@@ -335,10 +341,16 @@ class JointFit:
             first += width
         self.terms = tuple(terms)
 
-    def linearise(self, values: Floats) -> Linearisation:
-        """Slopes by all parameters, and the residual, at these nonlinear parameters."""
+    def solution(self, values: Floats) -> tuple[tuple[Term, ...], Floats]:
+        """Terms and linear parameters at these nonlinear ones."""
+        self.residual(values)
+        terms, _, beta = self._last
+        return terms, beta
+
+    def slopes(self, values: Floats) -> Floats:
+        """Whitened derivative by all parameters, at these nonlinear ones: linear ones first."""
         residual = self.residual(values)
-        terms, white, beta = self._last
+        _, white, beta = self._last
         slopes = []
         for k in range(len(values)):
             of = self.fit_parameters[k]
@@ -350,8 +362,7 @@ class JointFit:
             change = residual - self.residual(ahead)
             # The linear parameters have followed; the derivative is at theirs held.
             slopes.append((change - white @ (self._last[2] - beta)) / step)
-        sensitivity = np.column_stack([white, *slopes]) if slopes else white
-        return Linearisation(terms, beta, self.target, sensitivity)
+        return np.column_stack([white, *slopes]) if slopes else white
 
 
 def _levels(noise: Noise) -> list[float]:

@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.scan import evidence, likelihood_gain
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
@@ -139,9 +139,9 @@ def cancels(fitted: FittedStructure, index: int) -> bool:
     -------
     bool
     """
-    own = size_of(fitted, index)
+    own = recalibrated_twist(fitted, index)
     others = [
-        size_of(fitted, k)
+        recalibrated_twist(fitted, k)
         for k, each in enumerate(fitted.terms)
         if k != index and share_class(each, fitted.terms[index])
     ]
@@ -171,11 +171,13 @@ def makes_others_grow(fitted: FittedStructure, index: int, accepted: FittedStruc
     term = fitted.terms[index]
     if term.effect is None or not set(own_classes(term)) >= BOTH_CURVES:
         return False
-    before = {t.name: float(np.std(size_of(accepted, k))) for k, t in enumerate(accepted.terms)}
+    before = {
+        t.name: float(np.std(recalibrated_twist(accepted, k))) for k, t in enumerate(accepted.terms)
+    }
     if term.name in before:
         return False
     return any(
-        float(np.std(size_of(fitted, k))) > MOST_GROWN * before.get(other.name, np.inf)
+        float(np.std(recalibrated_twist(fitted, k))) > MOST_GROWN * before.get(other.name, np.inf)
         for k, other in enumerate(fitted.terms)
         if k != index and share_class(other, term)
     )

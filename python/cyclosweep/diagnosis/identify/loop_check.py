@@ -8,7 +8,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import smooth_columns
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.diagnosis.prepare.problem import line_design
 from cyclosweep.simulation.effects.history import Floats
 
@@ -83,7 +83,7 @@ def is_without_loop(fitted: FittedStructure, index: int) -> bool:
     """
     problem = fitted.problem
     use, history = problem.fitted, problem.history
-    size = float(np.linalg.norm(size_of(fitted, index)))
+    size = float(np.linalg.norm(recalibrated_twist(fitted, index)))
     if size < VISIBLE * fitted.noise.spread_deg:
         return False
     # The elastic torque is what friction leaves of the applied one: its curves hold the loop.

@@ -27,7 +27,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
 from cyclosweep.diagnosis.identify.run_offsets_check import count_states
 from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.simulation.effects.history import Flags, History
 from cyclosweep.simulation.effects.mesh_range import mesh_positions
 from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
@@ -68,8 +68,10 @@ def without_model_error(
     -------
     tuple of Term
     """
-    before = {t.name: float(np.std(size_of(accepted, k))) for k, t in enumerate(accepted.terms)}
-    size = [float(np.std(size_of(fitted, k))) for k in range(len(fitted.terms))]
+    before = {
+        t.name: float(np.std(recalibrated_twist(accepted, k))) for k, t in enumerate(accepted.terms)
+    }
+    size = [float(np.std(recalibrated_twist(fitted, k))) for k in range(len(fitted.terms))]
     left = beyond_noise_deg(fitted)
     errors = errors_of_larger(fitted)
     kept = []

@@ -22,7 +22,12 @@ MOST_RISES = 2
 FAR_ABOVE = 2.0
 """The same at once, where an expansion leaves so many times what the best one did."""
 HOPELESS = 5.0
-"""Misfit over that of a rival, above which a refinement is given up after its first iterations."""
+"""Misfit over that of a rival, from which a refinement is watched more closely: it has a few rounds
+at a time,"""
+ROUNDS_FAR_OFF = 6
+"""so many,"""
+LEAST_FALL = 0.5
+"""and is given up unless each time leaves less than this share of the misfit."""
 SETTLED = 1e-2
 """Largest move of a parameter, in usual changes, that is the end of a refinement."""
 
@@ -61,11 +66,14 @@ def refine(
     scale = np.array([usual_change(each, value) for each, value in zip(of, start, strict=True)])
     here = best = work.expand_at(start)
     slopes: Floats | None = None
+    fresh = False
     rises = 0
     for count in range(EXPANSIONS):
         before = here
-        values, slopes = minimise(
-            work.residual, here.values, bounds, scale, STEPS_A_ROUND * rounds, slopes
+        far_off = best.misfit > HOPELESS * rival
+        steps = STEPS_A_ROUND * (min(rounds, ROUNDS_FAR_OFF) if far_off else rounds)
+        values, slopes, fresh = minimise(
+            work.residual, here.values, bounds, scale, steps, slopes, fresh=fresh
         )
         moved = float(np.max(np.abs(values - here.values) / scale))
         here = work.expand_at(values)
@@ -73,7 +81,7 @@ def refine(
         rises += here.misfit - before.misfit > _least_change(here.misfit)
         if rises >= MOST_RISES or here.misfit > FAR_ABOVE * best.misfit:
             break
-        if best.misfit > HOPELESS * rival:
+        if best.misfit > max(HOPELESS * rival, LEAST_FALL * before.misfit):
             break
         gained_little = abs(before.chi2 - here.chi2) < _least_change(here.chi2)
         if moved < SETTLED or (count and gained_little):

@@ -332,7 +332,9 @@ class Search:
         """
         for terms, rank in offers:
             rounds = USUAL_ROUNDS if any(term.slips for term in terms) else RICH_ROUNDS
-            joint = fit(self.problem, self.noise, terms, candidate.fit, rounds=rounds)
+            joint = fit(
+                self.problem, self.noise, terms, candidate.fit, rounds=rounds, rival=candidate.fit
+            )
             signed = with_right_signs(joint)
             if signed is None:
                 continue

@@ -32,7 +32,9 @@ def minimise(
     scale: Floats,
     most: int,
     slopes: Floats | None = None,
-) -> tuple[Floats, Floats]:
+    *,
+    fresh: bool = False,
+) -> tuple[Floats, Floats, bool]:
     """Minimise a sum of squares from a start.
 
     Parameters
@@ -49,6 +51,8 @@ def minimise(
         Most steps that are tried.
     slopes : ndarray, shape (n, p), optional
         Slopes near the start, by usual changes; measured where they are not given.
+    fresh : bool
+        Whether these slopes were measured at the start, if for a residual that differed a little.
 
     Returns
     -------
@@ -56,12 +60,14 @@ def minimise(
         The best parameters.
     slopes : ndarray, shape (n, p)
         Slopes there, by usual changes.
+    fresh : bool
+        Whether these slopes were measured there.
     """
     values, left = start, residual(start)
-    fresh = slopes is None
+    damping, measurable, settled = FIRST_DAMPING, not fresh, False
     if slopes is None:
-        slopes = _measured(residual, values, left, bounds, scale)
-    damping, measurable = FIRST_DAMPING, True
+        slopes, fresh = _measured(residual, values, left, bounds, scale), True
+    since_measured = 0 if fresh else most
     for _ in range(most):
         step, damping = _bounded_step(slopes, left, values, bounds, scale, damping)
         moved = np.clip(values + scale * step, *bounds)
@@ -73,9 +79,11 @@ def minimise(
             slopes = slopes + np.outer(there - left - change, step) / float(step @ step)
             gain = float(left @ left) - float(there @ there)
         elif fresh or not measurable:
+            settled = True
             break
         if gain > 0.0:
             values, left, fresh = moved, there, False
+            since_measured += 1
             damping *= 0.2 if gain > 0.5 * promised else 1.0
         elif fresh or not measurable:
             damping = 10.0 * max(damping, FIRST_DAMPING)
@@ -83,8 +91,8 @@ def minimise(
                 break
         else:
             slopes = _measured(residual, values, left, bounds, scale)
-            fresh, measurable = True, False
-    return values, slopes
+            fresh, measurable, since_measured = True, False, 0
+    return values, slopes, settled and since_measured <= 1
 
 
 def _measured(

@@ -24,7 +24,7 @@ from cyclosweep.diagnosis.identify.law_in_class import (
     share_class,
     withdrawn_where,
 )
-from cyclosweep.diagnosis.identify.testability import size_of
+from cyclosweep.diagnosis.identify.testability import recalibrated_twist
 from cyclosweep.simulation.effects.history import Floats
 
 HALF = 0.5
@@ -50,7 +50,11 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
     """
     judged = {check.name for check in checks}
     terms = {term.name: term for term in fitted.terms if term.name in judged}
-    size = {t.name: size_of(fitted, k) for k, t in enumerate(fitted.terms) if t.name in judged}
+    size = {
+        t.name: recalibrated_twist(fitted, k)
+        for k, t in enumerate(fitted.terms)
+        if t.name in judged
+    }
 
     def least_beside(name: str, other: str) -> float:
         curves = not (terms[name].slips or terms[other].slips)
@@ -84,7 +88,7 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
         Laws far smaller than another, of which little is left beside the whole class of the other.
     """
     laws = [k for k, term in enumerate(fitted.terms) if term.effect is not None]
-    sizes = {k: size_of(fitted, k) for k in laws}
+    sizes = {k: recalibrated_twist(fitted, k) for k in laws}
     spread = {k: float(np.std(size)) for k, size in sizes.items()}
     own = {k: own_classes(fitted.terms[k]) for k in laws}
     loud = [k for k in laws if _visibility(fitted, sizes[k]) > LOUD]

@@ -125,7 +125,7 @@ def testability(
     return out
 
 
-def size_of(fitted: FittedStructure, index: int) -> Floats:
+def recalibrated_twist(fitted: FittedStructure, index: int) -> Floats:
     """Twist of a term that no other calibration would take up [deg].
 
     Parameters
@@ -239,7 +239,7 @@ def of_any_size(search: Search, fitted: FittedStructure) -> frozenset[str]:
     def is_open(index: int) -> bool:
         if fitted.follows_path(index):
             return False
-        size = float(np.max(np.abs(size_of(fitted, index)), initial=0.0))
+        size = float(np.max(np.abs(recalibrated_twist(fitted, index)), initial=0.0))
         # A spread beyond all numbers is no number; where the others can be all of a law, the
         # covariance holds none of what it shares with them.
         known = NORMAL_95 * spread_of_size(fitted, index, fitted.covariance) < size

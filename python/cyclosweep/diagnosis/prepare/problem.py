@@ -133,6 +133,11 @@ class Problem:
         return float(np.sqrt(np.average(difference**2, weights=self.weight[rows])))
 
 
+DATUM, COMPLIANCE, FREE_PLAY = 0, 1, 2
+"""Places of the baseline's linear parameters, ahead of all others; free play only where both flanks
+were loaded."""
+
+
 def line_design(history: History, torque_nm: Floats, *, one_sided: bool) -> Floats:
     """Columns of the baseline's linear parameters: datum, compliance and free play.
 

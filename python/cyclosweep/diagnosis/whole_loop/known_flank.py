@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
+from cyclosweep.diagnosis.identify.fit_state import Linearisation
 from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.prediction import (
     KnownFlankPrediction,
@@ -20,8 +21,8 @@ from cyclosweep.diagnosis.identify.prediction import (
 )
 from cyclosweep.diagnosis.identify.repetition import Repetition
 from cyclosweep.diagnosis.identify.stage import FAINT
-from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise, orthonormal
-from cyclosweep.diagnosis.prepare.problem import Problem, line_design
+from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+from cyclosweep.diagnosis.prepare.problem import DATUM, Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, STRETCHES_OF_LOOPS, stretches
 from cyclosweep.diagnosis.whole_loop.findings import findings, hidden_by_friction
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, fit_forecast, refit
@@ -303,14 +304,18 @@ def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeL
     design = noise.design(np.column_stack(parts)[use], weight)
     kept = [k for k, each in enumerate(forecast.parameters) if each.kind == "nonlinear"]
     judged = {(forecast.parameters[k].term, forecast.parameters[k].name) for k in kept}
-    slopes = [noise.design(forecast.slope(k, known_flank_path)[use], weight)[:, None] for k in kept]
-    sensitivity = np.hstack([design, *slopes]) if slopes else design
-    tangent = orthonormal(sensitivity, 1e-6)
+
+    def sensitivity() -> Floats:
+        slopes = [
+            noise.design(forecast.slope(k, known_flank_path)[use], weight)[:, None] for k in kept
+        ]
+        return np.hstack([design, *slopes])
+
     target = noise.residual(problem.angle_deg[use], history.angle_deg[use])[0]
     model = forecast.model
     beta = [model.datum_deg, model.compliance_deg_per_nm]
     if problem.one_sided:
-        beta[0] += float(history.side[use][0]) * model.free_play_deg
+        beta[DATUM] += float(history.side[use][0]) * model.free_play_deg
     else:
         beta.append(model.free_play_deg)
     for term, value in zip(forecast.terms, model.effects, strict=True):
@@ -322,10 +327,8 @@ def whole_loop_fit(forecast: Forecast, before: Forecast, noise: Noise) -> WholeL
         beta=np.array(beta),
         history=history,
         mean_deg=history.angle_deg,
-        residual=target - tangent @ (tangent.T @ target),
         chi2=float(target @ target),
-        tangent=tangent,
-        sensitivity=sensitivity,
+        linearisation=Linearisation(target, sensitivity),
         fit_parameters=tuple(
             each
             for each in fit_parameters_of(forecast.terms, problem)
