@@ -50,12 +50,12 @@ _SIMULATION = {"cyclosweep.simulate": "simulation.simulate"} | {
 _DIAGNOSIS = {
     f"cyclosweep.diagnosis.{old}": new
     for old, new in {
-        "alarm": "diagnosis.identify.alarm",
+        "alarm": "diagnosis.identify.structures.alarm",
         "engine": "diagnosis.diagnose",
         "experiment": "diagnosis.verify.experiment",
         "fault": "diagnosis.refuse",
         "findings": "diagnosis.whole_loop.findings",
-        "fit": "diagnosis.identify.fit",
+        "fit": "diagnosis.identify.fitting.fit",
         "forecast": "diagnosis.whole_loop.forecast",
         "freeform": "diagnosis.hypotheses.unnamed_shapes",
         "holdout": "diagnosis.verify.holdout",
@@ -65,14 +65,14 @@ _DIAGNOSIS = {
         "problem": "diagnosis.prepare.problem",
         "result": "diagnosis.outcome",
         "rich": "diagnosis.hypotheses.flexible_basis",
-        "scan": "diagnosis.identify.scan",
-        "search": "diagnosis.identify.search",
+        "scan": "diagnosis.identify.structures.scan",
+        "search": "diagnosis.identify.structures.search",
         "self_check": "diagnosis.verify.self_check",
         "split": "diagnosis.prepare.split",
         "structured": "diagnosis.whole_loop.stepwise",
-        "testability": "diagnosis.identify.testability",
+        "testability": "diagnosis.identify.structures.testability",
         "told": "diagnosis.whole_loop.known_flank",
-        "verdict": "diagnosis.identify.verdict",
+        "verdict": "diagnosis.identify.structures.verdict",
         "words": "result.statement",
     }.items()
 }
@@ -113,8 +113,8 @@ MOVED: dict[str, str] = {
 """Where the modules of version 0.1 stand now, by their old names."""
 
 _RENAMED_IN_DIAGNOSIS = {
-    "fit.Slot": "identify.fit_parameters.FitParameter",
-    "fit.slots_of": "identify.fit_parameters.fit_parameters_of",
+    "fit.Slot": "identify.fitting.fit_parameters.FitParameter",
+    "fit.slots_of": "identify.fitting.fit_parameters.fit_parameters_of",
     "forecast.Knob": "whole_loop.model_parameters.ModelParameter",
     "forecast.knobs_of": "whole_loop.model_parameters.model_parameters_of",
     "forecast.start": "whole_loop.forecast.starting_model",
@@ -124,9 +124,9 @@ _RENAMED_IN_DIAGNOSIS = {
     "library.Block": "hypotheses.library.Signature",
     "noise.estimate_noise": "prepare.noise_estimate.estimate_noise",
     "rich.rich_basis": "hypotheses.flexible_basis.flexible_basis",
-    "scan.price_of_choice": "identify.scan.shape_choice_penalty",
-    "scan.price_of_vector": "identify.scan.vector_penalty",
-    "search.Node": "identify.candidate.Candidate",
+    "scan.price_of_choice": "identify.structures.scan.shape_choice_penalty",
+    "scan.price_of_vector": "identify.structures.scan.vector_penalty",
+    "search.Node": "identify.structures.candidate.Candidate",
     "structured.Repetition": "whole_loop.run_comparison.Repetition",
     "structured.Steadiness": "whole_loop.run_comparison.Steadiness",
     "structured.climb": "whole_loop.stepwise.whole_loop_structure",
@@ -135,7 +135,7 @@ _RENAMED_IN_DIAGNOSIS = {
     "told.ForecastFit": "whole_loop.known_flank.WholeLoopFit",
     "told.told_fit": "whole_loop.known_flank.whole_loop_fit",
     "told.told_path": "whole_loop.known_flank.known_flank_path",
-    "verdict.decide_structured": "identify.verdict.decide_in_stages",
+    "verdict.decide_structured": "identify.structures.verdict.decide_in_stages",
 }
 RENAMED: dict[str, str] = {
     f"cyclosweep.diagnosis.{old}": f"cyclosweep.diagnosis.{new}"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cyclosweep.diagnosis.identify.stage import error_factor
+from cyclosweep.diagnosis.identify.stages.stage import error_factor
 
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis.md"
 

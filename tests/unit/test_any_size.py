@@ -6,18 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.identify import naming, travel_check
-from cyclosweep.diagnosis.identify import testability as sizes
-from cyclosweep.diagnosis.identify.fit_state import Linearisation
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck
-from cyclosweep.diagnosis.identify.naming import names_that_hold
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import (
+from cyclosweep.diagnosis.identify.fitting.fit_state import Linearisation
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws import naming, travel_check
+from cyclosweep.diagnosis.identify.laws.law_in_class import LawCheck
+from cyclosweep.diagnosis.identify.laws.naming import names_that_hold
+from cyclosweep.diagnosis.identify.laws.travel_check import without_faint_waves
+from cyclosweep.diagnosis.identify.structures import testability as sizes
+from cyclosweep.diagnosis.identify.structures.testability import (
     of_any_size,
     strength_of,
 )
-from cyclosweep.diagnosis.identify.travel_check import without_faint_waves
 from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats

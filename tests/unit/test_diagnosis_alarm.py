@@ -8,8 +8,8 @@ import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.library import build_library
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import FAMILIES_ALIKE
-from cyclosweep.diagnosis.identify.alarm import probability, tail_quantile
-from cyclosweep.diagnosis.identify.scan import evidence
+from cyclosweep.diagnosis.identify.structures.alarm import probability, tail_quantile
+from cyclosweep.diagnosis.identify.structures.scan import evidence
 from cyclosweep.diagnosis.prepare.problem import gaps, prepare
 from cyclosweep.simulation import effects
 from cyclosweep.simulation.effects import Effect

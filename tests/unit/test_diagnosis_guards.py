@@ -8,11 +8,11 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.explained import explained_share
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import Decision, decide, no_more_than_fits
+from cyclosweep.diagnosis.identify.fitting.explained import explained_share
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.verdict import Decision, decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.refuse import NoDiagnosisError, check_positive
 from cyclosweep.diagnosis.repair import calibration_of

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.identify.scan import (
+from cyclosweep.diagnosis.identify.structures.scan import (
     evidence,
     likelihood_gain,
     shape_choice_penalty,

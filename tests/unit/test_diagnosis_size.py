@@ -9,9 +9,9 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.fit import ContactFit, fit
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import (
+from cyclosweep.diagnosis.identify.fitting.fit import ContactFit, fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.structures.testability import (
     recalibrated_twist,
     spread_of_size,
 )

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.identify.class_check import check_laws
-from cyclosweep.diagnosis.identify.dial_check import LEAST_ODDS, direction_odds
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws.class_check import check_laws
+from cyclosweep.diagnosis.identify.laws.dial_check import LEAST_ODDS, direction_odds
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.searches import search_of

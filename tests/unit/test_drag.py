@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import minimize
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.arrays import Floats, present

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-import cyclosweep.diagnosis.identify.far_behind as far_behind_module
-from cyclosweep.diagnosis.identify.far_behind import far_behind
-from cyclosweep.diagnosis.identify.search import Search
+import cyclosweep.diagnosis.identify.stages.far_behind as far_behind_module
+from cyclosweep.diagnosis.identify.stages.far_behind import far_behind
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction
 from tests.support.searches import search_of

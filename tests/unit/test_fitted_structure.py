@@ -9,10 +9,10 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.fit import ContactFit, fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import ContactFit, fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit

@@ -11,11 +11,11 @@ import cyclosweep as cs
 import cyclosweep.diagnosis.identify_effects as identify_effects
 from cyclosweep.diagnosis import friction_in_noise
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages.friction_first import PARAMETER_CHARGE, from_better_start
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.diagnosis.whole_loop.usual_loop import freer_where_it_pays

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.bent_friction import bent_instead_of_others
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages.bent_friction import bent_instead_of_others
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.effects.slip import friction_limit_nm

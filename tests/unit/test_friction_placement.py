@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.friction_first import PARAMETER_CHARGE, from_better_start
-from cyclosweep.diagnosis.identify.placement import best_placed
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
+from cyclosweep.diagnosis.identify.stages.friction_first import PARAMETER_CHARGE, from_better_start
+from cyclosweep.diagnosis.identify.structures.placement import best_placed
 from cyclosweep.simulation.effects import effects
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 from cyclosweep.simulation.model import EffectValue

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.friction_first import friction_first
-from cyclosweep.diagnosis.identify.loop_check import is_curve_of_torque, is_without_loop
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws.loop_check import is_curve_of_torque, is_without_loop
+from cyclosweep.diagnosis.identify.stages.friction_first import friction_first
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import EffectValue

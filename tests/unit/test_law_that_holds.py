@@ -7,15 +7,15 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.diagnosis.conclude import with_other_law
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.class_check import check_laws
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.law_that_holds import with_law_that_holds
-from cyclosweep.diagnosis.identify.naming import names_that_hold
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.travel_check import without_waves_of_a_curve
-from cyclosweep.diagnosis.identify.verdict import Decision
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws.class_check import check_laws
+from cyclosweep.diagnosis.identify.laws.naming import names_that_hold
+from cyclosweep.diagnosis.identify.laws.travel_check import without_waves_of_a_curve
+from cyclosweep.diagnosis.identify.stages.law_that_holds import with_law_that_holds
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.verdict import Decision
 from cyclosweep.diagnosis.whole_loop.run_comparison import are_replicates
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.diagnosis.whole_loop.staircase_found import named_staircase
 from cyclosweep.simulation.effects import find

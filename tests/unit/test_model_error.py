@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT
+from cyclosweep.diagnosis.identify.fitting.repetition import LEAST_REPEAT
 from cyclosweep.diagnosis.model_error_table import repeatability
 from cyclosweep.simulation.model import EffectValue
 from cyclosweep.simulation.model_error import ErrorBranch, ModelError, load_branches

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-import cyclosweep.diagnosis.identify.model_error_terms as model_error_terms
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.model_error_terms import (
+import cyclosweep.diagnosis.identify.laws.model_error_terms as model_error_terms
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws.model_error_terms import (
     LEAST_OF_MISMATCH,
     LEAST_OF_RECORDED,
     without_model_error,
 )
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import recalibrated_twist
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction

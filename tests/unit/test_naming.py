@@ -10,12 +10,12 @@ import cyclosweep as cs
 from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import ODD_CURVE
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify import naming
-from cyclosweep.diagnosis.identify.class_check import check_laws
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws import naming
+from cyclosweep.diagnosis.identify.laws.class_check import check_laws
+from cyclosweep.diagnosis.identify.laws.law_in_class import LawCheck
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.problem import prepare
 from cyclosweep.diagnosis.whole_loop.forecast import fit_forecast, starting_model
 from cyclosweep.diagnosis.whole_loop.known_flank import WholeLoopFit, whole_loop_fit

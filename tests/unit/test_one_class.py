@@ -7,23 +7,23 @@ import numpy as np
 import pytest
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import LOOP
-from cyclosweep.diagnosis.identify import naming
-from cyclosweep.diagnosis.identify import testability as bounds_of
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.class_check import check_laws
-from cyclosweep.diagnosis.identify.fit import ContactFit, fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import friction_first
-from cyclosweep.diagnosis.identify.law_in_class import LawCheck
-from cyclosweep.diagnosis.identify.naming import names_that_hold
-from cyclosweep.diagnosis.identify.one_class_check import without_laws_of_one_class
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.signs import with_right_signs
-from cyclosweep.diagnosis.identify.small_laws_check import errors_of_larger, without_small_laws
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import recalibrated_twist
-from cyclosweep.diagnosis.identify.verdict import decide, named_if_close
-from cyclosweep.diagnosis.identify.worth import INDISPENSABLE, still_needed, worth
+from cyclosweep.diagnosis.identify.fitting.fit import ContactFit, fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.signs import with_right_signs
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws import naming
+from cyclosweep.diagnosis.identify.laws.class_check import check_laws
+from cyclosweep.diagnosis.identify.laws.law_in_class import LawCheck
+from cyclosweep.diagnosis.identify.laws.naming import names_that_hold
+from cyclosweep.diagnosis.identify.laws.one_class_check import without_laws_of_one_class
+from cyclosweep.diagnosis.identify.laws.small_laws_check import errors_of_larger, without_small_laws
+from cyclosweep.diagnosis.identify.stages.friction_first import friction_first
+from cyclosweep.diagnosis.identify.structures import testability as bounds_of
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist
+from cyclosweep.diagnosis.identify.structures.verdict import decide, named_if_close
+from cyclosweep.diagnosis.identify.structures.worth import INDISPENSABLE, still_needed, worth
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import COMPLIANCE, friction

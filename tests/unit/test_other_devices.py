@@ -15,7 +15,7 @@ from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.effects_found import explanations
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
-from cyclosweep.diagnosis.identify.verdict import Decision
+from cyclosweep.diagnosis.identify.structures.verdict import Decision
 from cyclosweep.diagnosis.identify_effects import FEWEST_PIECES, instead_of_slow_noise, pieces
 from cyclosweep.diagnosis.prepare.flanks import find_flanks
 from cyclosweep.diagnosis.remainder import no_larger_than_left, of_the_size_left

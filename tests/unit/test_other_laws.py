@@ -2,10 +2,10 @@
 
 import pytest
 
-from cyclosweep.diagnosis.identify.other_laws import visit_rivals, with_better_laws
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import (
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages.other_laws import visit_rivals, with_better_laws
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.verdict import (
     decide,
     decide_in_stages,
     with_further_rivals,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.whole_loop import play_crossings
 from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
 from cyclosweep.diagnosis.whole_loop.play_crossings import take_recorded_crossings

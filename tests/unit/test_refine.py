@@ -6,13 +6,12 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from cyclosweep.diagnosis.identify import refine as refinement
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fit_parameters import FitParameter
-from cyclosweep.diagnosis.identify.fit_state import Expansion
-from cyclosweep.diagnosis.identify.joint_fit import JointFit
-from cyclosweep.diagnosis.identify.refine import (
+from cyclosweep.diagnosis.identify.fitting import refine as refinement
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fit_parameters import FitParameter
+from cyclosweep.diagnosis.identify.fitting.fit_state import Expansion
+from cyclosweep.diagnosis.identify.fitting.joint_fit import JointFit
+from cyclosweep.diagnosis.identify.fitting.refine import (
     EXPANSIONS,
     FAR_ABOVE,
     MOST_RISES,
@@ -20,7 +19,8 @@ from cyclosweep.diagnosis.identify.refine import (
     STEPS_A_ROUND,
     refine,
 )
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.simulation.effects.base import Parameter
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import EffectValue

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from cyclosweep.diagnosis.identify.secant_fit import LARGEST_STEP, minimise
+from cyclosweep.diagnosis.identify.fitting.secant_fit import LARGEST_STEP, minimise
 from cyclosweep.simulation.effects.history import Floats
 
 TIMES = np.linspace(0.0, 3.0, 60)

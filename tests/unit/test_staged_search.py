@@ -7,29 +7,29 @@ from typing import cast
 import numpy as np
 import pytest
 
-import cyclosweep.diagnosis.identify.acceptance as acceptance
+import cyclosweep.diagnosis.identify.stages.acceptance as acceptance
 import cyclosweep.diagnosis.identify_effects as identify_effects
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.class_check import check_laws
-from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.freer_laws import freer_instead_of_others
-from cyclosweep.diagnosis.identify.law_in_class import BOTH_CURVES
-from cyclosweep.diagnosis.identify.model_error_terms import (
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.laws.class_check import check_laws
+from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
+from cyclosweep.diagnosis.identify.laws.law_in_class import BOTH_CURVES
+from cyclosweep.diagnosis.identify.laws.model_error_terms import (
     LEAST_OF_MISMATCH,
     offset_count,
     without_model_error,
 )
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.stage import FAINT, visibility
-from cyclosweep.diagnosis.identify.staged_search import search_in_stages
-from cyclosweep.diagnosis.identify.starting_terms import starting_terms
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import recalibrated_twist, size_left
-from cyclosweep.diagnosis.identify.verdict import Decision
+from cyclosweep.diagnosis.identify.stages.freer_laws import freer_instead_of_others
+from cyclosweep.diagnosis.identify.stages.stage import FAINT, visibility
+from cyclosweep.diagnosis.identify.stages.staged_search import search_in_stages
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.starting_terms import starting_terms
+from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist, size_left
+from cyclosweep.diagnosis.identify.structures.verdict import Decision
 from cyclosweep.simulation.effects import effects, find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.long_recording import friction

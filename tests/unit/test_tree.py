@@ -187,6 +187,17 @@ def test_a_stage_imports_only_from_stages_before_it(path: Path) -> None:
             assert stage == own or stage in STAGES[own], f"imports {module_of(other)}"
 
 
+def test_the_folders_of_identify_import_from_those_before_them() -> None:
+    folder = DIAGNOSIS_FOLDER / "identify"
+    order = ["fitting", "structures", "laws", "stages"]
+    assert {unit(path, folder) for path in FILES if folder in path.parents} == {*order, "__init__"}
+    for path in FILES:
+        if folder in path.parents and path.parent != folder:
+            before = order[: order.index(unit(path, folder)) + 1]
+            inside = {unit(other, folder) for other in imports(path) if folder in other.parents}
+            assert inside <= set(before), module_of(path)
+
+
 def test_every_stage_has_its_place_and_the_pipeline_is_one_short_file() -> None:
     found = {unit(path, DIAGNOSIS_FOLDER) for path in FILES if DIAGNOSIS_FOLDER in path.parents}
     assert found == {*STAGES, "__init__", "diagnose"}

@@ -1,7 +1,7 @@
 """A friction that stood in for what was found after it is left out of the structure."""
 
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.worth import without_unseen_friction
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.structures.worth import without_unseen_friction
 from cyclosweep.simulation.effects import find
 from tests.support.long_recording import friction
 from tests.support.searches import search_of

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.starting_terms import starting_terms
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.variants import in_better_variant
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages.variants import in_better_variant
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.starting_terms import starting_terms
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.model import EffectValue
 from tests.support.arrays import present

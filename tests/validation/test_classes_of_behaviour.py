@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     class_columns,
     smooth_columns,
 )
-from cyclosweep.diagnosis.identify.class_evidence import ClassColumns
+from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
 from cyclosweep.simulation.effects.history import History
 from cyclosweep_challenge.second_generator.case import make_numbered
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.identify.stage import FAINT, error_factor
+from cyclosweep.diagnosis.identify.stages.stage import FAINT, error_factor
 from cyclosweep_challenge import make_case
 
 

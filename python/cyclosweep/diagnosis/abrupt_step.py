@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.testability import calibration_basis
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.structures.testability import calibration_basis
 from cyclosweep.simulation.effects.history import Floats
 
 MOST = 0.9

@@ -6,7 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.growth import LEAST_GROWTH, LEVEL, growth
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.sweeps import FEWEST_ROWS, Sweep, equal_sweeps
 from cyclosweep.result import DriveChange
 from cyclosweep.result.part import NORMAL_95

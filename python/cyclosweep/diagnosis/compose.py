@@ -14,9 +14,9 @@ from cyclosweep.diagnosis.effects_found import (
     tried_effects,
 )
 from cyclosweep.diagnosis.finish import finished
-from cyclosweep.diagnosis.identify.alarm import probability
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.testability import hidden_effects
+from cyclosweep.diagnosis.identify.structures.alarm import probability
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.testability import hidden_effects
 from cyclosweep.diagnosis.model_error_table import learned_in_words
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.plausibility import doubts

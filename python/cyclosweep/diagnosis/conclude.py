@@ -3,15 +3,15 @@
 from dataclasses import dataclass, replace
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.explained import explained_share
-from cyclosweep.diagnosis.identify.freer_laws import with_freer_laws
-from cyclosweep.diagnosis.identify.law_that_holds import with_law_that_holds
-from cyclosweep.diagnosis.identify.naming import Naming, names_that_hold
-from cyclosweep.diagnosis.identify.repetition import Repetition
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.testability import Testability, testability
-from cyclosweep.diagnosis.identify.verdict import (
+from cyclosweep.diagnosis.identify.fitting.explained import explained_share
+from cyclosweep.diagnosis.identify.fitting.repetition import Repetition
+from cyclosweep.diagnosis.identify.laws.naming import Naming, names_that_hold
+from cyclosweep.diagnosis.identify.stages.freer_laws import with_freer_laws
+from cyclosweep.diagnosis.identify.stages.law_that_holds import with_law_that_holds
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.testability import Testability, testability
+from cyclosweep.diagnosis.identify.structures.verdict import (
     MOSTLY,
     Decision,
     accepted_in_stages,
@@ -22,7 +22,7 @@ from cyclosweep.diagnosis.identify.verdict import (
     verdict_by_probability,
     verdict_by_share,
 )
-from cyclosweep.diagnosis.identify.worth import without_unseen_friction
+from cyclosweep.diagnosis.identify.structures.worth import without_unseen_friction
 from cyclosweep.diagnosis.refuse import check_compliance, check_positive
 from cyclosweep.diagnosis.whole_loop.run_comparison import repetition
 from cyclosweep.result import Explained

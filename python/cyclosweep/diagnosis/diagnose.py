@@ -10,7 +10,7 @@ from cyclosweep.diagnosis.calibrate import calibrate
 from cyclosweep.diagnosis.compose import compose
 from cyclosweep.diagnosis.conclude import conclude
 from cyclosweep.diagnosis.hypotheses.library import build_library
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_for
 from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.model_error_table import with_error_table

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.alarm import DRAWS
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.structures.alarm import DRAWS
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
 
 
 def chance_of_effect(search: Search, accepted: Candidate, index: int) -> float:

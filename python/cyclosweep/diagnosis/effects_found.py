@@ -12,12 +12,12 @@ from cyclosweep.diagnosis.elasticity import (
     added_twist,
     compliance_with_curve,
 )
-from cyclosweep.diagnosis.identify.alarm import probability
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.class_check import candidates_of
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.testability import (
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.laws.class_check import candidates_of
+from cyclosweep.diagnosis.identify.structures.alarm import probability
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.testability import (
     Testability,
     recalibration,
     spread_of_size,

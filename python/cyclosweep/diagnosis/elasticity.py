@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import COMPLIANCE
 from cyclosweep.simulation.effects.history import Floats, History
 

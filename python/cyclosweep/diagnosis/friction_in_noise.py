@@ -14,10 +14,10 @@ friction that takes away most of it is believed at a smaller gain of likelihood.
 import numpy as np
 
 from cyclosweep.diagnosis.calibrate import flexible_beyond, noise_left
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.stages.friction_first import CONVERGED, friction_first
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.noise_estimate import as_model_error
 from cyclosweep.diagnosis.prepare.problem import Problem

@@ -11,15 +11,15 @@ from cyclosweep.diagnosis.friction_in_noise import (
     without_hidden_friction,
 )
 from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
-from cyclosweep.diagnosis.identify.far_behind import far_behind
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import CONVERGED, friction_first
-from cyclosweep.diagnosis.identify.other_laws import visit_rivals
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.stage import error_factor, visibility
-from cyclosweep.diagnosis.identify.staged_search import search_in_stages
-from cyclosweep.diagnosis.identify.verdict import decide, no_more_than_fits
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.stages.far_behind import far_behind
+from cyclosweep.diagnosis.identify.stages.friction_first import CONVERGED, friction_first
+from cyclosweep.diagnosis.identify.stages.other_laws import visit_rivals
+from cyclosweep.diagnosis.identify.stages.stage import error_factor, visibility
+from cyclosweep.diagnosis.identify.stages.staged_search import search_in_stages
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.verdict import decide, no_more_than_fits
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.whole_loop import stepwise
 from cyclosweep.diagnosis.whole_loop.play_crossings import take_recorded_crossings

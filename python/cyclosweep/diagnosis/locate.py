@@ -9,8 +9,8 @@ import numpy as np
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import MOST_POSITIONS, MOST_RUNS
 from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.local_events import event_rows
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import recorded_runs

@@ -8,8 +8,8 @@ from typing import Self
 import numpy as np
 
 from cyclosweep.diagnosis.conclude import NAMING, Conclusion
-from cyclosweep.diagnosis.identify.repetition import FEWEST_CELLS, LEAST_REPEAT
-from cyclosweep.diagnosis.identify.verdict import Decision
+from cyclosweep.diagnosis.identify.fitting.repetition import FEWEST_CELLS, LEAST_REPEAT
+from cyclosweep.diagnosis.identify.structures.verdict import Decision
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification

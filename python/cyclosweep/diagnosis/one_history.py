@@ -3,17 +3,17 @@
 from collections.abc import Callable
 
 from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
-from cyclosweep.diagnosis.identify.fit import fit
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import (
+from cyclosweep.diagnosis.identify.fitting.fit import fit
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages.friction_first import (
     CONVERGED,
     charges,
     friction_first,
     structure_cost,
 )
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.verdict import accepted_in_stages, decide
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.verdict import accepted_in_stages, decide
 from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on

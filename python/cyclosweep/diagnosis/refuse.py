@@ -3,7 +3,7 @@
 import numpy as np
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.diagnosis.identify.fit import FEWEST_FITTED
+from cyclosweep.diagnosis.identify.fitting.fit import FEWEST_FITTED
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.plausibility import likely_mistakes
 from cyclosweep.diagnosis.prepare.problem import Problem

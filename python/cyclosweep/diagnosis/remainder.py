@@ -8,11 +8,15 @@ import numpy as np
 from cyclosweep.diagnosis.abrupt_step import abrupt_step
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import from_place
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
-from cyclosweep.diagnosis.identify.terms import Term
-from cyclosweep.diagnosis.identify.testability import recalibrated_twist, recalibration, size_left
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.repetition import LEAST_REPEAT, Repetition
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.testability import (
+    recalibrated_twist,
+    recalibration,
+    size_left,
+)
 from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder

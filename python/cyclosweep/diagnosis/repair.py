@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.elasticity import compliance_with_curve
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.prepare.problem import COMPLIANCE, DATUM, FREE_PLAY, Problem
 from cyclosweep.recording.cleaning import REVERSED
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY

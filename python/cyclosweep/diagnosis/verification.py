@@ -7,8 +7,8 @@ import numpy as np
 
 from cyclosweep.diagnosis.change import find_change
 from cyclosweep.diagnosis.conclude import Conclusion
-from cyclosweep.diagnosis.identify.class_check import candidates_of
-from cyclosweep.diagnosis.identify.verdict import Decision, verdict_by_share
+from cyclosweep.diagnosis.identify.laws.class_check import candidates_of
+from cyclosweep.diagnosis.identify.structures.verdict import Decision, verdict_by_share
 from cyclosweep.diagnosis.verify.experiment import next_experiment
 from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check

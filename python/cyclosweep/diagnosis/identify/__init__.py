@@ -1,5 +1,9 @@
 """Which hypotheses a recording supports: joint fits, their evidence, the verdict.
 
+`fitting` fits one structure, `structures` searches for those that suffice, `laws` asks whether the
+law of a fitted effect holds, and `stages` takes large effects out one after the other. Each imports
+from those before it.
+
 Words that these files use in one meaning each:
 
 baseline

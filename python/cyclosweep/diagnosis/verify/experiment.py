@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.recording import Recording
 from cyclosweep.result import NextExperiment

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.prediction import LeftOutPrediction
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.verify.kept_runs import kept_runs_in_words
 from cyclosweep.result import HeldOutBlock

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.prediction import LeftOutPrediction
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.prediction import LeftOutPrediction
 from cyclosweep.result.words import degrees
 from cyclosweep.simulation.effects.history import Floats
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.scan import likelihood_gain
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.scan import likelihood_gain
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.result import SelfCheck
 
 TWINS = 300

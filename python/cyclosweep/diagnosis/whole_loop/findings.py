@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy import stats
 
-from cyclosweep.diagnosis.identify.repetition import LEAST_REPEAT, Repetition
+from cyclosweep.diagnosis.identify.fitting.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.diagnosis.whole_loop.staircase_found import (

@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import least_squares
 
-from cyclosweep.diagnosis.identify.covariance import covariance_of
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.covariance import covariance_of
+from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.model_parameters import (

@@ -10,17 +10,17 @@ from functools import cached_property
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
-from cyclosweep.diagnosis.identify.fit_state import Linearisation
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.prediction import (
+from cyclosweep.diagnosis.identify.fitting.fit_parameters import fit_parameters_of
+from cyclosweep.diagnosis.identify.fitting.fit_state import Linearisation
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.prediction import (
     KnownFlankPrediction,
     LeftOutPrediction,
     Prediction,
     TorqueZero,
 )
-from cyclosweep.diagnosis.identify.repetition import Repetition
-from cyclosweep.diagnosis.identify.stage import FAINT
+from cyclosweep.diagnosis.identify.fitting.repetition import Repetition
+from cyclosweep.diagnosis.identify.stages.stage import FAINT
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
 from cyclosweep.diagnosis.prepare.problem import DATUM, Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, STRETCHES_OF_LOOPS, stretches

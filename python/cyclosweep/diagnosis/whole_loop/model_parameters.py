@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fit_parameters import fit_parameters_of
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.fitting.fit_parameters import fit_parameters_of
+from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.base import Parameter
 from cyclosweep.simulation.effects.history import Floats

@@ -6,10 +6,10 @@ known both leave nearly the same, and a simulation of the wrong one is off by th
 rows between the two places.
 """
 
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.friction_first import in_other_states
-from cyclosweep.diagnosis.identify.search import Search
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.stages.friction_first import in_other_states
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.whole_loop.forecast import predicted_path
 
 FORECAST_WORSE = 1.3

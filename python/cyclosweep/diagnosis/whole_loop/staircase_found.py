@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.repetition import Repetition, StepOrder
+from cyclosweep.diagnosis.identify.fitting.repetition import Repetition, StepOrder
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.both_ways import direction_correlation, in_words
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast

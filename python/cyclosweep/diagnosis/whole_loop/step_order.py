@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from cyclosweep.diagnosis.identify.repetition import StepOrder
+from cyclosweep.diagnosis.identify.fitting.repetition import StepOrder
 from cyclosweep.diagnosis.whole_loop.both_ways import legs_of, profile
 from cyclosweep.simulation.effects.history import Floats, Ints
 

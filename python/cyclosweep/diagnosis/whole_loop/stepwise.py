@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.candidate import Candidate
-from cyclosweep.diagnosis.identify.friction_first import FEW_RUNS
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.testability import strength_of
+from cyclosweep.diagnosis.identify.stages.friction_first import FEW_RUNS
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.search import Search
+from cyclosweep.diagnosis.identify.structures.testability import strength_of
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import STRETCHES_OF_LOOPS, stretches

@@ -9,14 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.enrichment import freer_friction
-from cyclosweep.diagnosis.identify.friction_first import (
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages.friction_first import (
     PARAMETER_CHARGE,
     STARTS,
     usual_effects,
 )
-from cyclosweep.diagnosis.identify.search import Search
-from cyclosweep.diagnosis.identify.terms import Term
+from cyclosweep.diagnosis.identify.structures.enrichment import freer_friction
+from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem, line_design
 from cyclosweep.diagnosis.whole_loop.forecast import BLUR, Forecast, fit_forecast, refit

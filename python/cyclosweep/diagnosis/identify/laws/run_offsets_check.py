@@ -1,0 +1,137 @@
+"""Laws of the offsets of runs, judged beside each other.
+
+Offsets of runs are a few numbers. What one law misses of them another law fills: temperature or
+position of the mesh take up what a law of the datum leaves.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION
+from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
+from cyclosweep.diagnosis.identify.laws.law_in_class import (
+    LawBeside,
+    LawCheck,
+    amplitude_count,
+    own_classes,
+    withdrawn_where,
+)
+from cyclosweep.simulation.effects.history import Flags, History
+from cyclosweep.simulation.effects.mesh_range import mesh_positions
+from cyclosweep.simulation.effects.order_names import travels
+
+
+def without_leftovers(
+    fitted: FittedStructure, classes: ClassColumns, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw what vanishes beside the whole class of a larger effect of the same family.
+
+    Offsets of runs are a few numbers. What one law misses of them another law fills.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    classes : ClassColumns
+        Columns of every class.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    place = {term.name: k for k, term in enumerate(fitted.terms)}
+    found = {check.name: check for check in checks}
+    offsets = [check.name for check in checks if check.name in CLASSES_OF_EFFECT]
+    if len(offsets) < 2:
+        return tuple(checks)
+    size = {
+        name: float(np.linalg.norm(fitted.whitened_contribution(place[name], fitted.noise)))
+        for name in offsets
+    }
+    largest = max(offsets, key=lambda name: size[name])
+    for name in offsets:
+        if name == largest or not found[name].holds:
+            continue
+        for whole in own_classes(fitted.terms[place[largest]]):
+            if whole in classes.columns and _vanishes(fitted, classes, place[name], whole):
+                found[name] = replace(found[name], holds=False)
+    if not all(found[name].holds for name in offsets if name != largest):
+        # The others took part of it away; it is judged again without them.
+        found[largest] = replace(found[largest], holds=True)
+    return tuple(found[check.name] for check in checks)
+
+
+def without_any_offsets(
+    fitted: FittedStructure, checks: Sequence[LawCheck]
+) -> tuple[LawCheck, ...]:
+    """Withdraw a law of the position with as many amplitudes as fitted runs have offsets.
+
+    It fits whatever offsets, and so says nothing of where they come from.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    checks : sequence of LawCheck
+        Of its laws.
+
+    Returns
+    -------
+    tuple of LawCheck
+    """
+    offsets = count_states(fitted.history, fitted.problem.fitted) - 1
+    saturated = {
+        term.name
+        for k, term in enumerate(fitted.terms)
+        if term.effect is not None
+        and own_classes(term) == (POSITION,)
+        and not travels(term.shape)
+        and amplitude_count(fitted, k) >= offsets
+    }
+    return withdrawn_where(saturated.__contains__, checks)
+
+
+def count_states(history: History, fitted: Flags) -> int:
+    """Count the runs of a recording, each at every position at which it was read.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+
+    Returns
+    -------
+    int
+    """
+    if history.crank_deg is None:
+        return len(np.unique(history.run[fitted]))
+    states = np.column_stack([history.run[fitted], mesh_positions(history.crank_deg[fitted])])
+    return len(np.unique(states, axis=0))
+
+
+def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole: str) -> bool:
+    """Whether nothing is left of a law beside all columns of a class.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    classes : ClassColumns
+        Columns of every class.
+    index : int
+        Place of the law's term.
+    whole : str
+        Name of the class.
+
+    Returns
+    -------
+    bool
+    """
+    return LawBeside.of(fitted, classes, [index]).is_replaced(classes, whole)
