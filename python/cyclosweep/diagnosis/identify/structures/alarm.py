@@ -7,6 +7,7 @@ the largest such excess is compared with the largest excess of recordings with n
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,37 +28,47 @@ LEAST_THRESHOLD = 2.5
 
 
 @dataclass(frozen=True, eq=False)
-class Alarm:
-    """Calibration of the global test on one recording.
-
-    Attributes
-    ----------
-    start : dict
-        Evidence at which the excess of each hypothesis begins.
-    maxima : ndarray, shape (DRAWS,)
-        Largest excess in recordings with nothing missing.
-    threshold : float
-        Excess beyond which something is said to be missing.
-    """
+class _Calibration:
+    """What recordings with nothing missing show, see `Alarm`."""
 
     start: dict[str, float]
     maxima: Floats
     threshold: float
 
-    @classmethod
-    def calibrate(cls, scan: Scan, rng: np.random.Generator) -> "Alarm":
-        """Find thresholds on simulated recordings with nothing beyond the baseline.
 
-        Parameters
-        ----------
-        scan : Scan
-            The library, projected on what the baseline leaves.
-        rng : numpy.random.Generator
+class Alarm:
+    """Calibration of the global test on one recording, made when it is first asked for.
 
-        Returns
-        -------
-        Alarm
-        """
+    Parameters
+    ----------
+    scan : Scan
+        The library, projected on what the baseline leaves.
+    seed : int
+        Seed of the recordings that are drawn.
+    """
+
+    def __init__(self, scan: Scan, seed: int) -> None:
+        self._scan, self._seed = scan, seed
+
+    @property
+    def start(self) -> dict[str, float]:
+        """Evidence at which the excess of each hypothesis begins [nat]."""
+        return self._calibration.start
+
+    @property
+    def maxima(self) -> Floats:
+        """Largest excess in recordings with nothing missing, shape (DRAWS,) [nat]."""
+        return self._calibration.maxima
+
+    @property
+    def threshold(self) -> float:
+        """Excess beyond which something is said to be missing [nat]."""
+        return self._calibration.threshold
+
+    @cached_property
+    def _calibration(self) -> _Calibration:
+        """Thresholds from simulated recordings with nothing beyond the baseline."""
+        scan, rng = self._scan, np.random.default_rng([self._seed, 1])
         drawn = scan.null_evidences(DRAWS, rng)
         start = {
             name: tail_quantile(row, OWN_LEVEL) + (0.0 if _named(scan, name) else UNNAMED_CHARGE)
@@ -65,28 +76,8 @@ class Alarm:
         }
         sinusoids = null_evidence(DRAWS, rng)
         start |= dict.fromkeys(FAMILIES, tail_quantile(sinusoids, OWN_LEVEL) + UNNAMED_CHARGE)
-        part = cls(start, np.zeros(0), np.inf)
-        maxima = part.largest(scan, drawn, sinusoids)
-        return cls(start, maxima, max(tail_quantile(maxima, LEVEL), LEAST_THRESHOLD))
-
-    def largest(self, scan: Scan, drawn: Floats, sinusoids: Floats) -> Floats:
-        """Largest excess of each draw.
-
-        Parameters
-        ----------
-        scan : Scan
-        drawn : ndarray, shape (hypotheses, draws)
-            Evidence of each hypothesis of the library [nat].
-        sinusoids : ndarray, shape (draws,)
-            Evidence of the strongest sinusoid [nat].
-
-        Returns
-        -------
-        ndarray, shape (draws,)
-        """
-        begin = np.array([self.start.get(name, 0.0) for name in scan.groups])
-        beyond = (drawn - begin[:, None]).max(axis=0, initial=-np.inf)
-        return np.asarray(np.maximum(beyond, sinusoids - self.start[FAMILIES[0]]))
+        maxima = _largest(start, scan, drawn, sinusoids)
+        return _Calibration(start, maxima, max(tail_quantile(maxima, LEVEL), LEAST_THRESHOLD))
 
     def null(self, scan: Scan, rng: np.random.Generator, draws: int = DRAWS) -> Floats:
         """Largest excess in recordings in which one structure is all there is.
@@ -102,7 +93,8 @@ class Alarm:
         -------
         ndarray, shape (draws,)
         """
-        return self.largest(scan, scan.null_evidences(draws, rng), null_evidence(draws, rng))
+        drawn = scan.null_evidences(draws, rng)
+        return _largest(self.start, scan, drawn, null_evidence(draws, rng))
 
     def excess(self, name: str, evidence: float) -> float:
         """How far the evidence of a hypothesis is beyond the start of its excess [nat].
@@ -162,6 +154,28 @@ def tail_quantile(values: Floats, level: float) -> float:
     over = values[values > edge] - edge
     scale = (float(over.sum()) + 20.0) / (len(over) + 20.0)
     return edge + scale * float(np.log(within / level))
+
+
+def _largest(start: dict[str, float], scan: Scan, drawn: Floats, sinusoids: Floats) -> Floats:
+    """Largest excess of each draw.
+
+    Parameters
+    ----------
+    start : dict
+        Evidence at which the excess of each hypothesis begins [nat].
+    scan : Scan
+    drawn : ndarray, shape (hypotheses, draws)
+        Evidence of each hypothesis of the library [nat].
+    sinusoids : ndarray, shape (draws,)
+        Evidence of the strongest sinusoid [nat].
+
+    Returns
+    -------
+    ndarray, shape (draws,)
+    """
+    begin = np.array([start.get(name, 0.0) for name in scan.groups])
+    beyond = (drawn - begin[:, None]).max(axis=0, initial=-np.inf)
+    return np.asarray(np.maximum(beyond, sinusoids - start[FAMILIES[0]]))
 
 
 def _named(scan: Scan, name: str) -> bool:

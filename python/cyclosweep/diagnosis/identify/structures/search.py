@@ -72,8 +72,6 @@ class Search:
         The structure that is searched from: the baseline with the accepted terms.
     alarm : Alarm
         Calibration of the global test.
-    threshold : float
-        Excess beyond which something is said to be missing [nat].
     whitened : ndarray, shape (fitted, k)
         Whitened columns of the library.
     visited : dict of frozenset of str to Candidate
@@ -110,8 +108,7 @@ class Search:
                 first = with_right_signs(first, whole_effects=True) or (
                     fit(problem, noise, right, first) if right else base
                 )
-        self.alarm = Alarm.calibrate(self._scan(first), np.random.default_rng([seed, 1]))
-        self.threshold = self.alarm.threshold
+        self.alarm = Alarm(self._scan(first), seed)
         self.baseline = self.start = self.judged(base, 0.0, 0.0)
         self.visited: dict[frozenset[str], Candidate] = {}
         if first is not base:
@@ -122,6 +119,11 @@ class Search:
         self.chosen: Candidate | None = None
         self.flexible: Floats | None = None
         self.rivals_of_start: list[tuple[Candidate, float]] = []
+
+    @property
+    def threshold(self) -> float:
+        """Excess of the evidence beyond which something is said to be missing [nat]."""
+        return self.alarm.threshold
 
     def run(self, progress: Callable[[str], None] = lambda text: None) -> None:
         """Visit structures: in breadth up to three terms, then along the best; say which."""
