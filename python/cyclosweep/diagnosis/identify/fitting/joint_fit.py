@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dpotrs
 
 from cyclosweep.diagnosis.identify.fitting.fit_parameters import FitParameter, usual_change
 from cyclosweep.diagnosis.identify.fitting.fit_state import Expansion
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import LEAST_BESIDE_SPRING
 from cyclosweep.diagnosis.identify.fitting.friction_path import friction_path
+from cyclosweep.diagnosis.identify.fitting.linear_solve import solve
 from cyclosweep.diagnosis.identify.fitting.path_law import (
     beyond_friction,
     elastic_parts,
@@ -202,7 +202,7 @@ class JointFit:
         if self.slides:
             history = self._path(terms, history, mean)
         design, white, hold = self._design(terms, history)
-        beta = _solve(white, self._shifted, hold)
+        beta = solve(white, self._shifted, hold)
         least = LEAST_BESIDE_SPRING * self.problem.history.compliance_deg_per_nm
         held = dict[int, float]()
         if beta[COMPLIANCE] < least and any(term.is_whole_spring for term in terms):
@@ -214,7 +214,7 @@ class JointFit:
         if held:
             places = list(held)
             rest = self._shifted - white[:, places] @ np.array(list(held.values()))
-            others = _solve(np.delete(white, places, axis=1), rest, np.delete(hold, places))
+            others = solve(np.delete(white, places, axis=1), rest, np.delete(hold, places))
             for place, value in held.items():
                 others = np.insert(others, place, value)
             # Beside a wave of the angle the line itself may then have no stiffness.
@@ -341,11 +341,10 @@ class JointFit:
             first += width
         self.terms = tuple(terms)
 
-    def solution(self, values: Floats) -> tuple[tuple[Term, ...], Floats]:
-        """Terms and linear parameters at these nonlinear ones."""
+    def solution(self, values: Floats) -> tuple[tuple[Term, ...], Floats, Floats]:
+        """Terms, whitened columns and linear parameters at these nonlinear ones."""
         self.residual(values)
-        terms, _, beta = self._last
-        return terms, beta
+        return self._last
 
     def slopes(self, values: Floats) -> Floats:
         """Whitened derivative by all parameters, at these nonlinear ones: linear ones first."""
@@ -371,30 +370,3 @@ def _levels(noise: Noise) -> list[float]:
     while noise.step_deg > 0 and levels[-1] < 0.25 * noise.step_deg:
         levels.append(1.8 * levels[-1])
     return levels[::-1]
-
-
-def _solve(design: Floats, target: Floats, hold: Floats) -> Floats:
-    """Least squares by normal equations on scaled columns, with a little ridge for lost ranks.
-
-    Parameters
-    ----------
-    design : ndarray, shape (n, k)
-    target : ndarray, shape (n,)
-    hold : ndarray, shape (k,)
-        Precision with which each parameter is known beforehand to be near zero.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-    """
-    norm = np.sqrt(np.einsum("ij,ij->j", design, design))
-    norm = np.where(norm > 0, norm, 1.0)
-    scaled = design / norm
-    gram = scaled.T @ scaled + np.diag(hold / norm**2)
-    right = scaled.T @ target
-    for ridge in (0.0, 1e-9, 1e-6):
-        # LAPACK itself: the checks around it take longer than so small a matrix.
-        factor, failed = dpotrf(gram + ridge * np.eye(len(gram)), clean=False)
-        if not failed and (ridge > 0 or np.min(np.abs(np.diag(factor))) > 1e-5):
-            return np.asarray(dpotrs(factor, right)[0] / norm)
-    return np.asarray(np.linalg.lstsq(scaled, target, rcond=1e-10)[0] / norm)
