@@ -33,6 +33,9 @@ from cyclosweep.simulation.effects.history import Floats
 
 MOST_STAGES = 8
 """Stages of a search: two for each of four effects, as what was accepted may be given up again."""
+MISSED = 1.5
+"""Error of what a stage would accept over that of what was accepted before, from which it is not
+accepted: it has lost something that only the part left out explains."""
 
 
 def search_in_stages(
@@ -265,8 +268,12 @@ class _Stages:
             return True
         if found.names == self.names:
             return False
-        self._add_rivals(found)
+        before = self.fitted
         self._refit(found.terms, found.best.fit)
+        if before.terms and self.fitted.rmse_deg > MISSED * before.rmse_deg:
+            self.fitted = before
+            return False
+        self._add_rivals(found)
         return True
 
     def _add_rivals(self, found: Accepted) -> None:

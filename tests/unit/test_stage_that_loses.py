@@ -1,0 +1,45 @@
+"""A stage accepts nothing by which it would lose what was accepted before."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
+from cyclosweep.diagnosis.identify.fitting.terms import Term
+from cyclosweep.diagnosis.identify.stages import staged_search
+from cyclosweep.diagnosis.identify.stages.acceptance import Accepted
+from cyclosweep.diagnosis.identify.stages.stage import stage_of
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.simulation.effects import find
+from cyclosweep.simulation.model import EffectValue
+from tests.support.long_recording import friction
+from tests.support.searches import search_of
+
+CREEP = EffectValue("creep", {"time_constant_s": 20.0}, (0.05,))
+
+
+@pytest.mark.parametrize(("kept", "accepted"), [(("creep",), False), (("friction", "creep"), True)])
+def test_a_stage_does_not_accept_what_explains_less(
+    monkeypatch: pytest.MonkeyPatch, kept: tuple[str, ...], accepted: bool
+) -> None:
+    search = search_of(friction(2.0), CREEP)
+    flexible = flexible_basis(search.problem, search.library)
+    stages = staged_search._Stages.begin(search, flexible, None)
+    assert stages.names == {"friction_hysteresis"}
+    before = stages.fitted
+    creep = Term(find("creep"), dict(CREEP.shape))
+    offered = tuple(
+        term for part in kept for term in (before.terms if part == "friction" else (creep,))
+    )
+
+    def acceptable(*_: object) -> tuple[Candidate, Accepted]:
+        found = Accepted(stage.start, offered, SimpleNamespace(unexplained=True))  # type: ignore[arg-type]
+        return stage.start, found
+
+    monkeypatch.setattr(staged_search, "acceptable", acceptable)
+    for other in ("freer_instead_of_others", "bent_instead_of_others"):
+        monkeypatch.setattr(staged_search, other, lambda *_: None)
+    stage = stage_of(search, flexible, before)
+    decision = SimpleNamespace(unexplained=True)
+    assert stages.accepts(stage, decision, stage.start) is accepted  # type: ignore[arg-type]
+    assert (stages.fitted is before) is not accepted
