@@ -65,13 +65,16 @@ def test_gains_add_up_where_the_noise_holds_model_error() -> None:
     assert first is not None
     both = search.extend(first, names[1])
     assert both is not None
-    direct = search.gain(search.baseline.fit, both.fit)
+    direct = search.chi2_gain(search.baseline.fit, both.fit)
     assert both.fit.chi2 < 0.5 * both.fit.problem.count, "fits far better than the noise"
     for name in names:
         part = search.extend(search.baseline, name)
         assert part is not None
-        steps = [search.gain(search.baseline.fit, part.fit), search.gain(part.fit, both.fit)]
-        further = search._further_gain(part.fit, both.fit)
+        steps = [
+            search.chi2_gain(search.baseline.fit, part.fit),
+            search.chi2_gain(part.fit, both.fit),
+        ]
+        further = search._further_chi2(part.fit, both.fit)
         assert steps[0] + further == pytest.approx(direct)
         # Counted from step to step, the same fit would gain more by way of another one.
         assert sum(steps) > direct + 10.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cyclosweep.diagnosis.conclude import Conclusion
-from cyclosweep.diagnosis.growth import LEAST_GROWTH, LEVEL, growth
+from cyclosweep.diagnosis.growth import GROWTH_LEVEL, LEAST_GROWTH, growth
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.sweeps import FEWEST_ROWS, Sweep, equal_sweeps
 from cyclosweep.result import DriveChange
@@ -60,7 +60,7 @@ class Trend:
         """Whether the drive changed, beyond scatter and by as much as matters."""
         change = abs(self.slope) * (self.last - self.first)
         beyond = abs(self.slope) >= LEAST_RATIO * self.std_error
-        return self.p_value <= LEVEL and beyond and change >= LEAST_GROWTH
+        return self.p_value <= GROWTH_LEVEL and beyond and change >= LEAST_GROWTH
 
 
 def find_change(concluded: Conclusion) -> DriveChange | None:

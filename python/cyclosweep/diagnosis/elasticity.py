@@ -65,7 +65,7 @@ def compliance_with_curve(fitted: FittedStructure) -> tuple[float, float]:
             by_parameter[j] = (slope(fitted.moved(place, step)) - here) / step
     variance = float(by_parameter @ covariance[np.ix_(places, places)] @ by_parameter)
     # Where what is left is error of the model, standard errors are larger by one factor.
-    usual = float(np.sqrt(max(covariance[1, 1], 1e-300)))
+    usual = float(np.sqrt(max(covariance[COMPLIANCE, COMPLIANCE], 1e-300)))
     return here, float(np.sqrt(max(variance, 0.0))) * error / usual
 
 

@@ -24,14 +24,15 @@ from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.simulation.effects.history import Floats
 
 SLOW = 0.3
-"""Autocorrelation of the noise from which friction is looked for in it,"""
+"""Autocorrelation of the noise from which friction is looked for in it."""
 HEAVY = 5.0
-"""and the degrees of freedom of its tails up to which it is, too: a law of friction that the
-flexible model misses leaves a few large errors after each reversal, which pass for outliers."""
+"""Degrees of freedom of the noise's tails up to which friction is looked for in it: a law of
+friction that the flexible model misses leaves a few large errors after each reversal, which pass
+for outliers."""
 VERY_SLOW = 0.9
 """Autocorrelation from which noise is nearly a drift. What is left beside friction is then error of
 the model, if its tails are heavy, too: slow noise is even, and outliers are not slow."""
-LOUD = 4.0
+FAR_ABOVE_STEPS = 4.0
 """Error of the calibrated model, over what rows differ by, from which friction is looked for in the
 noise."""
 FAR_LIKELIER = 100.0
@@ -73,7 +74,7 @@ def without_hidden_friction(
     if noise.structured or white or noise.step_deg > 0:
         return search, flexible, None
     little = model_error_noise(problem, noise, flexible)
-    if search.baseline.fit.rmse_deg < LOUD * little.sigma_deg:
+    if search.baseline.fit.rmse_deg < FAR_ABOVE_STEPS * little.sigma_deg:
         return search, flexible, None
     found = friction_first(search, little)
     if found is None:

@@ -22,7 +22,7 @@ COMPARED_AT = 0.9
 """Torque at which two cycles are compared, as a share of the smaller peak."""
 FEWEST_CYCLES = 8
 """Cycles compared with the one before, from which growth is told from scatter."""
-LEVEL = 0.002
+GROWTH_LEVEL = 0.002
 """Probability by chance of as much change that is accepted: one false alarm in 500 steady
 drives."""
 LEAST_GROWTH = 0.03
@@ -51,7 +51,7 @@ class Growth:
     @property
     def is_change(self) -> bool:
         """Whether the drive became softer, beyond scatter and by as much as matters."""
-        return self.p_value <= LEVEL and self.logarithm >= LEAST_GROWTH
+        return self.p_value <= GROWTH_LEVEL and self.logarithm >= LEAST_GROWTH
 
 
 @dataclass(frozen=True)

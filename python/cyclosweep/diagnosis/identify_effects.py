@@ -41,10 +41,11 @@ stages at once: against the noise alone the error of a large effect's law hides 
 FEW_PIECES = 5.0
 """Independent pieces below which what remains unexplained is no noise but error of the model."""
 FEWEST_PIECES = 1.0
-"""The same, where what the calibrated model misses is besides"""
+"""Independent pieces below which slow noise is error of the model from the start, where the error
+of the calibrated model is also `ABOVE_STEPS` times what neighbouring rows differ by."""
 ABOVE_STEPS = 40.0
-"""so many times what rows differ by. Noise alone is less: of an autocorrelation of 0.99 it is
-twelve times as large as that, of 0.998, the largest that is estimated, twenty-seven times."""
+"""Error of the calibrated model over what neighbouring rows differ by. Noise alone has less: 12 at
+an autocorrelation of 0.99, and 27 at 0.998, the largest that is estimated."""
 LARGER_THAN_LEFT = 2.0
 """Noise over what a structure leaves, from which it is none: an autoregression near one describes
 the slow errors of a model as noise of any size."""
@@ -84,7 +85,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     begun = friction if one else None
     if calibrated.structured or mismatch > LOUD:
         return _by_size(search, flexible, say, begun)
-    if mismatch > LOUD_FRICTION and pieces(calibrated) >= FEW_PIECES:
+    if mismatch > LOUD_FRICTION and independent_pieces(calibrated) >= FEW_PIECES:
         large = _mostly_friction(search, mismatch, begun)
         if large is not None:
             search = _with_interval_noise(search, large)
@@ -110,7 +111,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if not given_up and not _leaves_something(search):
         visit_rivals(search)
         return _crossing_as_recorded(search)
-    if pieces(search.noise) < FEW_PIECES:
+    if independent_pieces(search.noise) < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
@@ -214,7 +215,7 @@ def _leaves_something(search: Search) -> bool:
     return no_more_than_fits(decision, decision.best, search, 0.0).unexplained
 
 
-def pieces(noise: Noise) -> float:
+def independent_pieces(noise: Noise) -> float:
     """Independent pieces of a recording of this noise, if it were one run."""
     return len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
 
@@ -238,7 +239,11 @@ def instead_of_slow_noise(search: Search, flexible: Floats) -> Noise | None:
     """
     noise = search.noise
     breaks = int(np.count_nonzero(noise.gap <= 0.0)) - 1
-    if noise.structured or noise.step_deg > 0 or pieces(noise) + breaks >= FEWEST_PIECES:
+    if (
+        noise.structured
+        or noise.step_deg > 0
+        or independent_pieces(noise) + breaks >= FEWEST_PIECES
+    ):
         return None
     steps = model_error_noise(search.problem, noise, flexible)
     large = search.baseline.fit.rmse_deg > ABOVE_STEPS * steps.sigma_deg
@@ -273,7 +278,7 @@ def _by_size(
     def renewed(searched: Search, accepted: FittedStructure) -> Search:
         noise = noise_beyond(searched.problem, searched.library, accepted)
         believed = noise.spread_deg <= LARGER_THAN_LEFT * accepted.rmse_deg
-        believed &= not searched.noise.structured or pieces(noise) >= FEWEST_PIECES
+        believed &= not searched.noise.structured or independent_pieces(noise) >= FEWEST_PIECES
         if not believed or noise.structured or _is_same(noise, searched.noise):
             return searched
         return Search(searched.problem, noise, searched.library, searched.seed)

@@ -20,6 +20,8 @@ from cyclosweep.simulation.effects.mesh_range import mesh_positions
 
 MOST_REGIONS = 4
 """Regions that are given at most."""
+DRAWS = 500
+"""Simulated residuals."""
 LEVEL = 0.05
 """Probability by noise alone below which a region is given."""
 LEAST_LEFT = 0.2
@@ -106,7 +108,7 @@ def event_regions(problem: Problem, accepted: Candidate) -> list[Region]:
     return sorted(found, key=lambda region: region.share_of_excess or 0.0, reverse=True)
 
 
-def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list[Region]:
+def find_regions(search: Search, candidate: Candidate) -> list[Region]:
     """Find regions with error control, each after the ones before are taken out.
 
     The statistic is the largest standardised cell mean of the projected residual; its distribution
@@ -118,8 +120,6 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
         The recording with its noise.
     candidate : Candidate
         The structure whose residual is searched.
-    draws : int
-        Number of simulated residuals.
 
     Returns
     -------
@@ -137,7 +137,7 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     size = np.sqrt(np.diag(gram))
     testable = size > 1e-6 * max(float(size.max()), 1e-300)
     size = np.where(testable, size, np.inf)
-    maxima = _largest_by_chance(gram, size, draws, np.random.default_rng([search.seed, 2]))
+    maxima = _largest_by_chance(gram, size, DRAWS, np.random.default_rng([search.seed, 2]))
     raw, residual = fitted.residual_deg, fitted.residual
     found: list[Region] = []
     squares: list[float] = []
@@ -145,7 +145,7 @@ def find_regions(search: Search, candidate: Candidate, draws: int = 500) -> list
     for _ in range(MOST_REGIONS):
         z = np.abs(white.T @ residual) / size
         best = int(np.argmax(z))
-        p = (1 + np.count_nonzero(maxima >= z[best])) / (1 + draws)
+        p = (1 + np.count_nonzero(maxima >= z[best])) / (1 + DRAWS)
         if p > LEVEL or not testable[best]:
             break
         rows = cells[best].rows[use]

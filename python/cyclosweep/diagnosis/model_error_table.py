@@ -26,7 +26,7 @@ from cyclosweep.simulation.model_error import (
     ModelError,
     load_branches,
 )
-from cyclosweep.simulation.simulate import ROUNDS
+from cyclosweep.simulation.simulate import SIMULATED_ROUNDS
 
 CELLS = 50
 """Cells of torque from zero to the largest."""
@@ -64,7 +64,18 @@ class _Pass:
     error_deg: Floats
 
     def is_like(self, other: LoadBranch, near_nm: float) -> bool:
-        """Whether another branch goes the same way and begins within a range above this one."""
+        """Whether another branch goes the same way and begins within a range above this one.
+
+        Parameters
+        ----------
+        other : LoadBranch
+        near_nm : float
+            The range [N m].
+
+        Returns
+        -------
+        bool
+        """
         mine = self.branch
         alike = (mine.direction, mine.fresh) == (other.direction, other.fresh)
         return alike and other.from_nm <= mine.from_nm + near_nm
@@ -123,7 +134,7 @@ def with_error_table(
     if changed or not _limited_by_laws(concluded, verified.decision):
         return repaired
     problem, noise = concluded.search.problem, concluded.search.noise
-    path = predicted_path(problem, repaired.model, ROUNDS)
+    path = predicted_path(problem, repaired.model, SIMULATED_ROUNDS)
     used = np.isin(problem.history.run, problem.history.run[problem.fitted])
     largest = float(np.abs(path.applied_nm[used]).max())
     groups = _groups(_passes(problem, path, largest), SAME_START * largest)

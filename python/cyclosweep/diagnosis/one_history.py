@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from cyclosweep.diagnosis.friction_in_noise import LOUD, model_error_noise
+from cyclosweep.diagnosis.friction_in_noise import FAR_ABOVE_STEPS, model_error_noise
 from cyclosweep.diagnosis.identify.fitting.fit import fit
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.fitting.terms import Term
@@ -20,8 +20,8 @@ from cyclosweep.recording.unbroken_runs import runs_can_go_on
 from cyclosweep.simulation.effects.datum_drift import DatumDrift
 
 CLEARLY = 20.0
-"""What one history must gain, as `cost` counts: two fifths of the mean square of what runs leave
-that begin afresh."""
+"""What one history must gain, as `structure_cost` counts: two fifths of the mean square of what
+runs leave that begin afresh."""
 CLEARLY_LIKELIER = 40.0
 """What it must gain against the noise, as minus twice the log likelihood."""
 CREEP = "relaxation"
@@ -135,7 +135,7 @@ def friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
     """
     assert joined.flexible is not None
     little = model_error_noise(joined.problem, joined.noise, joined.flexible)
-    return friction_first(joined, little) if left_deg > LOUD * little.sigma_deg else None
+    return friction_first(joined, little) if left_deg > FAR_ABOVE_STEPS * little.sigma_deg else None
 
 
 def _named(fitted: FittedStructure) -> tuple[Term, ...]:

@@ -32,7 +32,9 @@ class Diagnosis:
     model : Model or None
         Calibrated baseline and accepted effects; `cyclosweep.simulate` takes it.
     before_deg, after_deg : ndarray of float, shape (samples,), or None
-        Twist by the calibrated published model and by the repaired one [deg].
+        Twist by the calibrated published model and by the repaired one [deg]. Where whole loops
+        were not simulated, each reading of the former lies on the flank that the recording shows;
+        `cyclosweep.simulate` has to find the flank, and may cross the play elsewhere.
     hypotheses : tuple of Hypothesis
         Every effect of the library, accepted or not.
     rated_torque_nm : float or None

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cyclosweep.recording import Recording
 from cyclosweep.recording.robust import robust_sigma
-from cyclosweep.report.residual_scale import DEAD_ZONE_SHARE, scale_deg
+from cyclosweep.report.residual_scale import MAY_BE_IN_PLAY_SHARE, scale_deg
 from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, answer_of
 
 Floats = NDArray[np.float64]
@@ -143,7 +143,7 @@ class ReportData:
         assert after is not None
         torque, scored = self.recording.torque_nm, self.scored
         sigma, _ = self.noise
-        light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque[scored]).max())
+        light = np.abs(torque) <= MAY_BE_IN_PLAY_SHARE * float(np.abs(torque[scored]).max())
         found = np.zeros(len(torque), dtype=bool)
         for residual in (before, after):
             scale = max(scale_deg(torque[scored], residual[scored]), 4 * sigma)

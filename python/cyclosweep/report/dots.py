@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.regions import located
-from cyclosweep.report.residual_scale import DEAD_ZONE_SHARE, scale_deg
+from cyclosweep.report.residual_scale import MAY_BE_IN_PLAY_SHARE, scale_deg
 from cyclosweep.report.thin import DISPLAY_LIMIT
 
 Floats = NDArray[np.float64]
@@ -87,7 +87,7 @@ def _means_of_neighbours(data: ReportData, averaged: int) -> Callable[[Floats], 
     recording = data.recording
     rows = np.flatnonzero(data.scored & ~data.on_the_way_through)
     torque = recording.torque_nm[rows]
-    light = np.abs(torque) <= DEAD_ZONE_SHARE * float(np.abs(torque).max())
+    light = np.abs(torque) <= MAY_BE_IN_PLAY_SHARE * float(np.abs(torque).max())
     kinds = (recording.run[rows], recording.structure.loading[rows], np.sign(torque), light)
     changes = np.zeros(len(rows), dtype=bool)
     for kind in kinds:

@@ -11,13 +11,10 @@ from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.report import sentences, tables
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.figures import all_figures
-from cyclosweep.report.summary import do_now, summary_of
+from cyclosweep.report.summary import LEADS, do_now, summary_of
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.wording import number, probability, verdict_words
 from cyclosweep.result import Thinning
-
-LEADS = ("Check first:", "Look at", "Record next:", "Nothing:")
-"""Words with which what is to be done now begins, set in bold."""
 
 
 def write_html(data: ReportData, path: str | Path) -> Path:
@@ -128,7 +125,7 @@ def _verdict(data: ReportData) -> str:
     text = said.removeprefix(lead).strip()
     now = f'<p class="now"><b>{escape(lead)}</b> {escape(text)}</p>' if said else ""
     return (
-        f'<section class="verdict" style="--tone:{tone}"><div><div><span class="name">'
+        f'<section class="verdict" style="--tone:{tone.page}"><div><div><span class="name">'
         f'{escape(words)}</span><span class="code">{escape(code)}</span></div>'
         f"<p>{escape(summary_of(data.result))}</p>{now}"
         f'<p class="soft">{escape("; ".join(evidence))}</p></div>'
@@ -216,7 +213,5 @@ def _extent(values: "Iterable[float]", unit: str) -> str:
 
 def _provenance(data: ReportData) -> str:
     """Hashes, versions, seeds."""
-    rows = dict(data.provenance)
-    if data.recording.sha256:
-        rows.setdefault("recording, SHA-256", data.recording.sha256)
-    return section("Provenance", definitions((str(k), str(v)) for k, v in rows.items()))
+    rows = ((str(key), str(value)) for key, value in data.provenance.items())
+    return section("Provenance", definitions(rows))

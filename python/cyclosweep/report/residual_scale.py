@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-DEAD_ZONE_SHARE = 0.05
+MAY_BE_IN_PLAY_SHARE = 0.05
 """Share of the largest torque below which a reading may be inside the dead zone."""
 FEW_BEYOND = 3.0
 """Multiple of the residual that all but one in 200 samples keep, above which the largest do not
@@ -24,7 +24,7 @@ def scale_deg(torque_nm: Floats, residual_deg: Floats) -> float:
         Torque [N m] and residual [deg] of the readings.
     """
     sizes, loaded = np.abs(residual_deg), np.abs(torque_nm)
-    outside = loaded > DEAD_ZONE_SHARE * loaded.max()
+    outside = loaded > MAY_BE_IN_PLAY_SHARE * loaded.max()
     shown = sizes[outside] if np.count_nonzero(outside) >= len(sizes) // 2 else sizes
     usual, largest = float(np.quantile(shown, 0.995)), float(shown.max())
     return largest if largest < FEW_BEYOND * usual else usual

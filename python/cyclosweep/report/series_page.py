@@ -11,7 +11,7 @@ from cyclosweep.atomic import write_text
 from cyclosweep.page import bullets, document
 from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
 from cyclosweep.report.svg import figure_svg
-from cyclosweep.report.wording import KNOWN_AND_MORE, VERDICTS, interval, number
+from cyclosweep.report.wording import interval, number, words_of
 from cyclosweep.result.series import MEASURES, Trend
 from cyclosweep.result.words import readable
 
@@ -213,10 +213,7 @@ def verdict_of(row: Row) -> str:
     verdict = row.get("verdict")
     if verdict is None:
         return "no diagnosis"
-    words, _ = VERDICTS[verdict]
-    if verdict == "UNKNOWN_PHYSICS" and row.get("effects"):
-        return KNOWN_AND_MORE
-    return words
+    return words_of(verdict, has_effects=bool(row.get("effects")))
 
 
 def _sizes(row: Row) -> list[str]:

@@ -6,6 +6,10 @@ from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.words import degrees, falls, listed, readable, shape_in_words
 
+CHECK_FIRST, LOOK_AT_PART, RECORD_NEXT = "Check first:", "Look at", "Record next:"
+NOTHING_TO_DO = "Nothing:"
+LEADS = (CHECK_FIRST, LOOK_AT_PART, RECORD_NEXT, NOTHING_TO_DO)
+"""Words with which what is to be done now begins, set in bold on the page."""
 NOTHING_TOLD = (
     "The model misses something that no listed effect explains; its shape and place do not show."
 )
@@ -76,21 +80,21 @@ def do_now(answer: Answer) -> str:
         return answer.do_now
     if answer.plausibility:
         text = answer.plausibility[0].text
-        return f"Check first: {text}."
+        return f"{CHECK_FIRST} {text}."
     if answer.verdict == "NOTHING_MISSING":
         if hidden := not_shown(answer):
             return (
                 f"Nothing that this recording can show. It cannot show {listed(hidden)}: record "
                 "loading and unloading in many steps."
             )
-        return "Nothing: the calibrated model describes this drive."
+        return f"{NOTHING_TO_DO} the calibrated model describes this drive."
     largest = max(answer.effects, key=lambda effect: effect.size_deg.estimate, default=None)
     if largest is not None and largest.name in LOOK_AT and answer.change is None:
-        return f"Look at {LOOK_AT[largest.name]}"
+        return f"{LOOK_AT_PART} {LOOK_AT[largest.name]}"
     plan = answer.next_experiment
     if plan is None or not plan.program or plan.program == NONE_NEEDED:
         return ""
-    return f"Record next: {plan.program}."
+    return f"{RECORD_NEXT} {plan.program}."
 
 
 def not_shown(answer: Answer) -> list[str]:

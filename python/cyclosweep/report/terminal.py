@@ -11,7 +11,7 @@ from rich.text import Text
 
 from cyclosweep.report import sentences
 from cyclosweep.report.data import ReportData
-from cyclosweep.report.summary import do_now, summary_of
+from cyclosweep.report.summary import RECORD_NEXT, do_now, summary_of
 from cyclosweep.report.tables import play_table
 from cyclosweep.report.wording import (
     angle,
@@ -20,7 +20,7 @@ from cyclosweep.report.wording import (
     probability,
     verdict_words,
 )
-from cyclosweep.result import FoundEffect, Verdict
+from cyclosweep.result import FoundEffect
 from cyclosweep.result.words import readable, telling_digits
 
 NARROW = 60
@@ -29,16 +29,6 @@ MOST_NOTES = 4
 """Notes on how a recording was read that are shown; all are in diagnosis.json."""
 FRAME = 6
 """Columns that the frame takes of a line with a title."""
-
-_STYLES: dict[Verdict, str] = {
-    "IDENTIFIED": "green",
-    "NOTHING_MISSING": "green",
-    "AMBIGUOUS": "yellow",
-    "INSUFFICIENT_DATA": "yellow",
-    "MOSTLY_EXPLAINED": "yellow",
-    "UNKNOWN_PHYSICS": "magenta",
-    "DATA_FAULT": "red",
-}
 
 
 def print_summary(data: ReportData, console: Console | None = None) -> None:
@@ -62,13 +52,12 @@ def summary(data: ReportData) -> RenderableType:
 def _parts(data: ReportData) -> Iterator[RenderableType]:
     """Parts of the summary from top to bottom."""
     result = data.result
-    code, words, _ = verdict_words(result)
-    style = _STYLES[code]
+    code, words, tone = verdict_words(result)
     statement = Text(summary_of(result))
     now = do_now(result)
     if now:
         statement.append(f"\n\n{now}")
-    yield _Framed(f"{words} ({code})", statement, data.recording.name, style)
+    yield _Framed(f"{words} ({code})", statement, data.recording.name, tone.terminal)
     facts = _facts(data)
     if facts:
         yield _Facts(facts)
@@ -90,7 +79,8 @@ def _parts(data: ReportData) -> Iterator[RenderableType]:
     ):
         if lines:
             yield _bullets(heading, lines)
-    if (plan := sentences.next_experiment(data)) and plan != now:
+    plan = sentences.next_experiment(data)
+    if plan and plan.casefold() != now.removeprefix(RECORD_NEXT).lstrip().casefold():
         yield Text.assemble(("\nNext experiment\n", "bold"), plan)
     said = result.statement.removeprefix(f"{data.recording.name}: ")
     if said.casefold() != summary_of(result).casefold():

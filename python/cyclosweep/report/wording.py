@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from cyclosweep.result import Answer, Verdict
 from cyclosweep.result.part import NORMAL_95
@@ -14,25 +15,52 @@ NOTHING = "–"
 ARCMIN = 60.0
 """Minutes of arc in a degree."""
 
-VERDICTS: dict[Verdict, tuple[str, str]] = {
-    "IDENTIFIED": ("Cause identified", "#0b6e4f"),
-    "AMBIGUOUS": ("More than one cause fits", "#8a5a00"),
-    "MOSTLY_EXPLAINED": ("Causes found that explain most of it", "#0b6e4f"),
-    "UNKNOWN_PHYSICS": ("Cause outside the known effects", "#8a2be2"),
-    "NOTHING_MISSING": ("Nothing is missing from the model", "#0b6e4f"),
-    "INSUFFICIENT_DATA": ("The recording cannot tell", "#8a5a00"),
-    "DATA_FAULT": ("The recording is faulty", "#a61b1b"),
+
+class Tone(NamedTuple):
+    """Colour of a verdict on the page and in the terminal."""
+
+    page: str
+    terminal: str
+
+
+FOUND, OPEN = Tone("#0b6e4f", "green"), Tone("#8a5a00", "yellow")
+UNKNOWN, FAULTY = Tone("#8a2be2", "magenta"), Tone("#a61b1b", "red")
+VERDICTS: dict[Verdict, tuple[str, Tone]] = {
+    "IDENTIFIED": ("Cause identified", FOUND),
+    "AMBIGUOUS": ("More than one cause fits", OPEN),
+    "MOSTLY_EXPLAINED": ("Causes found that explain most of it", FOUND),
+    "UNKNOWN_PHYSICS": ("Cause outside the known effects", UNKNOWN),
+    "NOTHING_MISSING": ("Nothing is missing from the model", FOUND),
+    "INSUFFICIENT_DATA": ("The recording cannot tell", OPEN),
+    "DATA_FAULT": ("The recording is faulty", FAULTY),
 }
-"""Verdict in plain words, and its colour."""
+"""Verdict in plain words, and its colours."""
 KNOWN_AND_MORE = "Known effects found, and something without a name"
 """The same where effects are named and something remains that has none."""
 
 
-def verdict_words(result: Answer) -> tuple[Verdict, str, str]:
-    """Return verdict, its plain words and its colour."""
-    words, tone = VERDICTS[result.verdict]
-    if result.verdict == "UNKNOWN_PHYSICS" and result.effects:
-        words = KNOWN_AND_MORE
+def words_of(verdict: Verdict, *, has_effects: bool) -> str:
+    """Plain words of a verdict.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    has_effects : bool
+        Whether effects are named.
+
+    Returns
+    -------
+    str
+    """
+    if verdict == "UNKNOWN_PHYSICS" and has_effects:
+        return KNOWN_AND_MORE
+    return VERDICTS[verdict][0]
+
+
+def verdict_words(result: Answer) -> tuple[Verdict, str, Tone]:
+    """Return verdict, its plain words and its colours."""
+    words = words_of(result.verdict, has_effects=bool(result.effects))
+    tone = VERDICTS[result.verdict][1]
     if result.verdict == "IDENTIFIED" and len(result.explanation_set) > 1:
         words = f"Most probable cause ({100 * result.explanation_set[0].probability:.0f} %)"
     return result.verdict, words, tone

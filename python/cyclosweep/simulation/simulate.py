@@ -34,7 +34,7 @@ __all__ = [
     "simulate",
 ]
 
-ROUNDS = 12
+SIMULATED_ROUNDS = 12
 """Most rounds in which twist, flank and effects settle on each other."""
 TORQUE_ROUNDS = 300
 """The same for the torque at a given twist. A compliance that pulsates by nine tenths of itself
@@ -211,7 +211,7 @@ def predict_history(model: Model, programme: Recording) -> History:
 
 
 def settle(
-    model: Model, history: History, rounds: int = ROUNDS, known_side: Floats | None = None
+    model: Model, history: History, rounds: int = SIMULATED_ROUNDS, known_side: Floats | None = None
 ) -> History:
     """Settle path, flank and effects along a load history that is already zeroed.
 

@@ -13,7 +13,7 @@ from cyclosweep.diagnosis.prepare.row_score import bin_score, interval_score, st
 from cyclosweep.recording.robust import robust_sigma, rounding_sigma, sigma_by_second_differences
 from cyclosweep.simulation.effects.history import Floats
 
-MODEL_ERROR = 0.9
+SLOW_AS_MODEL_ERROR = 0.9
 """Autocorrelation above which what is left is noise only if its size is the same everywhere."""
 UNSTEADY = 2.5
 """Scatter of the size of whitened stretches, over that of steady noise, from which what is left is
@@ -25,9 +25,9 @@ something else, such as a zero that jumps. Whitening leaves none of an autoregre
 -1/2 of white noise beside something much slower. Of 515 recordings with nothing missing and an
 autocorrelation of 0.9 to 0.99, none of over a hundred rows went below -0.30."""
 SLOW = 0.8
-"""Autocorrelation from which this is asked."""
+"""Autocorrelation from which the correlation of whitened neighbours is compared with `RIDING`."""
 FEWEST_ROWS = 100
-"""Rows from which it is known well enough, to 0.1."""
+"""Rows from which that correlation is known well enough, to 0.1."""
 UNEVEN = 0.1
 """Difference of steps by the clock from steps by rows from which it matters which of them count."""
 STRETCHES = 40
@@ -99,7 +99,7 @@ def estimate_noise(
         return found
     white = rough.whiten(left)
     rounded = rough.white_share > 0.0
-    unsteady = best > MODEL_ERROR and unsteadiness(white, loud_only=rounded) > UNSTEADY
+    unsteady = best > SLOW_AS_MODEL_ERROR and unsteadiness(white, loud_only=rounded) > UNSTEADY
     if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
         return as_model_error(rough, left, resolution, float(np.ptp(angle)))
     return found

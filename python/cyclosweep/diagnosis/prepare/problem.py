@@ -26,6 +26,8 @@ class Problem:
 
     Attributes
     ----------
+    recording : Recording
+        What was prepared.
     history : History
         All rows, in order, with the state of the uncalibrated model.
     angle_deg : ndarray, shape (n,)

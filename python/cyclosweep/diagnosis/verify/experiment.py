@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.recording import Recording
 from cyclosweep.result import NextExperiment
 from cyclosweep.result.contradictions import NONE_NEEDED
+from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats, History
 
 Load = tuple[Floats, Floats, Floats, Floats]
@@ -83,10 +84,11 @@ def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0)
 
 
 LOOP = (0.0, 1.0, -1.0, 0.0)
+"""Ends of the ramps of a loop, over the largest torque."""
 NESTED = (0.0, 1.0, -1.0, 0.6, -0.4, 1.0, 0.4, 0.8, 0.0)
+"""Ends of the ramps of nested loops, over the largest torque."""
 LADDER = (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)
-"""Ends of the ramps of a loop, of nested loops, and amplitudes of a ladder of loops, each over the
-largest torque."""
+"""Amplitudes of a ladder of loops, over the largest torque."""
 
 
 def _nested(top: float) -> Load:
@@ -130,7 +132,7 @@ def _soak(top: float) -> Load:
 
 def _ladder(top: float) -> Load:
     """Loops of growing amplitude, then a small one."""
-    return _runs([_line([0, s * top, -s * top, 0], 150) for s in LADDER], [0] * 6)
+    return _runs([_line([0, s * top, -s * top, 0], 150) for s in LADDER], [0] * len(LADDER))
 
 
 def _wide(top: float) -> Load:
@@ -215,10 +217,7 @@ def next_experiment(
     most = 0.0
     for plan in MENU:
         history = _history(search, plan)
-        try:
-            value = _detectability(search, history, terms, weakest, tolerance_deg)
-        except (ValueError, AssertionError, KeyError):
-            continue
+        value = _detectability(search, history, terms, weakest, tolerance_deg)
         if not np.isfinite(value):
             continue
         usual = not terms and weakest is not None and USUAL.get(weakest) is plan.make
@@ -339,8 +338,6 @@ def _detectability(
         second = [t.columns(history) for t in terms[1][1]]
         known = orthonormal(np.column_stack([base, *second]), 1e-9)
         return float(np.linalg.norm(first - known @ (known.T @ first)) / sigma)
-    from cyclosweep.simulation.effects import find
-
     assert weakest is not None
     effect = find(weakest)
     if effect.untestable(history) is not None:

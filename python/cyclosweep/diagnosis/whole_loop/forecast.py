@@ -24,9 +24,9 @@ from cyclosweep.diagnosis.whole_loop.model_parameters import (
     with_values,
 )
 from cyclosweep.simulation.effects.history import Flags, Floats, History
-from cyclosweep.simulation.simulate import Model, flanks_of, settle
+from cyclosweep.simulation.simulate import SIMULATED_ROUNDS, Model, flanks_of, settle
 
-ROUNDS = 4
+FITTING_ROUNDS = 4
 """Rounds of effects that depend on more than the elastic torque, while fitting."""
 BLUR = 0.01
 """Blur of the last stage, see `fit_forecast`."""
@@ -155,7 +155,7 @@ def starting_model(problem: Problem) -> Model:
     )
 
 
-def predicted_path(problem: Problem, model: Model, rounds: int = ROUNDS) -> History:
+def predicted_path(problem: Problem, model: Model, rounds: int = FITTING_ROUNDS) -> History:
     """Path of the shaft by a simulation along all rows of a problem.
 
     Parameters
@@ -288,7 +288,7 @@ def fit_forecast(
         terms=shaped,
         parameters=parameters,
         values=found.x,
-        history=predicted_path(problem, moved, 12),
+        history=predicted_path(problem, moved, SIMULATED_ROUNDS),
         jacobian=np.asarray(found.jac)[: len(weight)] * np.sqrt(len(shifts)) / weight[:, None],
         rows=rows,
     )

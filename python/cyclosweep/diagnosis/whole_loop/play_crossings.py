@@ -49,7 +49,7 @@ def take_recorded_crossings(search: Search, candidate: Candidate) -> None:
             best, error = other, crossed
     if best is not found:
         # What it is off by on the crossings counts for the state, not against the structure.
-        gained = max(0.5 * search.gain(found, best), 0.0)
+        gained = max(0.5 * search.chi2_gain(found, best), 0.0)
         turned = search.judged(best, candidate.gain + gained, candidate.prior)
         if search.suffices(candidate) and not search.suffices(turned):
             return

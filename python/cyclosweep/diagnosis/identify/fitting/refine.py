@@ -14,22 +14,22 @@ EXPANSIONS = 10
 holds the elastic law, and what else follows from the linear parameters, as it was there: it has to
 be repeated until both have settled."""
 LEAST_GAIN = 1.0
-"""Chi-squared that a further expansion has to be worth,"""
+"""Fall of chi-squared below which a further expansion is not worth its time."""
 LEAST_SHARE = 1e-4
-"""and the share of all chi-squared, which a structure leaves that lacks an effect."""
+"""The same as a share of chi-squared: it is large where a structure lacks an effect."""
 STEPS_A_ROUND = 2
 """Steps with updated slopes that are tried for each iteration with measured ones."""
 MOST_RISES = 2
 """Expansions that may each leave more than the one before, until a refinement is given up."""
 FAR_ABOVE = 2.0
-"""The same at once, where an expansion leaves so many times what the best one did."""
+"""Misfit of an expansion, over the least so far, from which a refinement is given up at once."""
 HOPELESS = 5.0
-"""Misfit over that of a rival, from which a refinement is watched more closely: it has a few rounds
-at a time,"""
+"""Misfit over that of a rival, from which a refinement is checked after every few rounds."""
 ROUNDS_FAR_OFF = 6
-"""so many,"""
+"""Most rounds between these checks."""
 LEAST_FALL = 0.5
-"""and is given up unless each time leaves less than this share of the misfit."""
+"""Misfit that such rounds leave, over that before them, from which a refinement that is checked is
+given up."""
 SETTLED = 1e-2
 """Largest move of a parameter, in usual changes, that is the end of a refinement."""
 

@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.structures.scan import evidence, likelihood_gain
 from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist
 from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.prepare.problem import COMPLIANCE
 from cyclosweep.simulation.effects.history import Floats
 
 LEAST_OF_CLASS = 0.25
@@ -36,10 +37,8 @@ BOTH_CURVES = frozenset({ODD_CURVE, EVEN_CURVE})
 MOST_GROWN = 1.5
 """Size of an accepted effect with a new one in the fit, over its size without, above which the new
 one is refused: the two compensate each other in the odd or in the even part."""
-LOUD = 100.0
+LOUD_LAW = 100.0
 """Signal-to-noise ratio of an effect from which the error of its law counts."""
-COMPLIANCE_PLACE = 1
-"""Place of the line's compliance among all parameters."""
 SHAPE_CHARGE = 1.0
 """Log evidence that a parameter of a law's shape is charged, as is usual in the search [nat]."""
 
@@ -266,7 +265,7 @@ def basis_of_others(fitted: FittedStructure, places: Collection[int]) -> Floats:
         # A line of the elastic torque and a curve of the applied one together make the friction,
         # unless the line moves with the twist by friction held.
         applied = fitted.history.applied_nm[fitted.problem.fitted]
-        columns[:, others.index(COMPLIANCE_PLACE)] = fitted.whitened(applied, fitted.noise)
+        columns[:, others.index(COMPLIANCE)] = fitted.whitened(applied, fitted.noise)
     return orthonormal(columns, 1e-6)
 
 

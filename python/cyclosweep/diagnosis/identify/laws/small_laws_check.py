@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.laws.law_in_class import (
     LEAST_LEFT,
     LEAST_OF_CLASS,
-    LOUD,
+    LOUD_LAW,
     LawBeside,
     LawCheck,
     own_classes,
@@ -65,7 +65,7 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
         return any(
             share_class(terms[name], terms[other])
             and np.std(size[name]) < least_beside(name, other) * np.std(size[other])
-            and _visibility(fitted, size[other]) > LOUD
+            and _signal_to_noise(fitted, size[other]) > LOUD_LAW
             for other in size
             if other != name
         )
@@ -91,7 +91,7 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
     sizes = {k: recalibrated_twist(fitted, k) for k in laws}
     spread = {k: float(np.std(size)) for k, size in sizes.items()}
     own = {k: own_classes(fitted.terms[k]) for k in laws}
-    loud = [k for k in laws if _visibility(fitted, sizes[k]) > LOUD]
+    loud = [k for k in laws if _signal_to_noise(fitted, sizes[k]) > LOUD_LAW]
     larger = {
         k: {name for j in loud if spread[k] < most_missed(own[j]) * spread[j] for name in own[j]}
         for k in laws
@@ -112,7 +112,7 @@ def errors_of_larger(fitted: FittedStructure) -> frozenset[str]:
     return frozenset(fitted.terms[k].name for k in small if is_replaced(k))
 
 
-def _visibility(fitted: FittedStructure, size_deg: Floats) -> float:
+def _signal_to_noise(fitted: FittedStructure, size_deg: Floats) -> float:
     """Signal-to-noise ratio of a part of the twist.
 
     Parameters

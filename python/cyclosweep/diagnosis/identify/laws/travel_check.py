@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import EVEN_CURVE, ODD_CURVE
 from cyclosweep.diagnosis.identify.fitting.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.identify.laws.law_in_class import LOUD, LawCheck, withdrawn_where
+from cyclosweep.diagnosis.identify.laws.law_in_class import LOUD_LAW, LawCheck, withdrawn_where
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.identify.structures.testability import strength_of
 from cyclosweep.diagnosis.identify.structures.verdict import MOSTLY
@@ -45,7 +45,7 @@ def without_faint_waves(
         return tuple(checks)
     effects = [k for k, term in enumerate(fitted.terms) if term.effect is not None]
     strength = {fitted.terms[k].name: strength_of(search, fitted, k) for k in effects}
-    if max(strength.values()) < LOUD:
+    if max(strength.values()) < LOUD_LAW:
         return tuple(checks)
     return withdrawn_where(lambda name: name in waves and strength[name] < LEAST_WAVE, checks)
 

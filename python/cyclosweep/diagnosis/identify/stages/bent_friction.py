@@ -44,7 +44,7 @@ def bent_instead_of_others(search: Search, acceptable: Candidate) -> Candidate |
         if beyond_noise_deg(joint) ** 2 > (1.0 - LEAST_REMOVED) * left**2:
             continue
         fewer = len(start.fit.terms) - len(terms)
-        added = float(evidence(search.gain(start.fit, joint), 1.0))
+        added = float(evidence(search.chi2_gain(start.fit, joint), 1.0))
         other = search.judged(joint, start.gain + added, start.prior + FURTHER * fewer)
         if found is None or other.score > found.score:
             found = other

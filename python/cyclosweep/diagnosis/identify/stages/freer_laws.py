@@ -106,7 +106,7 @@ def freer_instead_of_others(
             if np.std(recalibrated_twist(joint, len(others))) > MOST_OWN_GROWTH * np.std(before):
                 continue
             rank = amplitude_count(joint, len(others)) - known
-            added = float(evidence(search.gain(start.fit, joint), rank))
+            added = float(evidence(search.chi2_gain(start.fit, joint), rank))
             further = FURTHER if start.fit.terms and not known else 0.0
             found = search.judged(joint, start.gain + added, start.prior - charge - further)
             enough = acceptable is not start or left_beyond_noise(joint) <= left_by_best

@@ -36,7 +36,7 @@ def with_law_that_holds(search: Search, accepted: Candidate, naming: Naming) -> 
         the withdrawn ones; None where there is none, or where the withdrawn laws are far likelier.
     """
     part = naming.part
-    most_lost = MOST_LOST * search.gain(part.fit, accepted.fit)
+    most_lost = MOST_LOST * search.chi2_gain(part.fit, accepted.fit)
     names = {check.name for check in naming.withdrawn}
     gone = [t for t in accepted.fit.terms if t.name in names and t.effect and not t.slips]
     classes = {behaviour for term in gone for behaviour in own_classes(term)}
@@ -46,7 +46,7 @@ def with_law_that_holds(search: Search, accepted: Candidate, naming: Naming) -> 
         child = search.extend(part, name)
         if child is None or not child.all_recognised or child.score < least:
             continue
-        if search.gain(child.fit, accepted.fit) > most_lost:
+        if search.chi2_gain(child.fit, accepted.fit) > most_lost:
             continue
         found = names_that_hold(search, child, child)
         left = {shown.behaviour for shown in found.shown} & classes

@@ -195,13 +195,13 @@ class Candidate:
 
 
 def added_evidence(
-    gain: float, joint: FittedStructure, before: Scan, rank: float, penalty: float
+    chi2_gain: float, joint: FittedStructure, before: Scan, rank: float, penalty: float
 ) -> float:
     """Log evidence that the last term of a joint fit adds to a structure [nat].
 
     Parameters
     ----------
-    gain : float
+    chi2_gain : float
         Twice the log likelihood that it gains.
     joint : FittedStructure
         With the new term as the last.
@@ -219,7 +219,7 @@ def added_evidence(
     effect = joint.terms[-1].effect
     if effect is not None and effect.vector:
         places = joint.amplitude_places(len(joint.terms) - 1)
-        return 0.5 * gain - vector_penalty(joint.beta[places], joint.information(places))
+        return 0.5 * chi2_gain - vector_penalty(joint.beta[places], joint.information(places))
     if effect is None or not effect.dense:
         penalty = max(penalty, shape_penalty(joint, before))
-    return float(evidence(gain, rank)) - penalty
+    return float(evidence(chi2_gain, rank)) - penalty

@@ -20,12 +20,7 @@ from cyclosweep.diagnosis.identify.structures.candidate import (
 from cyclosweep.diagnosis.identify.structures.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.structures.freer_part import freer_part
 from cyclosweep.diagnosis.identify.structures.placement import best_placed
-from cyclosweep.diagnosis.identify.structures.scan import (
-    Scan,
-    evidence,
-    likelihood_gain,
-    scan,
-)
+from cyclosweep.diagnosis.identify.structures.scan import Scan, evidence, likelihood_gain, scan
 from cyclosweep.diagnosis.identify.structures.starting_terms import starting_terms
 from cyclosweep.diagnosis.prepare.noise import Noise
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -35,7 +30,7 @@ SHAPE_ERROR = 0.05
 """Share of an effect's own visibility below which a remainder is taken for error of its shape:
 no model of an effect is exact, and large effects show it."""
 MOST_SHAPE_ERROR = 20.0
-"""Evidence up to which a remainder is so taken; a further effect of visibility 7 has more."""
+"""Evidence up to which a remainder is so taken; a further effect of signal-to-noise 7 has more."""
 MOST_ENRICHED = 2
 """Times an effect is given more freedom of shape."""
 USUAL_ROUNDS, RICH_ROUNDS = 6, 20
@@ -79,7 +74,7 @@ class Search:
     tried : set of (Candidate, str)
         Structures, each with a hypothesis by which it was extended.
     not_extended : frozenset of frozenset of str
-        Structures, by the names of their terms, that are not worth to be extended.
+        Structures, by their names, that are not worth to be extended.
     chosen : Candidate or None
         The structure chosen on whole loops; None where structures are compared by their evidence.
     rivals_of_start : list of (Candidate, probability)
@@ -194,7 +189,7 @@ class Search:
         return candidate
 
     def refit(self, terms: tuple[Term, ...], before: FittedStructure) -> Candidate:
-        """Fit a structure that was not visited on its own, from a fit with more terms."""
+        """Fit a structure on its own, from a fit with more terms; its score compares with none."""
         return self.judged(fit(self.problem, self.noise, terms, before), 0.0, 0.0)
 
     def extend(self, parent: Candidate, hypothesis: str) -> Candidate | None:
@@ -222,8 +217,8 @@ class Search:
             if joint is None or joint.loss > parent.fit.loss:
                 # One more term fits no worse, unless the fit has ended in a bad optimum.
                 continue
-            gain = self._further_gain(parent.fit, joint)
-            added = added_evidence(gain, joint, parent.scan, rank, penalty)
+            chi2_gain = self._further_chi2(parent.fit, joint)
+            added = added_evidence(chi2_gain, joint, parent.scan, rank, penalty)
             prior = parent.prior - (FURTHER if parent.fit.terms else 0.0)
             prior -= prior_penalty(term.name, term.effect, term.shape)
             if best is None or parent.gain + added + prior > best.score:
@@ -282,8 +277,8 @@ class Search:
         """Chi-squared of a residual beyond what noise explains."""
         return max(fitted.loss - fitted.noise.loss_of_row * self.noise.freedom, 0.0)
 
-    def gain(self, before: FittedStructure, after: FittedStructure) -> float:
-        """Twice the log-likelihood gained from one fit to the next.
+    def chi2_gain(self, before: FittedStructure, after: FittedStructure) -> float:
+        """Twice the log likelihood gained from one fit to the next, which has no unit.
 
         Parameters
         ----------
@@ -297,13 +292,13 @@ class Search:
         drop = before.loss - after.loss
         return float(likelihood_gain(np.array(drop), self._excess(before), self.noise.freedom))
 
-    def _further_gain(self, before: FittedStructure, after: FittedStructure) -> float:
-        """Gain over the start by one fit beyond another, see `gain` for the parameters.
+    def _further_chi2(self, before: FittedStructure, after: FittedStructure) -> float:
+        """Gain over the start by one fit beyond another, see `chi2_gain` for the parameters.
 
         Counted so, gains add up in any order; from step to step they do not where structures fit
         better than noise with model error.
         """
-        return self.gain(self.start.fit, after) - self.gain(self.start.fit, before)
+        return self.chi2_gain(self.start.fit, after) - self.chi2_gain(self.start.fit, before)
 
     def _enriched(self, candidate: Candidate) -> Candidate | None:
         """Give a term more freedom of shape where the residual asks for it."""
@@ -340,7 +335,7 @@ class Search:
             signed = with_right_signs(joint)
             if signed is None:
                 continue
-            added = float(evidence(self._further_gain(candidate.fit, signed), rank))
+            added = float(evidence(self._further_chi2(candidate.fit, signed), rank))
             if added <= 1.0:
                 continue
             richer = self.judged(signed, candidate.gain + added, candidate.prior)
@@ -358,7 +353,7 @@ class Search:
             for left_out in added:
                 self._visit([name for name in added if name != left_out])
                 known = self.visited.get(candidate.names - {left_out})
-                gain, noise = self.gain, self.noise
+                gain, noise = self.chi2_gain, self.noise
                 if known and (freer := freer_part(candidate, left_out, known, noise, gain)):
                     self.visited[known.names] = self.judged(*freer)
 

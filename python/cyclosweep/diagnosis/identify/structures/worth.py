@@ -30,7 +30,7 @@ def worth(search: Search, name: str, candidate: Candidate) -> float:
     """
     others = tuple(term for term in candidate.fit.terms if term.name != name)
     without = fit(search.problem, search.noise, others, candidate.fit)
-    return 0.5 * search.gain(without, candidate.fit)
+    return 0.5 * search.chi2_gain(without, candidate.fit)
 
 
 def still_needed(search: Search, best: Candidate, accepted: tuple[Term, ...]) -> tuple[Term, ...]:
@@ -90,5 +90,5 @@ def without_unseen_friction(search: Search, candidate: Candidate) -> Candidate:
     if not unseen:
         return candidate
     part = search.refit(tuple(t for t in terms if t.name not in unseen), candidate.fit)
-    as_well = search.gain(part.fit, candidate.fit) < NORMAL_95**2
+    as_well = search.chi2_gain(part.fit, candidate.fit) < NORMAL_95**2
     return part if as_well and part.all_recognised else candidate
