@@ -303,11 +303,14 @@ def test_the_names_of_the_rows_of_the_map_have_room(whole: ReportData) -> None:
 
 
 def test_the_name_of_a_shaded_stretch_lies_above_its_panel(whole: ReportData) -> None:
+    named = 0
     for svg in svgs(page(whole)):
         tops = [float(e.get("y") or 0) for e in svg.iter() if e.get("class") == "plot"]
         for element in svg.iter():
             if element.get("class") == "spanlabel":
+                named += 1
                 assert float(element.get("y") or 0) < min(tops)
+    assert named
 
 
 def test_a_programme_alone_has_a_page() -> None:
@@ -372,3 +375,13 @@ def test_chromium_shows_it_without_an_error(tmp_path: Path, whole: ReportData) -
     )  # fmt: skip
     assert 'data-ready="yes"' in done.stdout, "the script ran to its end"
     assert "CONSOLE" not in done.stderr
+
+
+def test_the_hash_of_the_recording_stands_once_on_the_page(whole: ReportData) -> None:
+    digest = "ab12" * 16
+    data = replace(
+        whole,
+        recording=replace(whole.recording, sha256=digest),
+        provenance={**whole.provenance, "sha256": digest},
+    )
+    assert page(data).count(digest) == 1

@@ -121,13 +121,56 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     repeats = None
     if search.noise.structured:
         repeats = repetition(search.problem, (search.chosen or search.baseline).fit)
+    decision, accepted, naming, explained = _decided(search, beyond_baseline, tolerance)
+    check_positive(accepted.fit.line_compliance_deg_per_nm)
+    decision = no_more_than_fits(decision, accepted, search, explained.share or 0.0)
+    beyond_accepted = beyond_baseline
+    if accepted is not search.baseline:
+        beyond_accepted = testability(search, accepted, p_values)
+        unnamed = {check.name for check in naming.withdrawn} & set(accepted.fit.names)
+        beyond_accepted += [bound for bound in beyond_baseline if bound.name in unnamed]
+    possible = {term.name for each, _ in decision.explanations for term in each.fit.terms}
+    below = {bound.name for bound in beyond_accepted if bound.upper95_deg < tolerance}
+    return Conclusion(
+        search=search,
+        tolerance_deg=tolerance,
+        decision=decision,
+        accepted=accepted,
+        naming=naming,
+        repetition=repeats,
+        beyond_baseline=beyond_baseline,
+        beyond_accepted=beyond_accepted,
+        excluded=frozenset(below - possible),
+        explained=explained,
+    )
+
+
+def _decided(
+    search: Search, beyond_baseline: list[Testability], tolerance_deg: float
+) -> tuple[Decision, Candidate, Naming, Explained]:
+    """Choose the structure, and which of its names hold.
+
+    Parameters
+    ----------
+    search : Search
+        With all visited structures.
+    beyond_baseline : list of Testability
+        Bounds of every effect beside the calibrated model.
+    tolerance_deg : float
+        Size below which an effect does not matter [deg].
+
+    Returns
+    -------
+    decision, accepted, naming, explained
+        What is said, the structure it rests on, its names, and the share that they explain.
+    """
     staged: tuple[Candidate, Explained] | None = None
     found = accepted_in_stages(search)
     if found is not None:
         staged = found, explained_share(search.baseline.fit, found.fit, search.seed)
         decision = decide_in_stages(search, staged[1].share or 0.0)
     else:
-        decision = decide(search, beyond_baseline, tolerance)
+        decision = decide(search, beyond_baseline, tolerance_deg)
         if search.problem.count <= FEW_READINGS:
             decision = named_if_close(search, decision)
     accepted = search.baseline if decision.best is None else _named_part(search, decision.best)
@@ -152,27 +195,7 @@ def conclude(search: Search, drive: Drive, tolerance_deg: float | None) -> Concl
     decision = _with_names_that_hold(search, decision, naming, explained.share or 0.0)
     if decision.verdict == "INSUFFICIENT_DATA":
         accepted = search.baseline
-    check_positive(accepted.fit.line_compliance_deg_per_nm)
-    decision = no_more_than_fits(decision, accepted, search, explained.share or 0.0)
-    beyond_accepted = beyond_baseline
-    if accepted is not search.baseline:
-        beyond_accepted = testability(search, accepted, p_values)
-        unnamed = {check.name for check in naming.withdrawn} & set(accepted.fit.names)
-        beyond_accepted += [bound for bound in beyond_baseline if bound.name in unnamed]
-    possible = {term.name for each, _ in decision.explanations for term in each.fit.terms}
-    below = {bound.name for bound in beyond_accepted if bound.upper95_deg < tolerance}
-    return Conclusion(
-        search=search,
-        tolerance_deg=tolerance,
-        decision=decision,
-        accepted=accepted,
-        naming=naming,
-        repetition=repeats,
-        beyond_baseline=beyond_baseline,
-        beyond_accepted=beyond_accepted,
-        excluded=frozenset(below - possible),
-        explained=explained,
-    )
+    return decision, accepted, naming, explained
 
 
 def _is_enough(search: Search, part: Candidate) -> bool:

@@ -3,6 +3,7 @@
 
 use crate::components::block::{Block, Sym3};
 use crate::components::contact::{ContactLaws, PowerLaws};
+use crate::components::laws::APPROACH_EXPONENT;
 use crate::components::mechanism::{MAX_DISCS, Mechanism, Position};
 use crate::components::pins::PinContact;
 use crate::components::quadratic::weighted_mean;
@@ -37,16 +38,17 @@ pub struct Equilibrium {
 pub(crate) const TOLERANCE: f64 = 1e-10;
 /// Steps below this share of the eccentricity are rounding errors: what they leave is accepted where
 /// it is below [`ACCEPTED`] times the force at the pin circle.
-const ROUNDING: f64 = 1e-14;
+pub(crate) const ROUNDING: f64 = 1e-14;
 /// Largest force out of balance that is accepted at last, over the force at the pin circle.
 pub(crate) const ACCEPTED: f64 = 1e-8;
+/// Newton steps after which a position is given up.
 const MOST_STEPS: u32 = 200;
 /// Points looked at along one step.
-const MOST_TRIALS: usize = 20;
+pub(crate) const MOST_TRIALS: usize = 20;
 /// Longest step of any unknown over the eccentricity.
-const LONGEST_STEP: f64 = 0.4;
+pub(crate) const LONGEST_STEP: f64 = 0.4;
 /// A step is taken in full when the slope along it has fallen to this share, on either side.
-const SLOPE_LEFT: f64 = 0.7;
+pub(crate) const SLOPE_LEFT: f64 = 0.7;
 
 /// What one disc adds to the gradient and the second derivatives.
 #[derive(Debug, Clone, Copy, Default)]
@@ -261,9 +263,9 @@ impl<'a, L: ContactLaws> Loaded<'a, L> {
         let sense = if torque < 0.0 { -1.0 } else { 1.0 };
         let share = torque.abs() / mechanism.discs as f64;
         let ring_force = 4.0 * share / (mechanism.ring_lever() * mechanism.ring_pins() as f64);
-        let ring_depth = (ring_force / mechanism.ring_stiffness).powf(0.9);
+        let ring_depth = (ring_force / mechanism.ring_stiffness).powf(APPROACH_EXPONENT);
         let pin_force = 4.0 * share / (mechanism.pin_circle_radius * mechanism.output_pins as f64);
-        let pin_depth = (pin_force / mechanism.hole_stiffness).powf(0.9)
+        let pin_depth = (pin_force / mechanism.hole_stiffness).powf(APPROACH_EXPONENT)
             + pin_force / mechanism.pin_stiffness[0];
         let mut motion = Motion::default();
         let mut furthest = 0.0_f64;

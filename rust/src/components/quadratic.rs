@@ -3,6 +3,7 @@
 
 use crate::components::contact::{LEAST_DEPTH, SecantLaws};
 use crate::components::equilibrium::{Equilibrium, Loaded, Motion};
+use crate::components::laws::APPROACH_EXPONENT;
 use crate::components::mechanism::{MAX_DISCS, Mechanism, Position};
 
 /// Largest force out of balance that counts as none, over the force at the pin circle.
@@ -64,10 +65,10 @@ impl SecantLaws {
         let mut laws = Self::default();
         for disc in 0..mechanism.discs {
             let ring = expected.ring[disc];
-            laws.ring[disc] = ring / (ring / mechanism.ring_stiffness).powf(0.9);
+            laws.ring[disc] = ring / (ring / mechanism.ring_stiffness).powf(APPROACH_EXPONENT);
             let pin = expected.pin[disc];
-            let closed =
-                pin / mechanism.pin_stiffness[disc] + (pin / mechanism.hole_stiffness).powf(0.9);
+            let closed = pin / mechanism.pin_stiffness[disc]
+                + (pin / mechanism.hole_stiffness).powf(APPROACH_EXPONENT);
             laws.pin[disc] = pin / closed;
         }
         laws

@@ -3,21 +3,14 @@
 
 use pulp::Simd;
 
+use crate::components::equilibrium::{LONGEST_STEP, MOST_TRIALS, ROUNDING, SLOPE_LEFT};
 use crate::components::mechanism::{MAX_DISCS, Mechanism};
 use crate::components::positions::contacts::{Nobody, Pins, Ring, Visit};
 use crate::components::positions::laws::Laws;
 use crate::components::positions::vector::{Mask, Vector};
 
-/// Newton steps after which a lane is given up.
+/// Newton steps after which a lane is left to be solved alone, where there are more of them.
 const MOST_STEPS: u32 = 60;
-/// Points looked at along one step.
-const MOST_TRIALS: usize = 20;
-/// Longest step of any unknown over the eccentricity.
-const LONGEST_STEP: f64 = 0.4;
-/// A step is taken in full when the slope along it has fallen to this share, on either side.
-const SLOPE_LEFT: f64 = 0.7;
-/// Steps below this share of the eccentricity are rounding errors.
-const ROUNDING: f64 = 1e-14;
 
 /// Motions of flange and discs (m), rotations times R_OP.
 #[derive(Debug, Clone, Copy)]
