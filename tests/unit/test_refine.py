@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from cyclosweep.diagnosis.identify.fitting import refine as refinement
-from cyclosweep.diagnosis.identify.fitting.first_slopes import first_slopes
 from cyclosweep.diagnosis.identify.fitting.fit import fit
-from cyclosweep.diagnosis.identify.fitting.fit_parameters import FitParameter, fit_parameters_of
+from cyclosweep.diagnosis.identify.fitting.fit_parameters import FitParameter
 from cyclosweep.diagnosis.identify.fitting.fit_state import Expansion
-from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.fitting.joint_fit import JointFit
 from cyclosweep.diagnosis.identify.fitting.refine import (
     EXPANSIONS,
@@ -21,10 +19,8 @@ from cyclosweep.diagnosis.identify.fitting.refine import (
     STEPS_A_ROUND,
     refine,
 )
-from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.identify.structures.candidate import Candidate
 from cyclosweep.diagnosis.identify.structures.search import Search
-from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.base import Parameter
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import EffectValue
@@ -142,57 +138,3 @@ def test_slopes_of_a_fit_are_measured_once_and_only_where_they_are_asked_for(
     assert found.residual @ found.residual <= found.chi2
     assert found.tangent.shape[1] == 3
     assert len(asked) == 1
-
-
-def test_slopes_that_a_fit_shares_with_the_one_before_it_are_those_that_it_would_measure() -> None:
-    search = search_of(friction(0.3), EffectValue("creep", {"time_constant_s": 20.0}, (0.05,)))
-    rubbing = Term(find("friction_hysteresis"), friction().shape, None, 0.1)
-    one = fit(search.problem, search.noise, (rubbing,), search.baseline.fit)
-    creep = Term(find("creep"), {"time_constant_s": 20.0})
-    work, values = workspace(search, (*one.terms, creep), one)
-    assert first_slopes(work, one, values) is None
-    assert one.tangent.shape[1] > len(one.beta)
-    found = first_slopes(work, one, values)
-    assert found is not None
-    shared = [work.terms[each.term].slips for each in work.fit_parameters]
-    assert list(~np.isnan(found[0])) == shared
-    at = work.residual(values)
-    for k in np.flatnonzero(shared):
-        ahead = values.copy()
-        ahead[k] += 1e-3
-        measured = (work.residual(ahead) - at) / 1e-3
-        along = found[:, k] @ measured / np.linalg.norm(measured) ** 2
-        beside = np.linalg.norm(found[:, k] - measured) / np.linalg.norm(measured)
-        assert along == pytest.approx(1.0, abs=0.2)
-        assert beside < 0.5
-
-
-def test_slopes_under_another_noise_are_measured_anew() -> None:
-    search = search_of(friction(0.3))
-    rubbing = Term(find("friction_hysteresis"), friction().shape, None, 0.1)
-    one = fit(search.problem, search.noise.with_model_error(3.0), (rubbing,), search.baseline.fit)
-    assert one.tangent.shape[1] > len(one.beta)
-    work, values = workspace(search, one.terms, one)
-    assert first_slopes(work, one, values) is None
-
-
-def workspace(
-    search: Search, terms: tuple[Term, ...], before: FittedStructure
-) -> tuple[JointFit, Floats]:
-    """A fit that goes on from another, expanded at its start."""
-    parameters = fit_parameters_of(terms, search.problem)
-    values = np.array(
-        [
-            each.to_scale(
-                terms[each.term].amplitude
-                if each.name == "amplitude"
-                else float(terms[each.term].shape[each.name])
-            )
-            for each in parameters
-        ]
-    )
-    work = JointFit(
-        search.problem, search.noise, terms, parameters, before.history, before.mean_deg
-    )
-    work.expand_at(values)
-    return work, values

@@ -101,13 +101,3 @@ def test_slopes_of_a_search_that_ran_out_of_steps_are_not_called_fresh() -> None
     """Taken for measured ones, they ended a friction at a hundred times its misfit."""
     _, _, fresh = minimise(Decay(), np.array([1.0, 1.0, 0.6, 0.0]), ANYWHERE, UNITS, 3)
     assert not fresh
-
-
-def test_only_the_slopes_that_are_unknown_are_measured() -> None:
-    first = Decay()
-    _, slopes, _ = minimise(first, TRUE + 0.05, ANYWHERE, UNITS, 0)
-    partly, known = Decay(), slopes.copy()
-    known[:, 2] = np.nan
-    _, found, _ = minimise(partly, TRUE + 0.05, ANYWHERE, UNITS, 0, known)
-    assert partly.asked == 2
-    assert found == pytest.approx(slopes, nan_ok=False)

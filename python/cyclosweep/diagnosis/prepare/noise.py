@@ -242,11 +242,6 @@ class Noise:
         rows = np.ascontiguousarray(columns)
         return _core.whiten_weighted(rows, weight, self._pair, self._new)
 
-    def whitens_like(self, other: "Noise") -> bool:
-        """Whether rows are whitened and weighed by another noise exactly as by this one."""
-        own, others = vars(replace(self, gap=other.gap)), vars(replace(other))
-        return self.gap is other.gap and own == others
-
     def with_sigma(self, sigma_deg: float) -> "Noise":
         """Return the same noise with another size."""
         return replace(self, sigma_deg=sigma_deg)

@@ -247,10 +247,10 @@ def fit(
         width = np.minimum(upper - lower, 1e6)
         values = np.clip(values, lower + 1e-6 * width, upper - 1e-6 * width)
         near = np.inf if rival is None else work.misfit_of(rival.mean_deg)
-        values = refine(work, values, (lower, upper), rounds, near, start)
+        values = refine(work, values, (lower, upper), rounds, near)
     else:
         work.expand_at(values)
-    found, _, beta = work.solution(values)
+    found, beta = work.solution(values)
     return ContactFit(
         problem=problem,
         noise=work.noise,

@@ -56,11 +56,6 @@ class Linearisation:
         self.target = target
         self._slopes: Callable[[], Floats] | None = slopes
 
-    @property
-    def measured(self) -> Floats | None:
-        """The sensitivity if it has been asked for, else None."""
-        return self.sensitivity if self._slopes is None else None
-
     @cached_property
     def sensitivity(self) -> Floats:
         """Whitened derivative by every parameter, shape (fitted, p): linear ones first."""

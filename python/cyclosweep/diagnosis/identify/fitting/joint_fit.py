@@ -341,10 +341,11 @@ class JointFit:
             first += width
         self.terms = tuple(terms)
 
-    def solution(self, values: Floats) -> tuple[tuple[Term, ...], Floats, Floats]:
-        """Terms, whitened columns and linear parameters at these nonlinear ones."""
+    def solution(self, values: Floats) -> tuple[tuple[Term, ...], Floats]:
+        """Terms and linear parameters at these nonlinear ones."""
         self.residual(values)
-        return self._last
+        terms, _, beta = self._last
+        return terms, beta
 
     def slopes(self, values: Floats) -> Floats:
         """Whitened derivative by all parameters, at these nonlinear ones: linear ones first."""

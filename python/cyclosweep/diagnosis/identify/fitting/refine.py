@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from cyclosweep.diagnosis.identify.fitting.first_slopes import first_slopes
 from cyclosweep.diagnosis.identify.fitting.fit_parameters import usual_change
-from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.fitting.joint_fit import JointFit
 from cyclosweep.diagnosis.identify.fitting.secant_fit import minimise
 from cyclosweep.simulation.effects.history import Floats
@@ -40,7 +38,6 @@ def refine(
     bounds: tuple[Floats, Floats],
     rounds: int,
     rival: float = np.inf,
-    similar: FittedStructure | None = None,
 ) -> Floats:
     """Move the nonlinear parameters of a fit by least squares until they settle.
 
@@ -59,8 +56,6 @@ def refine(
         Most iterations of a refinement.
     rival : float
         Misfit of another fit, which this one is to come near; see `HOPELESS`.
-    similar : FittedStructure, optional
-        A fit of a similar structure, whose slopes serve to begin with.
 
     Returns
     -------
@@ -70,8 +65,7 @@ def refine(
     of = work.fit_parameters
     scale = np.array([usual_change(each, value) for each, value in zip(of, start, strict=True)])
     here = best = work.expand_at(start)
-    slopes = first_slopes(work, similar, start)
-    slopes = None if slopes is None else slopes * scale
+    slopes: Floats | None = None
     fresh = False
     rises = 0
     for count in range(EXPANSIONS):

@@ -50,7 +50,7 @@ def minimise(
     most : int
         Most steps that are tried.
     slopes : ndarray, shape (n, p), optional
-        Slopes near the start, by usual changes; measured where they are not given, or no numbers.
+        Slopes near the start, by usual changes; measured where they are not given.
     fresh : bool
         Whether these slopes were measured at the start, if for a residual that differed a little.
 
@@ -67,8 +67,6 @@ def minimise(
     damping, measurable, settled = FIRST_DAMPING, not fresh, False
     if slopes is None:
         slopes, fresh = _measured(residual, values, left, bounds, scale), True
-    elif np.any(np.isnan(slopes[0])):
-        slopes = _measured(residual, values, left, bounds, scale, slopes)
     since_measured = 0 if fresh else most
     for _ in range(most):
         step, damping = _bounded_step(slopes, left, values, bounds, scale, damping)
@@ -103,7 +101,6 @@ def _measured(
     left: Floats,
     bounds: tuple[Floats, Floats],
     scale: Floats,
-    known: Floats | None = None,
 ) -> Floats:
     """Slopes of a residual by usual changes of the parameters, by differences.
 
@@ -118,16 +115,13 @@ def _measured(
     bounds : pair of ndarray, shape (p,)
     scale : ndarray, shape (p,)
         Usual change of each parameter.
-    known : ndarray, shape (n, p), optional
-        Slopes that need not be measured, and columns of what is not a number.
 
     Returns
     -------
     ndarray, shape (n, p)
     """
-    slopes = np.full((len(left), len(values)), np.nan) if known is None else known.copy()
-    for k in np.flatnonzero(np.isnan(slopes[0])):
-        size = scale[k]
+    slopes = np.empty((len(left), len(values)))
+    for k, size in enumerate(scale):
         ahead = values.copy()
         ahead[k] += DIFFERENCE * size
         if ahead[k] > bounds[1][k]:
