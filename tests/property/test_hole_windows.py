@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,18 @@ def disagreement(drive: cs.Drive) -> str | None:
 def test_windows_add_up_to_the_sectors(fixed: dict[str, float]) -> None:
     for drive in random_drives(len(str(fixed)), 40, **fixed):
         assert disagreement(drive) is None, drive
+
+
+@pytest.mark.parametrize("wrong", ["published_map", "insde", "", 3])
+def test_another_criterion_is_refused_as_active_pins_refuses_it(
+    reference: cs.Drive, wrong: Any
+) -> None:
+    lines = []
+    for ask in (reference.active_pins, reference.hole_windows):
+        with pytest.raises(cs.InputError, match=r"criterion: found .*, expected one of") as caught:
+            ask(wrong)
+        lines.append(str(caught.value))
+    assert lines[0] == lines[1]
 
 
 def test_the_holes_of_the_paper_open_where_it_says(reference: cs.Drive) -> None:

@@ -47,6 +47,7 @@ CALLS: dict[str, Callable[[Any, Path], object]] = {
     "pin_loads": lambda w, _: DRIVE.pin_loads(w),
     "nominal_line": lambda w, _: DRIVE.nominal_line(w),
     "active_pins": lambda w, _: DRIVE.active_pins(w),
+    "hole_windows": lambda w, _: DRIVE.hole_windows(w),
     "loaded(torque)": lambda w, _: PARTS.loaded(w),
     "loaded(crank)": lambda w, _: PARTS.loaded(5.0, w),
     "loaded(engine)": lambda w, _: PARTS.loaded(engine=w),

@@ -44,10 +44,11 @@ class HolePaths(PartInputs):
         ``inside``: the hole's centre lies inside the pitch circle, ``cos(theta (1 + 1/i) - phi)
         < -e / (2 R_OP)``. ``statics``: the hole pushes its pin in the sense of the torque.
         ``published-map`` is *a reconstruction that matches the published map*, not the authors'
-        rule: hole angles are reduced to (-180, 180] deg, and a hole at or below zero belongs to
-        the left half. A left hole's window is ``[phi + 90 + delta, phi + 270 - delta] i / (i + 1)``
-        with ``delta = asin(e / (2 R_OP))``; its start is clipped at 0, its end at 180 deg except
-        for the hole of that half nearest ring pin 0, which at a low ratio opens a second time
+        rule: hole angles, positive with the mesh zone's travel, are reduced to (-180, 180] deg, and
+        a hole at or below zero belongs to the left half. A left hole's window is
+        ``[phi + 90 + delta, phi + 270 - delta] i / (i + 1)`` with
+        ``delta = asin(e / (2 R_OP))``; its start is clipped at 0, its end at 180 deg except for the
+        hole of that half nearest ring pin 0, which at a low ratio opens a second time
         before the turn ends. The right half follows the same rule on its own holes and is then
         mirrored. One disc's count is multiplied by the number of discs.
 
@@ -86,6 +87,8 @@ class HolePaths(PartInputs):
 
         Raises
         ------
+        InputError
+            For another criterion.
         DesignError
             When no hole ever crosses the pins' pitch circle.
 
@@ -96,8 +99,9 @@ class HolePaths(PartInputs):
         >>> round(windows.row(0, named=True)["start_deg"], 1)  # "almost 66 deg" in print
         65.9
         """
+        chosen = self.criterion if criterion is None else criterion
         return hole_windows(
-            criterion or self.criterion,
+            one_of("criterion", chosen, CRITERIA),
             ratio=self.ratio,
             disc_count=self.disc_count,
             output_pin_count=self.output_pin_count,

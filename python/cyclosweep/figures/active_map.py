@@ -60,7 +60,7 @@ def map_figure(drive: Drive, *, criterion: Criterion | None = None) -> Figure:
     DesignError
         When no hole ever crosses the pins' circle.
     """
-    rule = criterion or drive.criterion
+    rule = drive.criterion if criterion is None else criterion
     counts = drive.active_pins(rule)
     windows = drive.hole_windows(rule)
     if rule == "published-map":

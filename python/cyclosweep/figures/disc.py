@@ -92,7 +92,7 @@ def disc_figure(
         raise InputError(f"mesh_deg: found {mesh_deg:g}, expected a finite number")
     if not 1 <= hole <= drive.output_pin_count:
         raise InputError(f"hole: found {hole}, expected 1 to {drive.output_pin_count}")
-    rule = criterion or drive.criterion
+    rule = drive.criterion if criterion is None else criterion
     if drive.ring_pin_radius_mm is not None:
         # Cut, drawn and solved by the component model half a pitch from the published pattern.
         clocking = drive.hole_clocking_deg - 180 / drive.output_pin_count
