@@ -1,9 +1,9 @@
 """Errors that end in one clear line: bad input, a design that cannot be built, a failed sweep."""
 
 import contextlib
-import difflib
 import re
 from collections.abc import Collection, Iterable, Iterator
+from difflib import SequenceMatcher, get_close_matches
 from importlib import import_module
 from pathlib import Path
 from typing import TypeVar
@@ -64,7 +64,8 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     -------
     str
         ``", did you mean NAME?"``; empty where no known name is close. Capitals, hyphens and
-        blanks do not count, and part of a name finds the shortest one that holds it.
+        blanks do not count but between names that differ in nothing else, and part of a name finds
+        the shortest one that holds it.
 
     Examples
     --------
@@ -72,15 +73,23 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     ', did you mean eccentricity_mm?'
     >>> did_you_mean("frequency", ["ratio", "natural_frequency_hz"])
     ', did you mean natural_frequency_hz?'
+    >>> did_you_mean("E halvd", ["E halved", "e halved"])
+    ', did you mean E halved?'
     >>> did_you_mean("colour", ["ratio"])
     ''
     """
-    written = {_plain(each): each for each in known}
-    wanted = _plain(str(name))
-    close = difflib.get_close_matches(wanted, written, n=1)
+    written: dict[str, list[str]] = {}
+    for each in known:
+        written.setdefault(_plain(each), []).append(each)
+    found = str(name)
+    wanted = _plain(found)
+    close = get_close_matches(wanted, written, n=1)
     if not close and len(wanted) >= _SHORTEST_PART:
         close = sorted((each for each in written if wanted in each), key=len)
-    return f", did you mean {written[close[0]]}?" if close else ""
+    if not close:
+        return ""
+    meant = max(written[close[0]], key=lambda each: SequenceMatcher(None, each, found).ratio())
+    return f", did you mean {meant}?"
 
 
 def one_of(what: str, found: Name, known: Collection[object]) -> Name:

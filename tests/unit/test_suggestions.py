@@ -30,6 +30,17 @@ def test_the_closest_name_is_suggested(found: str, meant: str) -> None:
     assert did_you_mean(found, known) == f", did you mean {meant}?"
 
 
+@pytest.mark.parametrize(
+    ("found", "meant"),
+    [("E halvd", "E halved"), ("e halvd", "e halved"), ("E-HALVED", "E halved")],
+)
+def test_capitals_tell_names_apart_that_differ_in_nothing_else(found: str, meant: str) -> None:
+    for known in (["E halved", "e halved"], ["e halved", "E halved"]):
+        assert did_you_mean(found, known) == f", did you mean {meant}?"
+    with pytest.raises(cs.InputError, match=rf"did you mean {meant}\?"):
+        cs.validate(broken=found)
+
+
 @pytest.mark.parametrize("found", ["", "xyz", "min", 7, None])
 def test_nothing_is_suggested_for_what_is_far_from_every_name(found: object) -> None:
     assert did_you_mean(found, ["eccentricity_mm", "disc_minimum_mm"]) == ""
