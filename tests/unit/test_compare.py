@@ -86,6 +86,27 @@ def test_an_efficiency_above_one_and_assumed_numbers_are_said() -> None:
     assert "none of its numbers has a mark" in remarks(alone, "note")
 
 
+def test_only_numbers_that_are_there_are_said_to_have_no_mark(tmp_path: Path) -> None:
+    reference = cs.Drive.reference_87()
+    changed = reference.replace(eccentricity_mm=0.5)
+    space = cs.Space.grid(reference, eccentricity_mm=[0.5])
+    bare = cs.Drive.from_toml(COMPONENTS).model_dump(exclude_none=True, exclude={"provenance"})
+    minimal = cs.Drive(
+        **{key: value for key, value in bare.items() if key != "bush_wall_mm"},
+        provenance={"ratio": "measured"},
+    )
+    for drive in (changed, space[0]):
+        said = remarks(cs.compare(drive).figures[0], "note")
+        assert "without a mark of their origin: eccentricity_mm" in said
+        assert said.partition("origin: ")[2].partition(";")[0] == "eccentricity_mm"
+    for drive in (reference, changed, minimal, minimal.replace(eccentricity_mm=0.5)):
+        file = tmp_path / "drive.toml"
+        drive.to_toml(file)
+        again = cs.compare(cs.Drive.from_toml(file)).figures[0]
+        assert again.remarks == cs.compare(drive).figures[0].remarks
+        assert "bush_wall_mm" not in remarks(again, "note").partition("origin: ")[2]
+
+
 def test_yielding_pins_are_said() -> None:
     weak = cs.Drive.from_toml(COMPONENTS).replace(pin_yield_strength_mpa=100.0)
     [figures] = cs.compare(weak).figures

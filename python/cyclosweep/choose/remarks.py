@@ -141,7 +141,13 @@ def _standing_in(drive: Drive) -> Iterator[str]:
 
 
 def _is_given(drive: Drive, key: str) -> bool:
-    """Whether a key has a value of its own in the drive's file, not that of a default."""
+    """Whether a key has a value of its own: one that is not what stands there without it.
+
+    By the value alone: what a drive was made from, and whether it was written and read back, does
+    not change it.
+    """
     if key == "criterion":
         return False
-    return key.startswith("shaft_") or key in drive.model_fields_set
+    if key.startswith("shaft_"):
+        return True
+    return bool(getattr(drive, key) != type(drive).model_fields[key].default)
