@@ -259,9 +259,24 @@ def test_validate_says_what_counts_and_what_deliberate_errors_break() -> None:
     assert "broken_models" not in json.loads(run("validate", "--json").stdout)
 
 
+def test_rows_that_do_not_count_do_not_decide(tmp_path: Path) -> None:
+    soft = tmp_path / "soft.toml"
+    cs.Drive.reference_87().replace(shaft_1_diameter_mm=40).to_toml(soft)
+    shown = run("validate", "--drive", str(soft))
+    assert "0 disagree unexplained" in shown.stdout
+    assert "2 rows that do not count differ from the print: another drive." in shown.stdout
+    assert shown.returncode == 0
+    report = run("validate", "--drive", str(soft), "--json")
+    assert report.returncode == 0
+    content = json.loads(report.stdout)
+    assert content["ok"] is True
+    assert sum(fact["ok"] is False and not fact["counted"] for fact in content["facts"]) == 2
+
+
 def test_a_failed_fact_without_a_number_is_still_json(tmp_path: Path) -> None:
     broken = tmp_path / "three-pins.toml"
-    cs.Drive.reference_87().replace(output_pin_count=3).to_toml(broken)
+    drive = cs.Drive.reference_87().replace(output_pin_count=3, input_power_kw=1.2)
+    drive.to_toml(broken)
     result = run("validate", "--drive", str(broken), "--json")
     assert result.returncode == 1
 

@@ -25,8 +25,8 @@ def validate(
     """Compare the library with every published fact of the 87:1 case and with other cases.
 
     What the paper prints of its own drive is asked only of a drive of 87:1.
-    Exit status 1 when a row disagrees and nothing in it explains why, or when a deliberate error
-    breaks no row; what the model cannot compute does not count.
+    Exit status 1 when a row that counts disagrees and nothing in it explains why, or when a
+    deliberate error breaks no row.
     """
     from cyclosweep.design.drive import Drive
     from cyclosweep.reference.validation import report_json, report_tables, summary

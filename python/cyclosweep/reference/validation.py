@@ -40,7 +40,7 @@ def report_json(drive: Drive | None = None, *, broken_models: bool = False) -> d
     report: dict[str, Any] = {
         "schema": "cyclosweep.validation/1",
         "drive": drive.name,
-        "ok": not any(found["fail"] for found in counts.values()),
+        "ok": not any(counts[kind]["fail"] for kind in COUNTED),
         "counts": counts,
         "counted": list(COUNTED),
         "facts": table.to_dicts(),
