@@ -38,12 +38,12 @@ def facts(model: Model, drive: Drive) -> Iterator[Fact]:
     Fact
     """
     notes: dict[Criterion, str] = {
-        "published-map": "feeds the published study; a reconstruction that matches the map",
+        "published-map": "a reconstruction that matches the map",
         "inside": "the hole's centre inside the pitch circle, no clipping",
         "statics": "one spring per contact, loads by sin(psi): twist from C_OS^t + C_OP/(N_OP p)",
     }
     for criterion in CRITERIA:
-        note = notes[criterion]
+        note = ("feeds the twist; " if criterion == drive.criterion else "") + notes[criterion]
         mark: Mark = "reconstruction" if criterion == "published-map" else "derived"
         active = model.pin_map(drive, criterion)
         for name, value in (
@@ -85,7 +85,7 @@ def mciver(model: Model) -> Iterator[Fact]:
             "derived",
             "evidence",
             0.0,
-            "cited in section 5 of the paper; on the 87:1 drive with another number of pins",
+            "cited in section 5 of the paper; on the built-in drive with another number of pins",
             _MCIVER[criterion],
             0.0 if _MCIVER[criterion] else None,
         )

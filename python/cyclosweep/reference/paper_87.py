@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import cyclosweep._core as _core
 from cyclosweep.design.drive import CRITERIA, Drive
@@ -33,6 +33,19 @@ PRINTED_SECTORS = (None, None, 8, None, None, None, None, None)
 
 _CHOSEN = "the dimensions were chosen so that it fits: no evidence"
 _PUBLISHED_EFFICIENCY = 0.84375
+_PUBLISHED_POWER_KW, _PUBLISHED_SPEED_RPM = 1.14, 1500
+_PUBLISHED_TORQUE_NM = _PUBLISHED_POWER_KW * 1e3 / (_PUBLISHED_SPEED_RPM * math.pi / 30)
+"""Nominal torque of the paper's drive at its input, from its printed power and speed [N m]."""
+_OF_THE_MAP = (
+    "ratio", "disc_count", "output_pin_count", "eccentricity_mm", "output_pin_circle_radius_mm",
+    "hole_clocking_deg",
+)  # fmt: skip
+"""Inputs on which the map of active pins rests."""
+_NOT_OF_THE_LINE = {
+    "ring_pin_circle_radius_mm", "bush_wall_mm", "disc_outer_radius_mm", "disc_bore_radius_mm",
+    "output_torque_nm", "input_inertia_kg_m2",
+}  # fmt: skip
+"""Inputs on which the twist does not rest."""
 
 
 def is_reference_case(drive: Drive) -> bool:
@@ -50,6 +63,12 @@ def is_reference_case(drive: Drive) -> bool:
     bool
     """
     return drive.ratio == RATIO
+
+
+def _is_as_built_in(drive: Drive, names: Iterable[str]) -> bool:
+    """Whether inputs of a drive have the values of the built-in one, for which a note is true."""
+    own, built_in = drive.values(), Drive.reference_87().values()
+    return all(repr(own.get(name)) == repr(built_in.get(name)) for name in names)
 
 
 def facts(model: Model, drive: Drive) -> Iterator[Fact]:
@@ -100,8 +119,8 @@ def _ratings(model: Model, drive: Drive) -> Iterator[Fact]:
         ("discs", 2, drive.disc_count, "1", 0.0),
         ("output pins N_OP", 8, drive.output_pin_count, "1", 0.0),
         ("rated output torque", 585, drive.output_torque_nm, "N m", 0.0),
-        ("input power", 1.14, drive.input_power_kw, "kW", 0.0),
-        ("input speed", 1500, drive.input_speed_rpm, "rpm", 0.0),
+        ("input power", _PUBLISHED_POWER_KW, drive.input_power_kw, "kW", 0.0),
+        ("input speed", _PUBLISHED_SPEED_RPM, drive.input_speed_rpm, "rpm", 0.0),
         ("free play at the input", 56, 2 * drive.free_play_deg, "deg", 0.5),
     ):
         yield _fact(fact, published, typed, unit, "published", "input", tolerance, "typed in")
@@ -209,12 +228,17 @@ def _ideal_map() -> Iterator[Fact]:
 
 def _own_map(model: Model, drive: Drive) -> Iterator[Fact]:
     own = model.pin_map(drive, "published-map")
-    note = "this drive's own e, spin and clocking lower the mean by about 1 %; feeds the twist"
+    as_built_in = _is_as_built_in(drive, _OF_THE_MAP)
+    note = "by this drive's own e, spin, clocking and numbers of discs and pins"
+    if as_built_in:
+        note = "this drive's own e, spin and clocking lower the mean by about 1 %"
+    if drive.criterion == "published-map":
+        note += "; feeds the twist"
     eta = own.mean * 2 / (drive.disc_count * drive.output_pin_count)
     yield _map_row("mean active pins, this drive", 6.75, own.mean, 0.1, note)
     yield _map_row("eta_OP, this drive", _PUBLISHED_EFFICIENCY, eta, 0.0125, note)
     yield _map_row("fewest active pins", 4, own.minimum, 0, note)
-    note = "'almost 66 deg' in print; the clocking was chosen for it"
+    note = "'almost 66 deg' in print" + ("; the clocking was chosen for it" if as_built_in else "")
     yield _map_row(
         "start of hole H1's active zone", 66, own.first_hole_opens_deg, 0.5, note, unit="deg"
     )  # fmt: skip
@@ -247,6 +271,8 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
     )
     results = model.evaluate(drive, (1.0, LINE_LOAD_TN))
     low, high = LINE_DEG
+    of_the_line = {*drive.values(), *Drive.reference_87().values()} - _NOT_OF_THE_LINE
+    note = _CHOSEN if _is_as_built_in(drive, of_the_line) else "by this drive's own dimensions"
     yield _fact(
         "twist at 2.5 T_N, 75 to 80 deg",
         0.5 * (low + high),
@@ -255,7 +281,7 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
         "assumed",
         "input",
         0.5 * (high - low),
-        _CHOSEN,
+        note,
     )
     at_input = math.radians(results["twist_1tn_deg"] - drive.free_play_deg)
     yield _fact(
@@ -266,9 +292,9 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
         "assumed",
         "input",
         0.0024,
-        _CHOSEN,
+        note,
     )
-    torque = LINE_LOAD_TN * drive.nominal_torque_nm
+    torque = LINE_LOAD_TN * _PUBLISHED_TORQUE_NM
     slopes = [math.radians(at - LINE_START_DEG) / torque for at in LINE_DEG]
     named = (("from", 0.0452, 0.0536, 7.1e-6), ("to", 0.0500, 0.0593, 7.8e-6))
     for (word, at_input, without_eta, at_output), slope in zip(named, slopes, strict=True):
@@ -277,7 +303,7 @@ def _line(model: Model, drive: Drive) -> Iterator[Fact]:
         for fact, published, computed, tolerance in (
             ("input compliance of the published line", at_input, slope, 6e-5),
             ("C*_OS of the published line, eta 0.84375", without_eta, reflected, 6e-5),
-            ("C_OS of the published line, eta 0.84375", at_output, reflected / 87**2, 6e-8),
+            ("C_OS of the published line, eta 0.84375", at_output, reflected / RATIO**2, 6e-8),
         ):
             unit = "rad/(N m)"
             name = f"{fact}, {word}"
@@ -303,7 +329,7 @@ def _beyond_the_model() -> Iterator[Fact]:
         "theory against experiment at 4 T_N, within",
         8.5,
         "%",
-        "the measured points are printed as a graph only, and this drive's line was chosen",
+        "the measured points are printed as a graph only, and the built-in drive's line was chosen",
     )
     yield silent(
         "FE model of one disc against experiment, within", 15, "%", "no finite elements here"
@@ -312,5 +338,5 @@ def _beyond_the_model() -> Iterator[Fact]:
         "eccentricity, pin circle, pins, bushes, shaft steps, keyway, ring pins",
         None,
         "mm",
-        "not published: assumed, see the drive's provenance",
+        "not published: assumed for the built-in drive, see its provenance",
     )
