@@ -27,8 +27,9 @@ _VALIDATION_HEAD = """\
 Written by `make docs` from what `cyclosweep validate` computes. The same from Python:
 `cs.validate()`, and `cs.validate(broken="E halved")` for the model with that error in it.
 
-A row of the validation counts if its two numbers could have come out different. What a row is
-worth:
+A row of the validation counts if its two numbers could have come out different. Evidence is what
+a named publication prints, and a reader can look it up. Numbers of prototypes and programs, and of
+sources whose name was not kept, are counted apart as independent solutions. What a row is worth:
 
 """
 _LINE = """\
@@ -41,8 +42,8 @@ is therefore a choice and no evidence. It follows that the package can say nothi
 within which the paper's theory meets its measurement at 4 T_N (Fig. 14): with dimensions that are
 free, the line could be made to meet any measurement, and the measured points are printed as a
 graph only. For the same reason no published number tests the compliance of this drive's shaft and
-pins: what catches a wrong Young's modulus below are identities of the formulas and other people's
-solutions, not a measurement.
+pins: what catches a wrong Young's modulus below are identities of the formulas, contact stresses
+that others print and independent solutions, not a measurement.
 
 """
 _BROKEN = """\
@@ -114,11 +115,11 @@ def _number(value: float | None) -> str:
 
 
 def _remark(note: str, explanation: str) -> str:
-    return f"{note}. Why not: {explanation}" if explanation else note
+    return ". ".join(part for part in (note, explanation and f"Why not: {explanation}") if part)
 
 
 def _counted_rows(table: pl.DataFrame) -> str:
-    head = ("row", "source", "computed", "unit", "agrees", "remark")
+    head = ("row", "expected", "computed", "unit", "agrees", "remark", "where the number is from")
     parts = []
     for kind in COUNTED:
         rows = (
@@ -129,6 +130,7 @@ def _counted_rows(table: pl.DataFrame) -> str:
                 row["unit"],
                 "yes" if row["ok"] else "no",
                 _remark(row["note"], row["explanation"]),
+                row["source"] or "worked out by hand",
             )
             for row in table.filter(kind=kind).iter_rows(named=True)
         )
@@ -137,7 +139,7 @@ def _counted_rows(table: pl.DataFrame) -> str:
 
 
 def _uncounted_rows(table: pl.DataFrame) -> str:
-    head = ("row", "source", "computed", "unit", "kind", "remark")
+    head = ("row", "expected", "computed", "unit", "kind", "remark")
     rows = table.filter(~pl.col("counted")).iter_rows(named=True)
     return _grid(
         head,
@@ -157,11 +159,11 @@ def _uncounted_rows(table: pl.DataFrame) -> str:
 
 def _broken_tables() -> str:
     rows = broken_rows()
-    head = ("error", "what is wrong", "evidence", "identity")
+    head = ("error", "what is wrong", *COUNTED)
     table = _grid(
         head,
         (
-            (row["model"], row["error"], str(row["evidence"]), str(row["identity"]))
+            (row["model"], row["error"], *(str(row[kind]) for kind in COUNTED))
             for row in broken_table(rows).iter_rows(named=True)
         ),
     )

@@ -15,7 +15,8 @@ from cyclosweep.design.drive import Criterion
 from cyclosweep.reference.broken_models import BROKEN_MODELS, broken_model
 from cyclosweep.reference.facts import COUNTED, Fact
 from cyclosweep.reference.rows import broken_rows, broken_table, tally
-from cyclosweep.reference.validation import untouched
+from cyclosweep.reference.sources import KUMAR, PUBLISHED
+from cyclosweep.reference.validation import summary, untouched
 
 ROOT = Path(__file__).parents[2]
 ERRORS = [model.name for model in BROKEN_MODELS]
@@ -63,10 +64,59 @@ def rows() -> pl.DataFrame:
     return broken_rows()
 
 
-def test_only_evidence_and_identities_count(intact: pl.DataFrame) -> None:
+def test_only_evidence_independent_solutions_and_identities_count(intact: pl.DataFrame) -> None:
     assert set(intact.filter("counted")["kind"]) == set(COUNTED)
     assert set(intact.filter(~pl.col("counted"))["kind"]).isdisjoint(COUNTED)
     assert intact.filter("counted")["ok"].null_count() == 0
+
+
+def test_evidence_names_a_publication_and_nothing_else_passes_for_one(
+    intact: pl.DataFrame,
+) -> None:
+    evidence = intact.filter(kind="evidence")
+    assert set(evidence["source"]) == set(PUBLISHED)
+    others = intact.filter(kind="independent solution")
+    assert set(others["source"]).isdisjoint({*PUBLISHED, ""})
+    plain = "published nowhere|not named|not noted as printed"
+    assert others["source"].str.contains(plain).all()
+    assert (evidence.height, others.height) == (55, 50)
+
+
+@pytest.mark.parametrize(
+    ("named", "rows"),
+    [("87:1, .* N m: ", 11), ("^Eq. .6.: extra length|^Eq. .5.: 50 mm", 5), ("^sine limit", 4),
+     ("^unit case", 8), ("^29:1.*(roller|across)", 4), ("^cycloidgen", 3), ("^oil engine", 2),
+     ("radius of curvature", 2), ("^five inertias", 11)],
+)  # fmt: skip
+def test_numbers_that_cannot_be_looked_up_are_no_evidence(
+    intact: pl.DataFrame, named: str, rows: int
+) -> None:
+    found = intact.filter(pl.col("fact").str.contains(named) & pl.col("counted"))
+    found = found.filter(~pl.col("fact").str.contains(": stiffness / 4 k R"))
+    assert found["kind"].to_list() == ["independent solution"] * rows
+
+
+def test_evidence_and_independent_solutions_need_a_source() -> None:
+    for kind in ("evidence", "independent solution"):
+        with pytest.raises(ValueError, match=f"{kind} needs a source"):
+            Fact("g", "f", 1.0, 1.0, "1", "derived", kind, 0.1)
+
+
+def test_the_readme_says_what_the_validation_counts(intact: pl.DataFrame) -> None:
+    readme = (ROOT / "README.md").read_text("utf-8")
+    counts = tally(intact)
+    for kind, line in (
+        ("evidence", "numbers that named publications print"),
+        ("independent solution", "independent solutions, in no named publication"),
+    ):
+        found = counts[kind]
+        said = (
+            f"| {line} | {found['agree']} of {sum(found.values())} agree; "
+            f"{found['explained']} disagree and are explained |"
+        )
+        assert said in readme
+        both = f"{found['agree']} agree, {found['explained']} disagree and are explained"
+        assert both in summary(counts)
 
 
 def test_what_is_typed_in_or_reconstructed_does_not_count(intact: pl.DataFrame) -> None:
@@ -174,12 +224,12 @@ def test_an_explanation_does_not_excuse_another_number(
     assert row["computed"] == pytest.approx(computed, rel=1e-4)
     assert row["explanation"] == ""
     assert intact.filter(pl.col("fact") == fact)["explanation"].item() != ""
-    assert tally(broken)["evidence"]["fail"] > 0
+    assert tally(broken)[row["kind"]]["fail"] > 0
 
 
 def test_the_table_of_errors_counts_what_the_rows_say(rows: pl.DataFrame) -> None:
     for row in broken_table(rows).iter_rows(named=True):
-        assert row["evidence"] + row["identity"] == rows[row["model"]].sum()
+        assert sum(row[kind] for kind in COUNTED) == rows[row["model"]].sum()
 
 
 def test_a_counted_row_needs_a_number_and_a_tolerance() -> None:
@@ -192,7 +242,7 @@ def test_a_counted_row_needs_a_number_and_a_tolerance() -> None:
 def test_an_explanation_needs_the_number_that_it_explains() -> None:
     with pytest.raises(ValueError, match="needs the number"):
         Fact("g", "f", 1.0, 2.0, "1", "derived", "evidence", 0.1, "", "why")
-    fact = Fact("g", "f", 1.0, 2.0, "1", "derived", "evidence", 0.1, "", "why", 2.0)
+    fact = Fact("g", "f", 1.0, 2.0, "1", "derived", "evidence", 0.1, "", "why", 2.0, KUMAR)
     assert fact.is_explained
     assert not replace(fact, computed=3.0).is_explained
     assert not replace(fact, computed=1.0).is_explained

@@ -10,6 +10,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError
 from cyclosweep.reference.facts import Fact
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import KROL, KROL_FORMULA, RATIO_29, UNIT_CASE
 
 __all__ = ["facts"]
 
@@ -128,7 +129,8 @@ def facts(model: Model) -> Iterator[Fact]:
     Yields
     ------
     Fact
-        Rows of kind ``identity`` for formulas worked out by hand, ``evidence`` for published cases.
+        Rows of kind ``identity`` for formulas worked out by hand, ``evidence`` for published cases
+        and ``independent solution`` for others.
     """
     yield from _hertz(model)
     yield from _approaches(model)
@@ -195,14 +197,14 @@ def _radii(model: Model, lobes: int, ring_radius: float, pin: float, e: float) -
 def _profiles(model: Model) -> Iterator[Fact]:
     yield Fact(
         GROUP, "unit case, 18 ring pins: smallest convex radius of the profile", 6.678,
-        _radii(model, 17, 42.5, 2.5, 1.3)[2], "mm", "published", "evidence", 5e-4,
-        "code-to-code, reproduced independently",
+        _radii(model, 17, 42.5, 2.5, 1.3)[2], "mm", "published", "independent solution", 5e-4,
+        "code-to-code", source=UNIT_CASE,
     )  # fmt: skip
     krol = _radii(model, _KROL_LOBES, 64.0, 3.5, 2.8)
     for what, radius, computed in (("top", 11.6607, krol[0]), ("pit", -4.0647, krol[1])):
         yield Fact(
             GROUP, f"Krol et al. 2019, design 1: radius of curvature at the {what}", radius,
-            computed, "mm", "derived", "evidence", 6e-5, "doi 10.1007/978-3-030-20131-9_103",
+            computed, "mm", "derived", "independent solution", 6e-5, source=KROL_FORMULA,
         )  # fmt: skip
 
 
@@ -213,9 +215,10 @@ def _shared(model: Model) -> Iterator[Fact]:
     for changes, case, column, what, printed, unit, explained in _SHARED:
         yield Fact(
             GROUP, f"{case}: {what}", printed, _solved(model, base.replace(**changes), column),
-            unit, "published", "evidence", 1e-3 * printed,
+            unit, "published", "independent solution", 1e-3 * printed,
             "worst position over the turn; rigid bearings and pins",
             _SHARING if explained is not None else "", explained,
+            UNIT_CASE if changes is _UNIT_CASE else RATIO_29,
         )  # fmt: skip
 
 
@@ -240,5 +243,5 @@ def _krol(model: Model) -> Iterator[Fact]:
             yield Fact(
                 GROUP, f"Krol et al. 2019, design {design}: stress at the {place}", printed, stress,
                 "MPa", "published", "evidence", _KROL_TOLERANCE_MPA,
-                "force 4 Mh zs / (e zs zk) of theirs; printed to 1 MPa",
+                "force 4 Mh zs / (e zs zk) of theirs; printed to 1 MPa", source=KROL,
             )  # fmt: skip

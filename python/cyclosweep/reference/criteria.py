@@ -9,6 +9,7 @@ import polars as pl
 from cyclosweep.design.drive import CRITERIA, Criterion, Drive
 from cyclosweep.reference.facts import Fact, Mark
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import MCIVER
 
 __all__ = ["facts", "mciver", "pulsation"]
 
@@ -85,9 +86,10 @@ def mciver(model: Model) -> Iterator[Fact]:
             "derived",
             "evidence",
             0.0,
-            "cited in section 5 of the paper; on the built-in drive with another number of pins",
+            "on the built-in drive with another number of pins",
             _MCIVER[criterion],
             0.0 if _MCIVER[criterion] else None,
+            MCIVER,
         )
 
 

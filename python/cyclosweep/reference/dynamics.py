@@ -14,12 +14,13 @@ from cyclosweep.dynamics.transient import Transient
 from cyclosweep.errors import InputError
 from cyclosweep.reference.facts import Fact, Kind, Mark
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import TEXTBOOK, THOMSON, TRAIN
 
 __all__ = ["facts"]
 
 GROUP = "torsional dynamics"
 
-_THOMSON = "Thomson, Theory of Vibration, Table 12.4-1: J 5, 11, 22 kg m^2; 1e5, 2e5 N m/rad"
+_THREE = "J 5, 11, 22 kg m^2; 1e5, 2e5 N m/rad"
 _HOLZER = (
     (20.0, (0.980, 5e-4), (0.9484, 5e-5), 14.66e3),
     (40.0, (0.920, 5e-4), (0.799, 5e-4), 52.32e3),
@@ -56,7 +57,8 @@ def facts(model: Model) -> Iterator[Fact]:
     Yields
     ------
     Fact
-        Rows of kind ``evidence`` for printed numbers, ``identity`` for closed forms.
+        Rows of kind ``evidence`` for printed numbers, ``identity`` for closed forms and
+        ``independent solution`` for others.
     """
     yield from _textbooks(model)
     yield from _play(model)
@@ -73,8 +75,9 @@ def _row(
     note: str,
     mark: Mark = "identity",
     kind: Kind = "identity",
+    source: str = "",
 ) -> Fact:
-    return Fact(GROUP, fact, expected, computed, unit, mark, kind, tolerance, note)
+    return Fact(GROUP, fact, expected, computed, unit, mark, kind, tolerance, note, source=source)
 
 
 def _train(
@@ -93,18 +96,19 @@ def _textbooks(model: Model) -> Iterator[Fact]:
         found = math.tau * float(thomson.modes().frequencies_hz[mode])
         yield _row(
             f"three inertias: angular frequency of mode {mode + 1}", root, found, "rad/s", 1e-5,
-            _THOMSON, "published", "evidence",
+            f"{_THREE}; closed form of the characteristic equation",
         )  # fmt: skip
     for omega, second, third, torque in _HOLZER:
         table = holzer_table(thomson, omega)
         for place, (angle, rounding) in ((1, second), (2, third)):
             yield _row(
                 f"Holzer's table at {omega:g} rad/s: angle {place + 1}", angle,
-                table["angle_rad"][place], "rad", rounding, _THOMSON, "published", "evidence",
+                table["angle_rad"][place], "rad", rounding, _THREE, "published", "evidence",
+                THOMSON,
             )  # fmt: skip
         yield _row(
             f"Holzer's table at {omega:g} rad/s: torque 3", torque, table["torque_nm"][2], "N m",
-            5.0, _THOMSON, "published", "evidence",
+            5.0, _THREE, "published", "evidence", THOMSON,
         )  # fmt: skip
     shaft = math.pi * 0.07**4 / 32 * 84e9
     engine = _train(model, (0.15, 0.3, 0.09), (shaft / 1.5, shaft / 1.0))
@@ -112,8 +116,8 @@ def _textbooks(model: Model) -> Iterator[Fact]:
         yield _row(
             f"oil engine and pump: natural frequency {mode}", printed_hz,
             float(engine.modes().frequencies_hz[mode]), "Hz", 0.5,
-            "J .15 .3 .09 kg m^2, shaft of 70 mm, 1.5 and 1.0 m, G 84 GPa; printed to 1 Hz",
-            "published", "evidence",
+            "J .15 .3 .09 kg m^2, shaft of 70 mm, 1.5 and 1.0 m, G 84 GPa; to 1 Hz",
+            "published", "independent solution", TEXTBOOK,
         )  # fmt: skip
     two = _train(model, (0.0035, 0.0026), (21.0,)).modes().frequencies_hz[1]
     yield _row(
@@ -168,23 +172,30 @@ def _largest(run: Transient) -> float:
 
 def _five_inertias(model: Model) -> Iterator[Fact]:
     train = _train(model, *_FIVE)
-    note = "87:1 with play of 28 deg, assumed inertias; independent integration"
+
+    def row(
+        fact: str, expected: float, computed: float, unit: str, tolerance: float, note: str = ""
+    ) -> Fact:
+        return _row(
+            f"five inertias{fact}", expected, computed, unit, tolerance,
+            f"87:1 with play of 28 deg, assumed inertias{note}", "derived", "independent solution",
+            TRAIN,
+        )  # fmt: skip
+
     for mode, hertz in enumerate(_FIVE_HZ, 1):
         found = float(train.modes().frequencies_hz[mode])
-        yield _row(f"five inertias: natural frequency {mode}", hertz, found, "Hz", 1e-6, note)
+        yield row(f": natural frequency {mode}", hertz, found, "Hz", 1e-6)
     ends = {0: _TORQUE, 4: -_TORQUE}
     run = train.transient({0: -_TORQUE, 4: _TORQUE}, 0.1, 2, preload_nm=ends)
-    yield _row(
-        "five inertias, both ends reversed: events in 0.1 s", 9, len(run.events), "1", 0, note
-    )
+    yield row(", both ends reversed: events in 0.1 s", 9, len(run.events), "1", 0)
     peak = abs(run.peak_torques_nm[train.spring_names[1]])
-    yield _row(
-        "five inertias, both ends reversed: largest torque of the spring with play", 30.4575, peak,
-        "N m", 1e-3, f"{note}; theirs is the largest of samples",
+    yield row(
+        ", both ends reversed: largest torque of the spring with play", 30.4575, peak, "N m", 1e-3,
+        "; theirs is the largest of samples",
     )  # fmt: skip
     for name, angle in zip(train.names, _FIVE_ENDS, strict=True):
         found = run.table[f"angle_{name}_rad"][-1]
-        yield _row(f"five inertias: angle of {name} after 0.1 s", angle, found, "rad", 1e-9, note)
+        yield row(f": angle of {name} after 0.1 s", angle, found, "rad", 1e-9)
 
 
 def _the_87_1_drive(model: Model) -> Iterator[Fact]:

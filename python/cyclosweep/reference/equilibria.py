@@ -13,6 +13,7 @@ from cyclosweep.design.loaded import LoadedState
 from cyclosweep.errors import InputError
 from cyclosweep.reference.facts import Fact, Kind, Mark
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import CYCLOIDGEN, KROL, PROTOTYPE, RATIO_29, SINE_LIMIT, WANG
 
 __all__ = ["facts"]
 
@@ -122,7 +123,7 @@ def facts(model: Model) -> Iterator[Fact]:
     Yields
     ------
     Fact
-        Rows of kind ``evidence`` and ``identity``.
+        Rows of kind ``independent solution``, ``evidence`` and ``identity``.
     """
     base = Drive.reference_87().replace(**_RIGID)
     yield from _solved(model, base.replace(**_SOLVED))
@@ -138,10 +139,12 @@ def facts(model: Model) -> Iterator[Fact]:
 def _row(
     fact: str, expected: float, computed: float, unit: str, tolerance: float, kind: Kind, note: str,
     mark: Mark = "derived", explanation: str = "", explained: float | None = None,
+    source: str = "",
 ) -> Fact:  # fmt: skip
     return Fact(
-        GROUP, fact, expected, computed, unit, mark, kind, tolerance, note, explanation, explained
-    )
+        GROUP, fact, expected, computed, unit, mark, kind, tolerance, note, explanation, explained,
+        source,
+    )  # fmt: skip
 
 
 def _loaded(model: Model, drive: Drive, torque: float, crank: float) -> LoadedState | None:
@@ -155,11 +158,13 @@ def _loaded(model: Model, drive: Drive, torque: float, crank: float) -> LoadedSt
 
 
 def _solved(model: Model, drive: Drive) -> Iterator[Fact]:
-    note = "a prototype of its own, confirmed by SciPy on a residual in the housing's frame"
     for case, gaps, torque, twist, pin, ring in _CASES:
         state = _loaded(model, drive.replace(**gaps), torque, 0.3)
         found = state.twist_arcmin if state else math.nan
-        yield _row(f"87:1, {case}: twist", twist, found, "arcmin", 6e-6, "evidence", note)
+        yield _row(
+            f"87:1, {case}: twist", twist, found, "arcmin", 6e-6, "independent solution", "",
+            source=PROTOTYPE,
+        )  # fmt: skip
         if pin is None or ring is None:
             continue
         forces = [math.nan, math.nan]
@@ -168,7 +173,7 @@ def _solved(model: Model, drive: Drive) -> Iterator[Fact]:
         for what, expected, force in zip(("output", "ring"), (pin, ring), forces, strict=True):
             yield _row(
                 f"87:1, {case}: largest {what} force", expected, force, "N", 2e-6 * expected,
-                "evidence", note,
+                "independent solution", "", source=PROTOTYPE,
             )  # fmt: skip
 
 
@@ -201,9 +206,15 @@ def _limits(model: Model, drive: Drive) -> Iterator[Fact]:
         largest = float(state.output_pin_forces_n.max()) if state else math.nan
         twist = state.twist_arcmin if state else math.nan
         case = f"sine limit, straight pins, e = {0.9 * size:g} mm"
-        yield _row(f"{case}: largest force", force, largest, "N", 0.006, "evidence", note)
+        yield _row(
+            f"{case}: largest force", force, largest, "N", 0.006, "independent solution", note,
+            source=SINE_LIMIT,
+        )  # fmt: skip
         moved = twist * _ARCMIN * drive.output_pin_circle_radius_mm
-        yield _row(f"{case}: R phi", shift, moved, "mm", 6e-7, "evidence", note)
+        yield _row(
+            f"{case}: R phi", shift, moved, "mm", 6e-7, "independent solution", note,
+            source=SINE_LIMIT,
+        )  # fmt: skip
         if size > 1:
             slope = state.tangent_stiffness_nm_per_arcmin if state else math.nan
             yield _row(
@@ -287,7 +298,7 @@ def _bearing(model: Model, base: Drive) -> Iterator[Fact]:
     found = abs(float(state.disc_translation_mm[0, 1])) * 1e9 if state else math.nan
     yield _row(
         "29:1: bearing force across the eccentricity, at 0 deg", 1599.97, found, "N", 0.1,
-        "evidence", "of 1599.97 / 1150.51 / 1970.68 N printed", "published",
+        "independent solution", "of 1599.97 / 1150.51 / 1970.68 N", "published", source=RATIO_29,
     )  # fmt: skip
 
 
@@ -302,6 +313,7 @@ def _krol_inner(model: Model) -> Iterator[Fact]:
         yield _row(
             f"Krol et al. 2019, design {design}: stress at the inner pins", printed, stress, "MPa",
             1.0, "evidence", "force 2 Mh zs cos(2 pi / zi) / (pi Rw) of theirs", "published",
+            source=KROL,
         )  # fmt: skip
 
 
@@ -324,11 +336,12 @@ def _wang(model: Model, base: Drive) -> Iterator[Fact]:
             volume = math.nan
         yield _row(
             f"Wang et al. 2016, {case}: volume of a disc", printed, volume, "mm^3",
-            5e-4 * printed, "evidence", "Mech. Mach. Theory 102 (2016) 135-148", "published",
+            5e-4 * printed, "evidence", "", "published",
             "4.6 % more than theirs, whose last term 2 a zc B is no area of lobes: between the "
             "root circle and the profile lie 505 mm^2, they add 120; ours is the profile's own "
             "area",
             ours,
+            WANG,
         )  # fmt: skip
 
 
@@ -339,13 +352,16 @@ def _cycloidgen(model: Model, drive: Drive) -> Iterator[Fact]:
     for expected, force in zip(sorted(_CYCLOIDGEN_FORCES), found, strict=True):
         yield _row(
             f"cycloidgen 8.0.0, 11:1 at 25 N m a disc: output force of {expected:g} N", expected,
-            force, "N", 0.03 * expected, "evidence",
+            force, "N", 0.03 * expected, "independent solution",
             "code-to-code, no truth; straight lines of centres there, exact ones here",
+            source=CYCLOIDGEN,
         )  # fmt: skip
 
 
 def _printed(model: Model, drive: Drive) -> Iterator[Fact]:
-    source = "measured 310 to 337 on Volbeda's drive (2024); modulus of the prints assumed, 5 GPa"
+    source = (
+        "measured 310 to 337 by Volbeda (MSc thesis, 2024); modulus of the prints assumed, 5 GPa"
+    )
     shaft = ({"kind": "cylinder", "diameter_mm": 20.0, "length_mm": 40.0},)
     results = model.evaluate(drive.replace(shaft=shaft, output_stiffness_nm_per_arcmin=None))
     pin = results["pin_compliance_rad_per_nm"]

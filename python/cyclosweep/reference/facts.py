@@ -9,9 +9,14 @@ from typing import Literal, get_args
 __all__ = ["COUNTED", "KINDS", "Fact", "Kind", "Mark"]
 
 Mark = Literal["published", "derived", "reading", "assumed", "reconstruction", "identity", "ours"]
-Kind = Literal["evidence", "identity", "input", "reconstruction", "comparison", "not computed"]
+Kind = Literal[
+    "evidence", "independent solution", "identity", "input", "reconstruction", "comparison",
+    "not computed",
+]  # fmt: skip
 KINDS: dict[Kind, str] = {
-    "evidence": "a number of a source that the computed one was not built from",
+    "evidence": "a number of a named publication that the computed one was not built from",
+    "independent solution": "a number of a separate solution or program that no named publication "
+    "prints: it can be solved for again, not looked up",
     "identity": "what the formulas must fulfil whatever the dimensions: a check of the code",
     "input": "typed into the drive, or a dimension chosen so that the number comes out",
     "reconstruction": "a rule compared with what the rule was built from",
@@ -19,8 +24,9 @@ KINDS: dict[Kind, str] = {
     "not computed": "in a source, but outside the model",
 }
 """What a row is worth, by kind."""
-COUNTED: tuple[Kind, ...] = ("evidence", "identity")
+COUNTED: tuple[Kind, ...] = ("evidence", "independent solution", "identity")
 """The kinds that count; of the others agreement says nothing."""
+_NEED_A_SOURCE: tuple[Kind, ...] = ("evidence", "independent solution")
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,8 @@ class Fact:
     fact : str
         What it says.
     published : float or None
-        The number in the source; the middle of a band, None where there is no number.
+        The number that is compared with: of a publication, of an independent solution or of an
+        identity; the middle of a band, None where there is no number.
     computed : float or None
         What the library computes; None where the model cannot.
     unit : str
@@ -45,16 +52,19 @@ class Fact:
         matches the published map, a mathematical ``identity``, or numbers that are ``ours`` and
         printed nowhere.
     kind : str
-        What the row is worth, one of :data:`KINDS`; ``evidence`` and ``identity`` count.
+        What the row is worth, one of :data:`KINDS`; those in :data:`COUNTED` count.
     tolerance : float or None
         Largest allowed distance, in the same unit; None where the row only compares.
     note : str
-        Reason why nothing is computed, source, or what to make of it.
+        Reason why nothing is computed, or what to make of it.
     explanation : str
         Why the two numbers are known to disagree; empty where they should agree.
     explained : float or None
         The computed number that the explanation is about. Where another one is computed, the
         explanation does not hold and the row disagrees without one.
+    source : str
+        Where the number comes from: for ``evidence`` a publication in which it can be looked up,
+        for an ``independent solution`` who solved for it, or that this is not known.
     """
 
     group: str
@@ -68,6 +78,7 @@ class Fact:
     note: str = ""
     explanation: str = ""
     explained: float | None = None
+    source: str = ""
 
     def __post_init__(self) -> None:
         if self.kind not in get_args(Kind):
@@ -76,6 +87,8 @@ class Fact:
             raise ValueError(f"{self.fact}: a counted row needs a number and a tolerance")
         if bool(self.explanation) != (self.explained is not None):
             raise ValueError(f"{self.fact}: an explanation needs the number that it explains")
+        if self.kind in _NEED_A_SOURCE and not self.source:
+            raise ValueError(f"{self.fact}: {self.kind} needs a source")
 
     @property
     def counted(self) -> bool:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.reference.facts import Fact
+from cyclosweep.reference.facts import Fact, Kind
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import KROL, PUBLISHED, RATIO_29, UNIT_CASE
 
 __all__ = ["facts"]
 
@@ -63,7 +64,7 @@ def facts(model: Model) -> Iterator[Fact]:
     Yields
     ------
     Fact
-        Rows of kind ``evidence``, then what is published but not computed here.
+        Rows that count, then what is published but not computed here.
     """
     yield from _computed(model)
     yield from _not_computed()
@@ -75,54 +76,60 @@ def _computed(model: Model) -> Iterator[Fact]:
         shaft=[{"kind": "cylinder", "diameter_mm": 20.0, "length_mm": 40.0}]
     )
 
-    def evidence(
+    def row(
         fact: str,
         published: float,
         computed: float,
         unit: str,
         tolerance: float,
         note: str,
+        source: str,
         explanation: str = "",
         explained: float | None = None,
     ) -> Fact:
+        kind: Kind = "evidence" if source in PUBLISHED else "independent solution"
         return Fact(
-            GROUP, fact, published, computed, unit, "published", "evidence", tolerance, note,
-            explanation, explained,
+            GROUP, fact, published, computed, unit, "published", kind, tolerance, note,
+            explanation, explained, source,
         )  # fmt: skip
 
     force = "pin_force_max_n"
-    yield evidence(
+    yield row(
         "29:1, two discs, 4 output pins on 68 mm: force on an output roller",
         1705.9,
         model.evaluate(base.replace(**_RATIO_29))[force],
         "N",
         0.05,
         "4 (T2 / 2) / (zw Rw)",
+        RATIO_29,
     )
     unit = model.evaluate(base.replace(**_CODE_TO_CODE))
-    yield evidence(
+    yield row(
         "unit case, 18 ring pins: short-width coefficient K1",
         0.5506,
         unit["short_width_coefficient"],
         "1",
         5e-5,
-        "code-to-code, reproduced independently",
+        "e times the ring pins over their circle's radius",
+        UNIT_CASE,
     )
-    yield evidence(
+    yield row(
         "unit case, 6 output pins, 1 N m on one disc: inner force",
         20.26,
         unit[force],
         "N",
         5e-3,
         "code-to-code, rigid sharing",
+        UNIT_CASE,
     )
-    yield evidence(
+    yield row(
         "Krol et al. 2019, design 1: inner force",
         348.87,
         model.evaluate(base.replace(**_KROL_1))[force],
         "N",
         0.05,
         "2 Mh zs cos(2 pi / zi) / (pi Rw); their other designs differ by the same factor",
+        KROL,
         "11 % more than theirs, which replaces the sum over eight pins by an integral and takes a "
         "pin 45 deg from the worst place: the largest force that holds 23.25 N m with shares by "
         "sine lies between 358.0 and 387.5 N at every position, ours is the worst position",
@@ -134,6 +141,6 @@ def _not_computed() -> Iterator[Fact]:
     yield Fact(
         GROUP, "29:1: bearing force along the eccentricity", None, None, "N", "published",
         "not computed", None,
-        "1150.51 N printed at one position of a pattern whose clocking is not; by the component "
-        "model it goes from 1170 to 1880 N over a turn without clocking",
+        "1150.51 N noted at one position of a pattern whose clocking is not; by the component "
+        "model it goes from 1170 to 1880 N over a turn without clocking", source=RATIO_29,
     )  # fmt: skip

@@ -10,6 +10,7 @@ from cyclosweep.design.drive import CRITERIA, Drive
 from cyclosweep.design.published_figures import LINE_DEG, LINE_LOAD_TN, LINE_START_DEG
 from cyclosweep.reference.facts import Fact, Kind, Mark
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import KUMAR
 
 __all__ = [
     "IDEAL_SECTORS",
@@ -109,8 +110,9 @@ def _fact(
     explained: float | None = None,
 ) -> Fact:
     return Fact(
-        GROUP, fact, published, computed, unit, mark, kind, tolerance, note, explanation, explained
-    )
+        GROUP, fact, published, computed, unit, mark, kind, tolerance, note, explanation, explained,
+        KUMAR if kind == "evidence" else "",
+    )  # fmt: skip
 
 
 def _ratings(model: Model, drive: Drive) -> Iterator[Fact]:

@@ -19,7 +19,7 @@ from cyclosweep.reference import (
     solved_problems,
 )
 from cyclosweep.reference.broken_models import BROKEN_MODELS, broken_model
-from cyclosweep.reference.facts import KINDS, Fact
+from cyclosweep.reference.facts import COUNTED, KINDS, Fact
 from cyclosweep.reference.model import Model
 
 __all__ = ["broken_rows", "broken_table", "tally", "validate"]
@@ -37,11 +37,12 @@ _SCHEMA = {
     "kind": pl.String,
     "counted": pl.Boolean,
     "explanation": pl.String,
+    "source": pl.String,
 }
 
 
 def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.DataFrame:
-    """Compare the library with everything published that it can be compared with.
+    """Compare the library with what is published, solved elsewhere or must hold.
 
     Parameters
     ----------
@@ -56,9 +57,12 @@ def validate(drive: Drive | None = None, *, broken: str | None = None) -> pl.Dat
     -------
     polars.DataFrame
         ``group``, ``fact``, ``published``, ``computed``, ``unit``, ``mark``, ``tolerance``,
-        ``ok``, ``note``, ``kind``, ``counted``, ``explanation``. ``computed`` is null where the
-        model cannot compute the fact, ``ok`` where there is nothing to decide; ``note`` says why.
-        ``kind`` says what a row is worth: only ``evidence`` and ``identity`` count.
+        ``ok``, ``note``, ``kind``, ``counted``, ``explanation``, ``source``. ``published`` is the
+        number that is compared with; ``source`` says where it comes from. ``computed`` is null
+        where the model cannot compute the fact, ``ok`` where there is nothing to decide; ``note``
+        says why. ``kind`` says what a row is worth: only ``evidence``, whose number a named
+        publication prints, ``independent solution``, whose number none prints, and ``identity``
+        count.
         ``explanation`` stands where the two numbers are known to disagree, and says why; it is
         empty where they disagree by more or less than it explains.
 
@@ -178,18 +182,12 @@ def broken_table(rows: pl.DataFrame) -> pl.DataFrame:
     Returns
     -------
     polars.DataFrame
-        ``model``, ``error``, rows broken (``evidence``, ``identity``) and ``first``, one of them.
+        ``model``, ``error``, rows broken of each kind that counts and ``first``, one of them.
     """
     table = []
     for model in BROKEN_MODELS:
         hit = rows.filter(pl.col(model.name))
-        table.append(
-            {
-                "model": model.name,
-                "error": model.meaning,
-                "evidence": (hit["kind"] == "evidence").sum(),
-                "identity": (hit["kind"] == "identity").sum(),
-                "first": hit["fact"].first() or "",
-            }
-        )
+        row: dict[str, str | int] = {"model": model.name, "error": model.meaning}
+        row |= {kind: hit.filter(kind=kind).height for kind in COUNTED}
+        table.append({**row, "first": hit["fact"].first() or ""})
     return pl.DataFrame(table)

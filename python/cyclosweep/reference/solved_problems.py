@@ -9,6 +9,7 @@ from cyclosweep.design.drive import Cylinder, Drive, Keyway
 from cyclosweep.reference.facts import Fact
 from cyclosweep.reference.identities import cylinder_compliance, with_shaft
 from cyclosweep.reference.model import Model
+from cyclosweep.reference.sources import HUTCHINSON, TORSION
 
 __all__ = ["KEYWAY_RATIO", "SHOULDERS", "facts"]
 
@@ -51,7 +52,8 @@ def facts(model: Model) -> Iterator[Fact]:
     Yields
     ------
     Fact
-        Rows of kind ``evidence``; where the paper's formula is off, the row says so.
+        Rows of kind ``independent solution``, and of ``evidence`` for the pin; where the paper's
+        formula is off, the row says so.
     """
     drive = Drive.reference_87()
     yield from _shoulders(model, drive)
@@ -74,11 +76,12 @@ def _shoulders(model: Model, drive: Drive) -> Iterator[Fact]:
             extra,
             "1",
             "reading",
-            "evidence",
+            "independent solution",
             _SAMENESS * solved,
-            "the axisymmetric torsion problem, solved numerically; tolerance 5 %",
+            "the axisymmetric torsion problem; tolerance 5 %",
             explanation,
             explained,
+            TORSION,
         )
 
 
@@ -94,12 +97,13 @@ def _keyway(model: Model, drive: Drive) -> Fact:
         model.shaft_compliance(with_shaft(drive, keyway)) / cylinder,
         "1",
         "reading",
-        "evidence",
+        "independent solution",
         _SAMENESS * KEYWAY_RATIO,
-        "Saint-Venant's torsion problem, solved numerically (k = 1.19 in Eq. (5)); tolerance 5 %",
+        "Saint-Venant's torsion problem (k = 1.19 in Eq. (5)); tolerance 5 %",
         "86 % more than solved: the keyway's own part is 8.4 times too soft. k = 10 is kept as "
         "printed, a reading that is about 75 % sure; keyway_coefficient = 1.19 gives the solution",
         2.1,
+        TORSION,
     )
 
 
@@ -123,6 +127,7 @@ def _pin(model: Model, drive: Drive) -> Fact:
         "derived",
         "evidence",
         0.01,
-        "J. R. Hutchinson, J. Appl. Mech. 68 (2001) 87-92, 0.925 where Cowper has 0.886; a solid "
-        "pin 2.5 times as long as thick; tolerance 1 %",
+        "Hutchinson's 0.925 where Cowper has 0.886; a solid pin 2.5 times as long as thick; "
+        "tolerance 1 %",
+        source=HUTCHINSON,
     )

@@ -58,7 +58,7 @@ def report_json(drive: Drive | None = None, *, broken_models: bool = False) -> d
         report["broken_models"] = broken_table(rows).to_dicts()
         report["broken_by_none"] = untouched(rows)
         report["ok"] = report["ok"] and all(
-            found["evidence"] + found["identity"] > 0 for found in report["broken_models"]
+            sum(found[kind] for kind in COUNTED) > 0 for found in report["broken_models"]
         )
     return report
 
@@ -79,10 +79,10 @@ def summary(counts: dict[str, dict[str, int]], drive: Drive | None = None) -> st
     drive : Drive, optional
         The drive they are of; the built-in one by default.
     """
-    evidence, identity = counts["evidence"], counts["identity"]
+    identity = counts["identity"]
     lines = [
-        f"Counted, evidence: {evidence['agree']} agree, {evidence['explained']} disagree and are "
-        f"explained, {evidence['fail']} disagree unexplained.",
+        _outcomes("evidence, numbers of named publications", counts["evidence"]),
+        _outcomes("independent solutions, in no named publication", counts["independent solution"]),
         f"Counted, identities of the code: {identity['agree']} hold, {identity['fail']} do not.",
         "Not counted: "
         + ", ".join(
@@ -96,6 +96,13 @@ def summary(counts: dict[str, dict[str, int]], drive: Drive | None = None) -> st
     if drive is not None and not paper_87.is_reference_case(drive):
         lines.append(f"What the paper prints of its own 87:1 drive was not asked of {drive.name}.")
     return "\n".join(lines)
+
+
+def _outcomes(what: str, found: dict[str, int]) -> str:
+    return (
+        f"Counted, {what}: {found['agree']} agree, {found['explained']} disagree and are "
+        f"explained, {found['fail']} disagree unexplained."
+    )
 
 
 def report_tables(
@@ -140,7 +147,7 @@ class _Group:
                 yield _paragraph(row)
             yield ""
             return
-        shown = _table(self.title, "fact", ("published", "computed"), ("unit", "kind, basis"))
+        shown = _table(self.title, "fact", ("expected", "computed"), ("unit", "kind, basis"))
         shown.add_column("ok")
         for row in self.rows.iter_rows(named=True):
             shown.add_row(
@@ -159,7 +166,7 @@ def _paragraph(row: dict[str, Any]) -> RenderableType:
     from rich.padding import Padding
 
     outcome = _outcome(row["ok"], row["counted"], row["explanation"])
-    numbers = f"published {_number(row['published'])}, computed {_number(row['computed'])}"
+    numbers = f"expected {_number(row['published'])}, computed {_number(row['computed'])}"
     unit = "" if row["unit"] == "1" else f" {row['unit']}"
     lines = [
         f"{row['fact']}: {outcome}",
@@ -171,16 +178,16 @@ def _paragraph(row: dict[str, Any]) -> RenderableType:
 
 
 def _remarks(row: dict[str, Any]) -> list[str]:
-    return [f"[dim]{row[name]}[/]" for name in ("note", "explanation") if row[name]]
+    return [f"[dim]{row[name]}[/]" for name in ("note", "source", "explanation") if row[name]]
 
 
 def _broken_tables() -> Iterable[RenderableType]:
     rows = broken_rows()
     title = f"deliberate errors, and how many of the {rows.height} rows that count each breaks"
-    shown = _table(title, "error", ("evidence", "identity"), ("one of them",))
+    shown = _table(title, "error", COUNTED, ("one of them",))
     for row in broken_table(rows).iter_rows(named=True):
         name = f"{row['model']}\n[dim]{row['error']}[/]"
-        shown.add_row(name, str(row["evidence"]), str(row["identity"]), row["first"])
+        shown.add_row(name, *(str(row[kind]) for kind in COUNTED), row["first"])
     yield shown
     left = untouched(rows)
     yield "Broken by none of them: " + ("; ".join(left) if left else "no row") + "."
@@ -191,7 +198,7 @@ def _table(title: str, first: str, right: tuple[str, ...], left: tuple[str, ...]
     from rich.table import Table
 
     shown = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
-    shown.add_column(first, ratio=3)
+    shown.add_column(first, ratio=3, overflow="fold")
     for name in right:
         shown.add_column(name, justify="right")
     for name in left:
