@@ -44,6 +44,66 @@ fn loop_width_is_twice_friction_times_compliance() {
 }
 
 #[test]
+fn runs_are_solved_as_if_each_were_alone() {
+    // Runs of unlike lengths, so that one goes on alone when the other has ended.
+    let lengths = [7, 90, 31, 64];
+    let n: usize = lengths.iter().sum();
+    let torque: Vec<f64> = (0..u32::try_from(n).expect("few"))
+        .map(|k| 20.0 * (f64::from(k) * 0.37).sin() + 0.1 * f64::from(k))
+        .collect();
+    let offset: Vec<f64> = torque.iter().map(|t| 0.01 * (3.0 * t).cos()).collect();
+    let mut restart = vec![false; n];
+    let starts: Vec<usize> = lengths
+        .iter()
+        .scan(0, |at, len| Some(std::mem::replace(at, *at + len)))
+        .collect();
+    for &at in &starts {
+        restart[at] = true;
+    }
+    let start_angle: Vec<f64> = (0..n)
+        .map(|k| if k % 2 == 0 { 0.5 } else { -0.5 })
+        .collect();
+    let spring = Spring {
+        free_play: 0.3,
+        compliance: 0.05,
+        law_torque: &[],
+        law_twist: &[],
+    };
+    let elements = SlipElements {
+        forgetting: 0.4,
+        ..single(1.5, &[0.05])
+    };
+    let solve = |rows: std::ops::Range<usize>| {
+        let (mut angle, mut friction) = (vec![0.0; rows.len()], vec![0.0; rows.len()]);
+        let restart = &restart[rows.clone()];
+        solve_slip(
+            &torque[rows.clone()],
+            &offset[rows.clone()],
+            restart,
+            &start_angle[rows],
+            spring,
+            &elements,
+            &mut angle,
+            &mut friction,
+        )
+        .expect("numbers");
+        (angle, friction)
+    };
+    let (angle, friction) = solve(0..n);
+    for (&at, len) in starts.iter().zip(lengths) {
+        let (alone, force) = solve(at..at + len);
+        // The largest torque of all runs bounds the search for the angle: the last bits differ.
+        for (together, alone) in [
+            (&angle[at..at + len], &alone),
+            (&friction[at..at + len], &force),
+        ] {
+            let pairs = together.iter().zip(alone);
+            assert!(pairs.into_iter().all(|(x, y)| (x - y).abs() < 1e-10));
+        }
+    }
+}
+
+#[test]
 fn creep_reaches_the_load_and_a_ramp_lags_by_the_time_constant() {
     let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.1).collect();
     let mut out = vec![0.0; time.len()];
