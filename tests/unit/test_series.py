@@ -89,6 +89,63 @@ def test_recordings_of_one_name_are_both_said(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+def test_what_no_recording_can_have_is_refused_before_any_work(tmp_path: Path) -> None:
+    write_loop(tmp_path / "loop.csv", 0.5, 25.0, 1)
+    paths, out = [tmp_path / "loop.csv"], tmp_path / "out"
+    with pytest.raises(cs.InputError, match="recordings: found none, expected a folder"):
+        cs.diagnose_folder([], out)
+    with pytest.raises(cs.InputError, match=r"option: found 'sed', .* did you mean seed\?"):
+        cs.diagnose_folder(paths, out, sed=1)
+    with pytest.raises(cs.InputError, match="tolerance_deg: found -1, expected"):
+        cs.diagnose_folder(paths, out, tolerance_deg=-1)
+    with pytest.raises(cs.InputError, match="seed: found -1, expected"):
+        cs.diagnose_folder(paths, out, seed=-1)
+    with pytest.raises(cs.InputError, match=r"without: found 'crep'.*creep"):
+        cs.diagnose_folder(paths, out, without=["crep"])
+    with pytest.raises(cs.InputError, match="full: found 'no', expected bool"):
+        cs.diagnose_folder(paths, out, full="no")  # type: ignore[arg-type]
+    with pytest.raises(cs.InputError, match="drive: found 'reference-87', expected Drive"):
+        cs.diagnose_folder(paths, out, drive="reference-87")  # type: ignore[arg-type]
+    assert not out.exists()
+
+
+def test_a_file_that_is_not_there_is_said_to_be(tmp_path: Path) -> None:
+    missing = tmp_path / "gone.csv"
+    (row,) = cs.diagnose_folder([missing], tmp_path / "out").table.to_dicts()
+    assert row["reason"] == f"{missing}: no such file"
+
+
+def test_an_error_of_the_program_is_logged_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise KeyError("loop")
+
+    write_loop(tmp_path / "loop.csv", 0.5, 25.0, 1)
+    monkeypatch.setattr("cyclosweep.diagnosis.folder.diagnose", fails)
+    (row,) = cs.diagnose_folder([tmp_path / "loop.csv"], tmp_path / "out").table.to_dicts()
+    assert row["reason"] == "KeyError: 'loop'"
+    (logged,) = [each for each in caplog.records if each.exc_info]
+    assert "loop.csv" in logged.getMessage()
+    caplog.clear()
+    cs.diagnose_folder([tmp_path / "gone.csv"], tmp_path / "out")
+    assert not [each for each in caplog.records if each.exc_info]
+
+
+def test_the_seed_reaches_the_orders_by_which_trends_are_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seeds: list[int] = []
+
+    def asked(*given: object) -> list[object]:
+        seeds.append(given[2] if len(given) > 2 else 0)  # type: ignore[arg-type]
+        return []
+
+    monkeypatch.setattr("cyclosweep.diagnosis.folder.trends", asked)
+    cs.diagnose_folder([tmp_path / "gone.csv"], tmp_path / "out", seed=7)
+    assert seeds == [7]
+
+
 def test_a_bad_file_keeps_its_row_and_does_not_stop_the_rest(folder: Path) -> None:
     out = folder.parent / "out"
     said: list[str] = []

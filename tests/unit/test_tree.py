@@ -66,7 +66,7 @@ STAGES = {
     "refuse": FITTING | {"outcome", "provenance", "plausibility"},
     "sliding": {"outcome", "provenance"},
     "series": {"outcome"},
-    "folder": {"diagnose", "series"},
+    "folder": {"diagnose", "inputs", "series"},
     "calibrate": FITTING,
     "friction_in_noise": FITTING | {"calibrate"},
     "identify_effects": FITTING | {"calibrate", "friction_in_noise"},

@@ -70,13 +70,13 @@ def diagnose(
     Raises
     ------
     InputError
-        The recording has no angle, no drive is known, or ``without`` names no effect.
+        The recording has no angle, no drive is known, or an option is out of its range.
     DesignError
         The drive cannot be built.
     """
     check_measured(recording)
     drive = drive_for(recording, drive)
-    check_options(tolerance_deg, seed)
+    check_options(tolerance_deg, seed, full)
     effects = considered_effects(without)
     # The matrices are small: a second thread of the linear algebra costs several times the time,
     # and the last digits would depend on the machine.

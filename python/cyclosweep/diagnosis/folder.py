@@ -3,7 +3,7 @@
 import hashlib
 import json
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from multiprocessing import get_context
@@ -18,6 +18,7 @@ from cyclosweep.atomic import unfinished, write_text
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.diagnosis.diagnose import diagnose
+from cyclosweep.diagnosis.inputs import check_options, considered_effects
 from cyclosweep.diagnosis.series import (
     Row,
     columns_of,
@@ -27,7 +28,14 @@ from cyclosweep.diagnosis.series import (
     trends,
 )
 from cyclosweep.display import Steps, shown_steps
-from cyclosweep.errors import DesignError, InputError, instance_of, path_of
+from cyclosweep.errors import (
+    DesignError,
+    InputError,
+    instance_of,
+    one_of,
+    path_of,
+    refuse_no_file,
+)
 from cyclosweep.recording import Recording
 from cyclosweep.recording.columns import metadata_path, stem
 from cyclosweep.recording.endings import ENDINGS, is_recording_name
@@ -38,6 +46,8 @@ from cyclosweep.simulation.effects import effects
 
 _LOG = logging.getLogger(__name__)
 
+OPTIONS = ("tolerance_deg", "seed", "without")
+"""Arguments of a diagnosis that those of a folder share, beside ``full``."""
 OF_A_SERIES = ("table.csv", "table.parquet", "index.html")
 """Files that compare the recordings of a folder."""
 ROW_FILE = "row.json"
@@ -90,6 +100,39 @@ def recordings_in(folder: str | Path) -> list[Path]:
         endings = ", ".join(f".{ending}" for ending in sorted(ENDINGS))
         raise InputError(f"{folder}: found no recording, expected files that end in {endings}")
     return found
+
+
+def _listed(recordings: Sequence[Path]) -> list[Path]:
+    """Recordings that a caller lists; InputError for none, and for what is no list of paths."""
+    instance_of("recordings", recordings, Sequence)
+    if not recordings:
+        raise InputError("recordings: found none, expected a folder or at least one file")
+    return [path_of("recordings", path) for path in recordings]
+
+
+def _check_options(drive: Drive | None, full: bool, options: Mapping[str, Any]) -> None:
+    """Refuse what :func:`cyclosweep.diagnose` would refuse of every recording.
+
+    Parameters
+    ----------
+    drive : Drive or None
+        The drive of all recordings.
+    full : bool
+        Whether the diagnoses are whole.
+    options : mapping of str to object
+        Further keyword arguments of the diagnosis.
+
+    Raises
+    ------
+    InputError
+        For an argument that it does not have, or a value that it does not take.
+    """
+    for name in options:
+        one_of("option", name, OPTIONS)
+    if drive is not None:
+        instance_of("drive", drive, Drive)
+    check_options(options.get("tolerance_deg"), options.get("seed", 0), full)
+    considered_effects(options.get("without", ()))
 
 
 def refuse_same_names(paths: Sequence[Path]) -> None:
@@ -157,20 +200,21 @@ def diagnose_folder(
     Raises
     ------
     InputError
-        There is no recording, two share a name, or `workers` is below one.
+        There is no recording, two share a name, `workers` is below one, or an option is none that
+        :func:`cyclosweep.diagnose` takes. Nothing is written then.
     """
+    workers = whole_number("workers", workers, least=1)
+    _check_options(drive, full, options)
     if isinstance(recordings, (str, Path)):
         paths = recordings_in(recordings)
     else:
-        instance_of("recordings", recordings, Sequence)
-        paths = [path_of("recordings", path) for path in recordings]
+        paths = _listed(recordings)
     refuse_same_names(paths)
-    workers = whole_number("workers", workers, least=1)
     target = path_of("out", out)
     target.mkdir(parents=True, exist_ok=True)
     task = _Task(
         drive,
-        None if meta is None else Path(meta),
+        None if meta is None else path_of("meta", meta),
         target,
         resume,
         full,
@@ -186,7 +230,7 @@ def diagnose_folder(
     _LOG.info("%d recordings diagnosed, written to %s", len(rows), target)
     ordered = [rows[path] for path in paths]
     named = {name for path in paths for name in _condition_names(path, task.meta)}
-    series = _series(ordered, named)
+    series = _series(ordered, named, options.get("seed", 0))
     _write(series, target)
     return series
 
@@ -228,6 +272,7 @@ def _row(path: Path, task: _Task) -> Row:
     for module in task.plugins:  # a worker has not loaded them yet
         plugins.load(module)
     try:
+        refuse_no_file(path)
         meta = _metadata(path, task.meta)
         row |= conditions_of(stem(path), meta)
         folder = task.out / stem(path)
@@ -241,8 +286,10 @@ def _row(path: Path, task: _Task) -> Row:
         row |= row_of(found) | small_loops_of(path, meta, metadata_path(path, task.meta))
         write_text(folder / ROW_FILE, json.dumps({"key": key, "row": row}, indent=1))
     except Exception as error:  # one bad file must not stop the others
-        known = isinstance(error, (InputError, DesignError))
-        named = str(error) if known else f"{type(error).__name__}: {error}"
+        named = str(error)
+        if not isinstance(error, (InputError, DesignError)):
+            _LOG.exception("%s: no diagnosis", path)
+            named = f"{type(error).__name__}: {error}"
         row |= {"status": "failed", "verdict": None, "reason": " ".join(named.split())}
     return row
 
@@ -288,15 +335,30 @@ def _kept(folder: Path, key: str) -> Row | None:
     return dict(kept["row"]) if whole else None
 
 
-def _series(rows: list[Row], named: set[str]) -> Series:
-    """Table and trends of all rows."""
+def _series(rows: list[Row], named: set[str], seed: int) -> Series:
+    """Table and trends of all rows.
+
+    Parameters
+    ----------
+    rows : list of dict
+        One a recording.
+    named : set of str
+        Columns that are conditions.
+    seed : int
+        Seed of the random orders by which the trends are judged.
+
+    Returns
+    -------
+    Series
+    """
     names = columns_of(rows)
     conditions = tuple(name for name in names if name in named)
     varied = [name for name in conditions if len({row.get(name) for row in rows}) > 1]
     if len({row.get("mean_temperature_c") for row in rows}) > 2:
         varied.append("mean_temperature_c")
     table = pl.DataFrame({name: [row.get(name) for row in rows] for name in names}, strict=False)
-    return Series(table=table, conditions=conditions, trends=tuple(trends(rows, varied)))
+    found = tuple(trends(rows, varied, seed))
+    return Series(table=table, conditions=conditions, trends=found)
 
 
 def _write(series: Series, out: Path) -> None:

@@ -21,8 +21,8 @@ def check_measured(recording: Recording) -> None:
         )
 
 
-def check_options(tolerance_deg: float | None, seed: int) -> None:
-    """Refuse a tolerance or a seed that is none.
+def check_options(tolerance_deg: float | None, seed: int, full: bool) -> None:
+    """Refuse a tolerance or a seed that is none, and what does not say whether all is wanted.
 
     Parameters
     ----------
@@ -30,12 +30,15 @@ def check_options(tolerance_deg: float | None, seed: int) -> None:
         Size below which an effect does not matter [deg].
     seed : int
         Seed of the random draws.
+    full : bool
+        Whether held-out proof, self-check and next experiment are wanted.
 
     Raises
     ------
     InputError
-        The tolerance is not above zero, or the seed no whole number from zero.
+        The tolerance is not above zero, the seed no whole number from zero, or `full` no bool.
     """
+    instance_of("full", full, bool)
     whole_number("seed", seed)
     if tolerance_deg is not None and finite_number("tolerance_deg", tolerance_deg) <= 0:
         raise InputError(f"tolerance_deg: found {tolerance_deg:g}, expected degrees above zero")
