@@ -52,6 +52,7 @@ def modes(
         Where the springs come from: :meth:`cyclosweep.Drive.train`.
     torque_nm : float, optional
         Torque at the input around which the train oscillates [N m]; the nominal one by default.
+        Zero means just beyond the play, and a negative one acts on the other flank.
     locked : bool
         Whether the last inertia is held.
     with_efficiency : bool
@@ -67,7 +68,8 @@ def modes(
     Raises
     ------
     InputError
-        For an unknown part, a number out of range, or a drive without inertia at its input.
+        For an unknown part, a number out of range, a torque that is no finite number, or a drive
+        without inertia at its input.
     DesignError
         When the drive cannot be built.
 

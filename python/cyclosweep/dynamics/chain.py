@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import cyclosweep._core as _core
-from cyclosweep.dynamics.checks import floats, numbered, same_length, spring_of
+from cyclosweep.dynamics.checks import finite, floats, numbered, same_length, spring_of
 from cyclosweep.dynamics.spring import Brake, TrainSpring
 from cyclosweep.errors import InputError, did_you_mean, instance_of
 
@@ -151,14 +151,20 @@ class Chain:
         Parameters
         ----------
         torque_nm : float
-            Torque at the first shaft [N m]; zero means just beyond the play.
+            Torque at the first shaft [N m]; zero means just beyond the play, and a negative one
+            acts on the other flank.
 
         Returns
         -------
         ndarray, shape (springs,)
             On the springs' own shafts [N m/rad].
+
+        Raises
+        ------
+        InputError
+            For a torque that is no finite number.
         """
-        torques = torque_nm * self.spring_ratios
+        torques = finite("torque_nm", torque_nm) * self.spring_ratios
         pairs = zip(self.springs, torques, strict=True)
         return np.array([spring.stiffness_at(float(torque)) for spring, torque in pairs])
 

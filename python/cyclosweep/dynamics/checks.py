@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.errors import InputError, instance_of
 
-__all__ = ["floats", "numbered", "real", "same_length", "spring_of"]
+__all__ = ["finite", "floats", "numbered", "real", "same_length", "spring_of"]
 
 
 def numbered(word: str, count: int) -> tuple[str, ...]:
@@ -41,6 +42,14 @@ def real(what: str, value: object) -> float:
         return float(value)  # type: ignore[arg-type]
     except OverflowError:
         raise InputError(f"{what}: found an integer beyond the range of floats") from None
+
+
+def finite(what: str, value: object) -> float:
+    """Return a number as a float; InputError for what is none, NaN or an infinity."""
+    number = real(what, value)
+    if not math.isfinite(number):
+        raise InputError(f"{what}: found {number:g}, expected a finite number")
+    return number
 
 
 def same_length(what: str, found: int, expected: int, where: str = "") -> None:

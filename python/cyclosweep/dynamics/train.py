@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cyclosweep.dynamics.chain import Chain
-from cyclosweep.dynamics.checks import real, same_length
+from cyclosweep.dynamics.checks import same_length
 from cyclosweep.dynamics.modes import Modes
 from cyclosweep.dynamics.spring import Brake
 from cyclosweep.dynamics.torques import Torques, knots
@@ -72,7 +72,8 @@ class Train(Chain):
         ----------
         torque_nm : float
             Torque at the first shaft around which the train oscillates [N m]. By default it is so
-            small that every spring has the stiffness that it begins with beyond its play.
+            small that every spring has the stiffness that it begins with beyond its play; a
+            negative one acts on the other flank.
         locked : bool
             Whether the last node is held.
 
@@ -85,14 +86,13 @@ class Train(Chain):
         Raises
         ------
         InputError
-            When a lone node is to be locked.
+            For a torque that is no finite number, or when a lone node is to be locked.
 
         Notes
         -----
         Small oscillations without friction. Through the play the frequency depends on the
         amplitude: :func:`cyclosweep.dynamics.backbone_frequency_hz`.
         """
-        torque_nm = real("torque_nm", torque_nm)
         train = self.locked() if locked else self
         stiffnesses = train.stiffnesses_at(torque_nm)
         at_nodes, at_springs = train.node_ratios, train.spring_ratios

@@ -1,6 +1,6 @@
 """A torque-twist recording or load programme: its samples and what is known about them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cyclosweep.design.drive import Drive
-from cyclosweep.design.numbers import finite_number
+from cyclosweep.design.numbers import finite_number, plain
 from cyclosweep.errors import (
     DesignError,
     InputError,
@@ -26,7 +26,7 @@ from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.messages import printable
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.reading import read
-from cyclosweep.recording.samples import COLUMNS, Floats, Ints, Samples
+from cyclosweep.recording.samples import COLUMNS, Ints, Samples, floats_of, numbers_of
 from cyclosweep.recording.saturation import find_saturation
 from cyclosweep.recording.structure import Structure, find_structure
 from cyclosweep.recording.wrapping import modulo_fault
@@ -104,7 +104,19 @@ class Recording(Samples):
         one_of("side", self.side, _SIDES)
         one_of("torque_from", self.torque_from, _TORQUES)
         one_of("history", self.history, _HISTORIES)
-        finite_number("angle_resolution_deg", self.angle_resolution_deg)
+        if finite_number("angle_resolution_deg", self.angle_resolution_deg) < 0:
+            raise InputError(
+                f"angle_resolution_deg: found {self.angle_resolution_deg:g}, expected a step not "
+                "below zero"
+            )
+        modulo = self.angle_modulo_deg
+        if modulo is not None and finite_number("angle_modulo_deg", modulo) <= 0:
+            raise InputError(f"angle_modulo_deg: found {modulo:g}, expected degrees above zero")
+        if self.drive is not None:
+            instance_of("drive", self.drive, str, Path)
+        instance_of("reset_between_runs", self.reset_between_runs, bool)
+        for key in ("conditioning_runs", "holdout_runs"):
+            object.__setattr__(self, key, _run_numbers(key, getattr(self, key)))
 
     @classmethod
     def read(cls, path: str | Path, meta: str | Path | None = None) -> Self:
@@ -214,15 +226,15 @@ class Recording(Samples):
             if attribute not in cls.__dataclass_fields__:
                 hint = did_you_mean(attribute, cls.__dataclass_fields__)
                 raise InputError(f"{attribute}: no such attribute of a recording{hint}")
-        torque = _numbers("torque_nm", torque_nm)
+        torque = numbers_of("torque_nm", torque_nm)
         given: dict[str, Any] = {
             "torque_nm": torque,
-            "angle_deg": _floats("angle_deg", angle_deg),
-            "time_s": _floats("time_s", time_s),
-            "run": _numbers("run", np.ones(len(torque)) if run is None else run),
-            "crank_deg": _floats("crank_deg", crank_deg),
-            "temperature_c": _floats("temperature_c", temperature_c),
-            "unscored": _floats("unscored", known.pop("unscored", None)),
+            "angle_deg": floats_of("angle_deg", angle_deg),
+            "time_s": floats_of("time_s", time_s),
+            "run": numbers_of("run", np.ones(len(torque)) if run is None else run),
+            "crank_deg": floats_of("crank_deg", crank_deg),
+            "temperature_c": floats_of("temperature_c", temperature_c),
+            "unscored": floats_of("unscored", known.pop("unscored", None)),
         }
         whole = cls(name=name, **given, **known)  # refuses columns of unequal length
         notes = list(whole.notes)
@@ -350,7 +362,7 @@ class Recording(Samples):
         -------
         Recording
         """
-        return replace(self, angle_deg=_floats("angle_deg", angle_deg))
+        return replace(self, angle_deg=floats_of("angle_deg", angle_deg))
 
 
 _SIDES = ("input", "output")
@@ -358,41 +370,26 @@ _TORQUES = ("sensor", "motor-current")
 _HISTORIES = ("per-run", "continuous")
 
 
-def _floats(name: str, values: ArrayLike | None) -> Floats | None:
-    """Make an array of floats, where there is one to make.
+def _run_numbers(key: str, runs: object) -> tuple[int, ...]:
+    """Numbers of runs as a tuple.
 
     Parameters
     ----------
-    name : str
-        What it is called in a message.
-    values : array_like or None
-        Numbers.
+    key : str
+        Attribute that names them.
+    runs : iterable of int
+        What was given.
 
     Returns
     -------
-    ndarray or None
+    tuple of int
+
+    Raises
+    ------
+    InputError
+        For anything but a list of whole numbers.
     """
-    return None if values is None else _numbers(name, values)
-
-
-def _numbers(name: str, values: ArrayLike) -> Floats:
-    """Make an array of numbers of one dimension, or say what is none.
-
-    Parameters
-    ----------
-    name : str
-        What it is called in a message.
-    values : array_like
-        Numbers.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name}: expected numbers, one a sample") from None
-    if array.ndim != 1:
-        raise InputError(f"{name}: found shape {array.shape}, expected numbers, one a sample")
-    return array
+    found = [plain(k) for k in runs] if isinstance(runs, Iterable) else None
+    if found is None or any(isinstance(k, bool) or not isinstance(k, int) for k in found):
+        raise InputError(f"{key}: found {runs!r}, expected a list of numbers of runs")
+    return tuple(k for k in found if isinstance(k, int))

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cyclosweep.errors import InputError
 
-__all__ = ["COLUMNS", "Flags", "Floats", "Ints", "Samples"]
+__all__ = ["COLUMNS", "Flags", "Floats", "Ints", "Samples", "floats_of", "numbers_of"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -134,3 +134,43 @@ def _refuse_fractions(name: str, values: NDArray[Any]) -> None:
     if len(wrong):
         found = values.flat[wrong[0]]
         raise InputError(f"{name}, sample {wrong[0] + 1}: found {found:g}, expected an integer")
+
+
+def floats_of(name: str, values: ArrayLike | None) -> Floats | None:
+    """Make an array of floats, where there is one to make.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in a message.
+    values : array_like or None
+        Numbers.
+
+    Returns
+    -------
+    ndarray or None
+    """
+    return None if values is None else numbers_of(name, values)
+
+
+def numbers_of(name: str, values: ArrayLike) -> Floats:
+    """Make an array of numbers of one dimension, or say what is none.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in a message.
+    values : array_like
+        Numbers.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name}: expected numbers, one a sample") from None
+    if array.ndim != 1:
+        raise InputError(f"{name}: found shape {array.shape}, expected numbers, one a sample")
+    return array

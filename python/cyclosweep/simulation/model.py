@@ -8,7 +8,7 @@ from typing import Any, Literal, Self
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.json_files import JsonSource, json_object, name_of
-from cyclosweep.design.numbers import real_numbers
+from cyclosweep.design.numbers import finite_number, real_numbers
 from cyclosweep.dynamics.spring import TrainSpring
 from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.notebook import html_table
@@ -42,9 +42,9 @@ class Model:
     Attributes
     ----------
     compliance_deg_per_nm : float
-        Slope of the line [deg/(N m)].
+        Slope of the line [deg/(N m)], above zero.
     free_play_deg : float
-        Free play on each side of the datum [deg].
+        Free play on each side of the datum [deg], not below zero.
     datum_deg : float
         Middle of the dead zone on the dial [deg].
     torque_zero_nm : float
@@ -91,7 +91,13 @@ class Model:
     def __post_init__(self) -> None:
         numbers = ("compliance_deg_per_nm", "free_play_deg", "datum_deg", "torque_zero_nm")
         for name in numbers:
-            real_numbers(name, [getattr(self, name)])
+            finite_number(name, getattr(self, name))
+        if not self.effects:  # beside effects that bend it the line of a fit may be anything
+            check_line(self)
+        if self.free_play_deg < 0:
+            raise InputError(
+                f"free_play_deg: found {self.free_play_deg:g}, expected a number not below zero"
+            )
         one_of("side", self.side, ("input", "output"))
         instance_of("effects", self.effects, tuple)
         instance_of("one_history", self.one_history, bool)
@@ -319,9 +325,6 @@ class Model:
     def _of(cls, content: Mapping[str, Any]) -> Self:
         """Model of a decoded file."""
         base = object_of(content, "baseline")
-        compliance = number_of(base, "compliance_deg_per_nm")
-        if compliance <= 0:
-            raise InputError("compliance_deg_per_nm: expected more than zero")
         side = text_of(content, "side", "input")
         if side not in ("input", "output"):
             raise InputError(f"side: found {side!r}, expected 'input' or 'output'")
@@ -330,8 +333,8 @@ class Model:
         curve = object_of(content, "elastic_curve", {})
         missed = object_of(content, "model_error", {})
         fitted = object_of(content, "fitted_torque_nm", {})
-        return cls(
-            compliance_deg_per_nm=compliance,
+        model = cls(
+            compliance_deg_per_nm=number_of(base, "compliance_deg_per_nm"),
             free_play_deg=number_of(base, "free_play_deg"),
             datum_deg=number_of(base, "datum_deg", 0.0),
             torque_zero_nm=number_of(base, "torque_zero_nm", 0.0),
@@ -349,4 +352,15 @@ class Model:
             fitted_torque_nm=(number_of(fitted, "from"), number_of(fitted, "to"))
             if fitted
             else None,
+        )
+        check_line(model)
+        return model
+
+
+def check_line(model: Model) -> None:
+    """Refuse a model whose twist falls as the torque rises; `InputError` with its compliance."""
+    if not model.compliance_deg_per_nm > 0:
+        raise InputError(
+            f"compliance_deg_per_nm: found {model.compliance_deg_per_nm:g}, "
+            "expected a number above zero"
         )

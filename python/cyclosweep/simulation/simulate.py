@@ -19,7 +19,7 @@ from cyclosweep.simulation.effects.slip_start import lies_behind_play
 from cyclosweep.simulation.effects.twist_law import ElasticLaw
 from cyclosweep.simulation.elastic_law import elastic_law
 from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
-from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, linear_twist
+from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, check_line, linear_twist
 
 __all__ = [
     "SCHEMA",
@@ -137,7 +137,8 @@ def simulate(
     Raises
     ------
     InputError
-        The programme lacks a column that an effect of the model needs.
+        The programme lacks a column that an effect of the model needs, or the model's compliance is
+        not above zero.
 
     Examples
     --------
@@ -160,7 +161,7 @@ def simulate(
 
 
 def _check(model: Model, programme: Recording) -> None:
-    """Refuse a programme of another shaft, or without a column that the model needs.
+    """Refuse a line that falls, and a programme of another shaft or without a needed column.
 
     Parameters
     ----------
@@ -172,8 +173,9 @@ def _check(model: Model, programme: Recording) -> None:
     Raises
     ------
     InputError
-        What the programme lacks.
+        What the programme lacks, or the compliance.
     """
+    check_line(model)
     if programme.side != model.side:
         raise InputError(
             f"{programme.name}: side: found {programme.side!r}, expected {model.side!r} "

@@ -28,6 +28,9 @@ from cyclosweep.simulation.simulate import SIMULATED_ROUNDS, Model, flanks_of, s
 
 FITTING_ROUNDS = 4
 """Rounds of effects that depend on more than the elastic torque, while fitting."""
+LEAST_COMPLIANCE_DEG_PER_NM = 1e-300
+"""What stands in for a line that falls, from which no simulation can start; the parameters' own
+bounds come to bear on it."""
 BLUR = 0.01
 """Blur of the last stage, see `fit_forecast`."""
 STEP = 0.02
@@ -146,7 +149,7 @@ def starting_model(problem: Problem) -> Model:
     """Spring and free play as read off the recording, without effects."""
     history = problem.history
     return Model(
-        compliance_deg_per_nm=history.compliance_deg_per_nm,
+        compliance_deg_per_nm=max(history.compliance_deg_per_nm, LEAST_COMPLIANCE_DEG_PER_NM),
         free_play_deg=max(history.free_play_deg, 0.0),
         datum_deg=history.datum_deg,
         side=problem.recording.side,

@@ -172,10 +172,12 @@ def _simulated(search: Search) -> Floats | None:
     Returns
     -------
     ndarray, shape (n,), or None
-        In deg; None where the structure holds terms without a name, which cannot be simulated.
+        In deg; None where the structure holds terms without a name, or is a line that falls, which
+        cannot be simulated.
     """
     problem, fitted = search.problem, search.start.fit
-    if any(term.effect is None for term in fitted.terms):
+    falls = not fitted.terms and fitted.line_compliance_deg_per_nm <= 0.0
+    if falls or any(term.effect is None for term in fitted.terms):
         return None
     return predicted_path(problem, fitted.model("")).angle_deg
 
