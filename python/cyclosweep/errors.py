@@ -2,7 +2,7 @@
 
 import contextlib
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import SequenceMatcher, get_close_matches
 from importlib import import_module
 from pathlib import Path
@@ -16,6 +16,7 @@ __all__ = [
     "SweepError",
     "did_you_mean",
     "instance_of",
+    "names_of",
     "naming",
     "one_of",
     "path_of",
@@ -153,6 +154,39 @@ def instance_of(what: str, found: object, *kinds: type) -> None:
     if not isinstance(found, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
         raise InputError(f"{what}: found {_short(found)}, expected {names}")
+
+
+def names_of(what: str, found: object) -> list[str]:
+    """Return names as a list, and refuse what is no list of names.
+
+    Parameters
+    ----------
+    what : str
+        Name of the argument.
+    found : iterable of str
+        At least one name, each once.
+
+    Returns
+    -------
+    list of str
+
+    Raises
+    ------
+    InputError
+        For none, one twice, a text alone or anything else.
+
+    Examples
+    --------
+    >>> names_of("outputs", ("twist_1tn_deg",))
+    ['twist_1tn_deg']
+    """
+    is_list = isinstance(found, Iterable) and not isinstance(found, (str, bytes, Mapping))
+    names = list(found) if is_list else []  # type: ignore[call-overload]
+    if not names or not all(isinstance(name, str) for name in names):
+        raise InputError(f"{what}: found {_short(found)}, expected a list of names")
+    if len(set(names)) < len(names):
+        raise InputError(f"{what}: found {_short(names)}, expected each name once")
+    return names
 
 
 @contextlib.contextmanager

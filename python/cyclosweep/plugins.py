@@ -45,6 +45,30 @@ class Column:
     needs: Sequence[str] | None = None
     is_condition: bool = False
 
+    def __post_init__(self) -> None:
+        check_value("column", self.value)
+
+
+def check_value(where: str, value: object) -> None:
+    """Refuse what no value of a column follows from.
+
+    Parameters
+    ----------
+    where : str
+        What a message names.
+    value : str, polars.Expr or callable
+        What was given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if not (isinstance(value, (str, pl.Expr)) or callable(value)):
+        raise InputError(
+            f"{where}: found {value!r}, expected an expression as text or of polars, or a function"
+        )
+
 
 COLUMNS: dict[str, Column] = {}
 """Columns that every study gets which has what they need, by name."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 
 import cyclosweep as cs
@@ -105,3 +106,121 @@ def test_a_sidecar_states_no_less(tmp_path: Path, key: str) -> None:
         f'{key}\ncolumns.angle_deg.column = "angle_deg"\n' if "modulo" in key else f"{key}\n"
     )
     assert "loop.toml" in refusal(lambda: cs.Recording.read(tmp_path / "loop.csv"))
+
+
+WIDER: dict[str, Any] = {"shaft_1_diameter_mm": 0.5}
+EVENT = cs.Event(kind="reversal")
+NAMES = "expected a list of names"
+COMPARE = "expected a comparison such as a_mm > b_mm"
+
+
+def percentiles(results: Any = "twist_1tn_deg", ranks: Any = (5, 95)) -> object:
+    """Percentiles of a few pieces."""
+    return cs.tolerance_percentiles(DRIVE, WIDER, results, ranks, count=8)
+
+
+def robust(least_share_ok: Any) -> object:
+    """Order of one drive."""
+    few: dict[str, Any] = {"count": 8, "least_share_ok": least_share_ok}
+    return cs.robust_choice(DRIVE, WIDER, "twist_1tn_deg", **few)
+
+
+def front(minimise: Any = "twist_1tn_deg", **options: Any) -> object:
+    """Pareto front of three variants."""
+    return cs.pareto(SPACE, minimise=minimise, **options)
+
+
+def evaluated(cells: list[object]) -> object:
+    """Designs of a table."""
+    return cs.evaluate_table(DRIVE, {"eccentricity_mm": cells})
+
+
+ANY: Any = cs
+"""The library to a type checker that is not to refuse wrong arguments itself."""
+
+REFUSED: dict[str, tuple[Callable[[], object], str]] = {
+    "no results": (lambda: cs.input_influence(SPACE, []), f"results: found [], {NAMES}"),
+    "one result": (lambda: ANY.input_influence(SPACE, 3), f"results: found 3, {NAMES}"),
+    "inputs as text": (
+        lambda: cs.input_influence(SPACE, "twist_1tn_deg", inputs="ratio"),
+        f"inputs: found 'ratio', {NAMES}",
+    ),
+    "a number is small": (lambda: front(3), f"minimise: found 3, {NAMES}"),
+    "sobol of nothing": (lambda: cs.sensitivity(SPACE, []), f"results: found [], {NAMES}"),
+    "percentiles of none": (lambda: percentiles([]), "results: none, expected at least"),
+    "one percentile": (
+        lambda: percentiles(ranks=50), "percentiles: found 50, expected a list of numbers",
+    ),
+    "no percentile": (
+        lambda: percentiles(ranks=[]), "percentiles: found none, expected at least one",
+    ),
+    "no train": (lambda: ANY.transient(None, EVENT), "train: found None, expected Train"),
+    "no event": (lambda: ANY.transient(TRAIN, None), "event: found None, expected Event"),
+    "a drive": (lambda: ANY.transient(DRIVE, EVENT), "train: found <Drive reference-87: "),
+    "share of a": (lambda: robust("a"), "least_share_ok: found 'a', expected a finite number"),
+    "share of nan": (lambda: robust(NAN), "least_share_ok: found nan, expected a finite number"),
+    "share of 5": (lambda: robust(5), "least_share_ok: found 5, expected 0 to 1"),
+    "share of -5": (lambda: robust(-5), "least_share_ok: found -5, expected 0 to 1"),
+    "other indices": (
+        lambda: cs.driving_inputs(pl.DataFrame({"a": [1]})),
+        "indices: no column result, expected a table as sobol_indices returns it",
+    ),
+    "locus at a": (
+        lambda: DRIVE.hole_locus("a"), "theta_deg: found 'a', expected a finite number",
+    ),
+    "locus at nan": (
+        lambda: DRIVE.hole_locus([0.0, NAN]), "theta_deg: found nan, expected a finite number",
+    ),
+    "hole 8 of 8": (
+        lambda: DRIVE.hole_locus(0.0, 8), "hole: found 8, expected a whole number from 0 to 7",
+    ),
+    "a text before a number": (
+        lambda: evaluated(["a", 0.6]), "row 0, eccentricity_mm: found 'a', expected a number",
+    ),
+    "a text after a number": (
+        lambda: evaluated([0.6, "a"]), "row 1, eccentricity_mm: found 'a', expected a number",
+    ),
+    "shift": (
+        lambda: front(limits="hole_web_mm >> 2"),
+        f"limits: found '>>' in 'hole_web_mm >> 2', {COMPARE}",
+    ),
+    "arrow": (
+        lambda: front(limits="hole_web_mm @> 2"),
+        "limits: found 'hole_web_mm @> 2', which is no expression: it has another sign than",
+    ),
+    "poisson": (
+        lambda: DRIVE.replace(poisson_ratio=NAN),
+        "reference-87: poisson_ratio: found nan, expected a finite number",
+    ),
+    "limit": (
+        lambda: cs.sweep(SPACE, limits={"hole_web_mm": (NAN, None)}),
+        "limits.hole_web_mm: found nan, expected a number or None",
+    ),
+    "whole": (
+        lambda: ANY.diagnose(cs.simulate(DRIVE, LOAD), DRIVE, full="no"),
+        "full: found 'no', expected bool",
+    ),
+    "column": (
+        lambda: ANY.Column(3),
+        "column: found 3, expected an expression as text or of polars, or a function",
+    ),
+    "objective": (
+        lambda: cs.Objective(" "),
+        "objective: found ' ', expected a column or an expression of columns",
+    ),
+    "sense": (lambda: ANY.Objective("ratio", "no"), "maximise: found 'no', expected bool"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_one_line_says_what_was_found_and_what_was_expected(name: str) -> None:
+    call, expected = REFUSED[name]
+    assert refusal(call).startswith(expected)
+
+
+def test_labels_of_a_table_may_mix_texts_and_numbers() -> None:
+    table = {"label": [1, "b", None], "eccentricity_mm": [0.6, ".7", 0.8]}
+    found = cs.evaluate_table(DRIVE, table)
+    assert found["label"].to_list() == ["1", "b", None]
+    assert found["eccentricity_mm"].to_list() == [0.6, 0.7, 0.8]
+    assert front(["twist_1tn_deg"], maximise=[]) is not None

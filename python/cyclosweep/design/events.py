@@ -18,7 +18,7 @@ from cyclosweep.dynamics.spring import Brake, SlipElement
 from cyclosweep.dynamics.torques import Torques
 from cyclosweep.dynamics.train import Train
 from cyclosweep.dynamics.transient import Transient
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, instance_of
 
 __all__ = ["KINDS", "Event", "transient"]
 
@@ -178,7 +178,8 @@ def transient(train: Train, event: Event) -> Transient:
     Raises
     ------
     InputError
-        When the event lacks a number, or does not fit the train.
+        For what is no train or no event, or when the event lacks a number or does not fit the
+        train.
 
     Examples
     --------
@@ -187,6 +188,8 @@ def transient(train: Train, event: Event) -> Transient:
     >>> round(transient(train, Event(kind="reversal", torque_nm=7.2575)).shock_factor, 3)
     4.107
     """
+    instance_of("train", train, Train)
+    instance_of("event", event, Event)
     if event.kind == "recorded":
         return _run(train, event, _recorded(train, event), {}, 0.0)
     torque = _given(event, "torque_nm")

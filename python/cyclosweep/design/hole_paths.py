@@ -11,8 +11,9 @@ import polars as pl
 import cyclosweep._core as _core
 from cyclosweep.design.active_pins import CRITERIA, ActivePins, Criterion, count_active_pins
 from cyclosweep.design.hole_windows import hole_windows
+from cyclosweep.design.numbers import finite_number, whole_number
 from cyclosweep.design.parts import PartInputs
-from cyclosweep.errors import one_of
+from cyclosweep.errors import InputError, one_of
 
 __all__ = ["HolePaths"]
 
@@ -131,13 +132,25 @@ class HolePaths(PartInputs):
         polars.DataFrame
             ``theta_deg``, ``x_mm``, ``y_mm``, ``radius_mm``.
 
+        Raises
+        ------
+        InputError
+            For a position that is no finite number, or a hole that the disc does not have.
+
         Examples
         --------
         >>> import cyclosweep as cs
         >>> cs.Drive.reference_87().hole_locus([0.0, 90.0]).height
         2
         """
-        theta = np.atleast_1d(np.asarray(theta_deg, dtype=np.float64))
+        try:
+            given = np.atleast_1d(theta_deg)
+        except ValueError:
+            raise InputError(
+                f"theta_deg: found {theta_deg!r}, expected a list of numbers"
+            ) from None
+        theta = np.array([finite_number("theta_deg", each) for each in given])
+        hole = whole_number("hole", hole, most=int(self.output_pin_count) - 1)
         angle = math.radians(self.hole_clocking_deg + (hole + 0.5) * 360 / self.output_pin_count)
         centres = _core.hole_locus(
             self.eccentricity_mm,

@@ -42,7 +42,7 @@ class DriveInputs(TomlTable):
     disc_outer_radius_mm: Positive
     disc_bore_radius_mm: NonNegative
     youngs_modulus_gpa: Positive
-    poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] = 0.3
+    poisson_ratio: Annotated[float, Field(gt=-1, le=0.5, allow_inf_nan=False)] = 0.3
     keyway_coefficient: NonNegative = 10.0
     input_power_kw: Positive
     input_speed_rpm: Positive

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import polars as pl
 
 from cyclosweep.design.numbers import whole_number
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, names_of
 from cyclosweep.explore.feasible import INTERVALS
 from cyclosweep.explore.intervals import Cut, cut_inputs, input_columns
 from cyclosweep.explore.tables import Conditions, Table, batches, conditions, open_table
@@ -83,8 +83,9 @@ def input_influence(
     """
     rows = open_table(table)
     names = input_columns(rows, inputs)
-    wanted = [results] if isinstance(results, str) else results
-    if wanted is None:
+    if results is not None:
+        wanted = names_of("results", [results] if isinstance(results, str) else results)
+    else:
         columns = list(rows.schema)
         if "status" not in columns:
             raise InputError("results: none given, expected names of columns")

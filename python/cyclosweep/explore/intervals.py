@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import polars as pl
 
-from cyclosweep.errors import InputError, did_you_mean
+from cyclosweep.errors import InputError, did_you_mean, names_of
 from cyclosweep.explore.tables import Rows
 
 __all__ = ["Cut", "cut_inputs", "input_columns"]
@@ -68,6 +68,8 @@ def input_columns(rows: Rows, inputs: Sequence[str] | None) -> list[str]:
             )
         first, last = columns.index("variant") + 1, columns.index("status")
         inputs = [name for name in columns[first:last] if rows.schema[name].is_numeric()]
+    else:
+        inputs = names_of("inputs", inputs)
     for name in inputs:
         if name not in rows.schema:
             raise InputError(f"inputs: no column {name}{did_you_mean(name, columns)}")

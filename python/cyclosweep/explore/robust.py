@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import polars as pl
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import finite_number, whole_number
 from cyclosweep.design.parts import Engine
-from cyclosweep.errors import InputError, instance_of
+from cyclosweep.errors import InputError, instance_of, names_of
 from cyclosweep.explore.tables import Conditions, conditions
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.objective import Objective
@@ -95,7 +95,8 @@ def tolerance_percentiles(
     Raises
     ------
     InputError
-        For an unknown input or result, a percentile beyond 0 to 100, or no designs.
+        For an unknown input or result, no results, no percentile or one beyond 0 to 100, or no
+        designs.
 
     Notes
     -----
@@ -111,10 +112,14 @@ def tolerance_percentiles(
     >>> row["twist_1tn_deg_p5"] < row["twist_1tn_deg_nominal"] < row["twist_1tn_deg_p95"]
     True
     """
-    wanted = [results] if isinstance(results, str) else list(results)
-    if not wanted:
+    if isinstance(results, (list, tuple)) and not results:
         raise InputError("results: none, expected at least one column")
+    wanted = names_of("results", [results] if isinstance(results, str) else results)
+    if isinstance(percentiles, str) or not isinstance(percentiles, Iterable):
+        raise InputError(f"percentiles: found {percentiles!r}, expected a list of numbers")
     ranks = [finite_number("percentiles", each) for each in percentiles]
+    if not ranks:
+        raise InputError("percentiles: found none, expected at least one from 0 to 100")
     for rank in ranks:
         if not 0 <= rank <= 100:
             raise InputError(f"percentiles: found {rank:g}, expected 0 to 100")
@@ -189,7 +194,7 @@ def robust_choice(
     Raises
     ------
     InputError
-        As there.
+        As there, and for a percentile beyond 0 to 100 or a share beyond 0 to 1.
 
     Examples
     --------
@@ -202,6 +207,8 @@ def robust_choice(
     wanted = Objective(objective) if isinstance(objective, str) else objective
     if not 0 <= finite_number("percentile", percentile) <= 100:
         raise InputError(f"percentile: found {percentile:g}, expected 0 to 100")
+    if not 0 <= finite_number("least_share_ok", least_share_ok) <= 1:
+        raise InputError(f"least_share_ok: found {least_share_ok:g}, expected 0 to 1")
     worst = 100 - percentile if wanted.maximise else percentile
     found = tolerance_percentiles(designs, tolerances, wanted.column, [worst], **settings)
     by, as_drawn = found.columns[-1], f"{wanted.column}_nominal"

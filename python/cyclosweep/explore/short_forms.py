@@ -7,7 +7,7 @@ from typing import Any
 
 import polars as pl
 
-from cyclosweep.errors import InputError
+from cyclosweep.errors import InputError, names_of
 from cyclosweep.explore.pareto import pareto_front
 from cyclosweep.explore.sobol import BatchFunction, sobol_indices
 from cyclosweep.explore.tables import Table
@@ -44,7 +44,7 @@ def pareto(
     Raises
     ------
     InputError
-        For no objective, and as :func:`~cyclosweep.pareto_front`.
+        For no objective, what is no name, and as :func:`~cyclosweep.pareto_front`.
 
     Examples
     --------
@@ -53,10 +53,12 @@ def pareto(
     >>> pareto(space, minimise=["output_pin_count", "twist_1tn_deg"]).height
     4
     """
-    small, great = (
-        [each] if isinstance(each, str) else list(each) for each in (minimise, maximise)
-    )
-    wanted = [Objective(name, False) for name in small] + [Objective(name, True) for name in great]
+    wanted = []
+    for what, given in (("minimise", minimise), ("maximise", maximise)):
+        if isinstance(given, (list, tuple)) and not given:
+            continue
+        names = names_of(what, [given] if isinstance(given, str) else given)
+        wanted += [Objective(name, what == "maximise") for name in names]
     if not wanted:
         raise InputError("minimise, maximise: found neither, expected an objective")
     return pareto_front(table, wanted, **options)

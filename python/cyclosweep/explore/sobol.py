@@ -13,7 +13,7 @@ import polars as pl
 
 import cyclosweep._core as _core
 from cyclosweep.design.numbers import finite_number, whole_number
-from cyclosweep.errors import InputError, did_you_mean, instance_of
+from cyclosweep.errors import InputError, did_you_mean, instance_of, names_of
 from cyclosweep.explore.tables import Rows, batches
 from cyclosweep.sweep.distributions import Distribution, uniform
 from cyclosweep.sweep.progress import ShowProgress
@@ -143,7 +143,9 @@ def sobol_indices(
         raise InputError(f"half_width: found {half_width:g}, expected more than 0")
     if not 0.5 <= accuracy.confidence < 1:
         raise InputError(f"confidence: found {confidence:g}, expected 0.5 to 1")
-    wanted = [results] if isinstance(results, str) else results
+    wanted = None
+    if results is not None:
+        wanted = names_of("results", [results] if isinstance(results, str) else results)
     if isinstance(model, Space | Study):
         if inputs is not None:
             raise InputError("inputs: only for a function, a space has its axes")
@@ -170,8 +172,18 @@ def driving_inputs(indices: pl.DataFrame) -> pl.DataFrame:
     polars.DataFrame
         ``result``, ``driven_by`` (the input of the greatest total index; null where the result
         does not vary) and a column of total indices [1] for each input.
+
+    Raises
+    ------
+    InputError
+        For a table without these columns.
     """
     instance_of("indices", indices, pl.DataFrame)
+    for name in ("result", "input", "total"):
+        if name not in indices.columns:
+            raise InputError(
+                f"indices: no column {name}, expected a table as sobol_indices returns it"
+            )
     wide = indices.pivot("input", index="result", values="total", maintain_order=True)
     most = (
         indices.filter(pl.col("total").is_not_null())

@@ -68,4 +68,7 @@ def _column(values: Any) -> pl.Series:
         # pandas keeps text and mixed columns as objects, a missing text as NaN.
         values = [None if isinstance(v, float) and np.isnan(v) else v for v in values.tolist()]
         return pl.Series(values, strict=False)
+    if isinstance(values, (list, tuple)) and any(isinstance(value, str) for value in values):
+        # Numbers among texts are texts, as in a file; whoever wants numbers names the cell.
+        values = [None if value is None else str(value) for value in values]
     return pl.Series(values)

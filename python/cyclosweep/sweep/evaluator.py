@@ -12,7 +12,7 @@ import numpy.typing as npt
 import cyclosweep._core as _core
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.parts import Engine
-from cyclosweep.errors import InputError, did_you_mean, one_of
+from cyclosweep.errors import InputError, did_you_mean, names_of, one_of
 from cyclosweep.sweep.axes import WHOLE, known_input
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Study
@@ -71,8 +71,8 @@ class Evaluator:
         if not isinstance(drive, Drive):
             raise InputError(f"drive: found {drive!r}, expected a Drive")
         self.drive = drive
-        self.inputs = _names("inputs", inputs)
-        self.outputs = _names("outputs", [outputs] if isinstance(outputs, str) else outputs)
+        self.inputs = names_of("inputs", inputs)
+        self.outputs = names_of("outputs", [outputs] if isinstance(outputs, str) else outputs)
         self._alone = isinstance(outputs, str)
         self._solver: Engine = one_of("solver", solver, get_args(Engine))
         for name in self.inputs:
@@ -205,12 +205,3 @@ class Evaluator:
 
 _PARTS = frozenset(name for name, kind in _core.part_output_table() if kind != "solver")
 """Results of the component model that are numbers."""
-
-
-def _names(what: str, names: object) -> list[str]:
-    """Return names as a list; InputError for none, or for what is no list of names."""
-    if isinstance(names, (list, tuple)) and names and all(isinstance(n, str) for n in names):
-        if len(set(names)) < len(names):
-            raise InputError(f"{what}: found {list(names)}, expected each name once")
-        return list(names)
-    raise InputError(f"{what}: found {names!r}, expected a list of names")

@@ -37,7 +37,9 @@ _TOKEN = re.compile(
     |(?P<sign>.)""",
     re.VERBOSE | re.DOTALL,
 )
-_HINTS = {"**": "power(a, b)", "^": "power(a, b)", "&": "and", "|": "or"}
+_HINTS = {"**": "power(a, b)", "^": "power(a, b)", "&": "and", "|": "or",
+          ">>": "a comparison such as a_mm > b_mm", "<<": "a comparison such as a_mm < b_mm",
+          "->": "a comparison such as a_mm > b_mm"}  # fmt: skip
 """Signs of other languages, and what SQL has for them."""
 
 
@@ -86,6 +88,8 @@ def expression(
         _some_rows(columns).select(found)
     except pl.exceptions.PolarsError as error:
         reason = str(error).splitlines()[0].replace(f"'{spelt}'", "it")
+        if reason.startswith("operator "):  # by a name that is polars' own
+            reason = "it has another sign than + - * / %, comparisons, and, or, not"
         raise InputError(f"{where}: found {text!r}, which is no expression: {reason}") from None
     return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cyclosweep.errors import instance_of
+from cyclosweep.errors import InputError, instance_of
 
 __all__ = ["Objective"]
 
@@ -26,6 +26,11 @@ class Objective:
 
     def __post_init__(self) -> None:
         instance_of("objective", self.column, str)
+        instance_of("maximise", self.maximise, bool)
+        if not self.column.strip():
+            raise InputError(
+                f"objective: found {self.column!r}, expected a column or an expression of columns"
+            )
 
     def __str__(self) -> str:
         return f"{'maximise' if self.maximise else 'minimise'} {self.column}"

@@ -5,14 +5,14 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import polars as pl
 
 from cyclosweep.design.units import Quantity
 from cyclosweep.errors import InputError, did_you_mean
-from cyclosweep.plugins import Batch, Column
+from cyclosweep.plugins import Batch, Column, check_value
 from cyclosweep.sweep.expressions import condition, expression
 
 __all__ = [
@@ -172,11 +172,8 @@ def column_of(value: object, where: str) -> Column:
     """
     if isinstance(value, Column):
         return value
-    if isinstance(value, (str, pl.Expr)) or callable(value):
-        return Column(value)
-    raise InputError(
-        f"{where}: found {value!r}, expected an expression as text or of polars, or a function"
-    )
+    check_value(where, value)
+    return Column(cast(Any, value))
 
 
 def formula(

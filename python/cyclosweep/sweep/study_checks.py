@@ -52,6 +52,9 @@ def checked_bounds(name: str, ends: object) -> tuple[str, float, float]:
         raise InputError(f"limits.{name}: found neither min nor max, expected one of them")
     given = [-math.inf if low is None else low, math.inf if high is None else high]
     least, most = real_numbers(f"limits.{name}", given)
+    for end in (least, most):
+        if math.isnan(end):
+            raise InputError(f"limits.{name}: found nan, expected a number or None")
     if not least <= most:
         raise InputError(f"limits.{name}: found {least:g} to {most:g}, expected min <= max")
     return name, least, most
