@@ -137,6 +137,27 @@ CALLS: dict[str, Callable[[Any, Path], object]] = {
     "Train(gaps)": lambda w, _: cs.Train([1.0, 2.0], [1.0], w),
     "Train(names)": lambda w, _: cs.Train([1.0, 2.0], [1.0], names=w),
     "modes": lambda w, _: TRAIN.modes(w),
+    "modes(torque)": lambda w, _: cs.modes(DRIVE, torque_nm=w),
+    "transient(train)": lambda w, _: cs.transient(w, cs.Event(kind="reversal")),
+    "transient(event)": lambda w, _: cs.transient(TRAIN, w),
+    "hole_locus": lambda w, _: DRIVE.hole_locus(w),
+    "hole_locus(hole)": lambda w, _: DRIVE.hole_locus(0.0, w),
+    "evaluate_table": lambda w, _: cs.evaluate_table(DRIVE, w),
+    "evaluate_table(cells)": lambda w, _: cs.evaluate_table(DRIVE, {"eccentricity_mm": [w]}),
+    "pareto": lambda w, _: cs.pareto(SPACE, minimise=w),
+    "pareto(limits)": lambda w, _: cs.pareto(SPACE, minimise="ratio", limits=w),
+    "influence(results)": lambda w, _: cs.input_influence(SPACE, w),
+    "percentiles": lambda w, _: cs.tolerance_percentiles(
+        DRIVE, {"shaft_1_diameter_mm": 0.5}, "twist_1tn_deg", w, count=8
+    ),
+    "robust_choice(share)": lambda w, _: cs.robust_choice(
+        DRIVE, {"shaft_1_diameter_mm": 0.5}, "twist_1tn_deg", count=8, least_share_ok=w
+    ),
+    "Column": lambda w, _: cs.Column(w),
+    "Model(play)": lambda w, _: cs.simulate(cs.Model(2.7, w), LOAD),
+    "from_arrays(modulo)": lambda w, _: cs.Recording.from_arrays([0.0], angle_modulo_deg=w),
+    "from_arrays(drive)": lambda w, _: cs.Recording.from_arrays([0.0], drive=w),
+    "from_arrays(kept)": lambda w, _: cs.Recording.from_arrays([0.0], holdout_runs=w),
     "transient(torques)": lambda w, _: TRAIN.transient(w, 0.001, 5),
     "transient(torque)": lambda w, _: TRAIN.transient({0: w}, 0.001, 5),
     "transient(duration)": lambda w, _: TRAIN.transient({0: 1.0}, w, 5),

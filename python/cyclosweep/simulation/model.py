@@ -92,8 +92,6 @@ class Model:
         numbers = ("compliance_deg_per_nm", "free_play_deg", "datum_deg", "torque_zero_nm")
         for name in numbers:
             finite_number(name, getattr(self, name))
-        if not self.effects:  # beside effects that bend it the line of a fit may be anything
-            check_line(self)
         if self.free_play_deg < 0:
             raise InputError(
                 f"free_play_deg: found {self.free_play_deg:g}, expected a number not below zero"
@@ -107,6 +105,8 @@ class Model:
                 raise InputError(f"fitted_torque_nm: found {ends}, expected least and greatest")
         for value in self.effects:
             instance_of("effects", value, EffectValue)
+        if not self.effects:  # beside effects that bend it the line of a fit may be anything
+            check_line(self)
 
     def elastic_twist(self, torque_nm: Floats) -> Floats:
         """Twist beyond the free play without effects, by the curve or by the line.

@@ -54,6 +54,8 @@ def as_frame(table: object, what: str = "frame") -> pl.DataFrame:
             return pl.DataFrame({str(name): _column(given[name].to_numpy()) for name in given})
         if hasattr(table, "__arrow_c_stream__"):
             return pl.DataFrame(table)
+    except OverflowError:
+        raise InputError(f"{what}: found an integer beyond the range of 64 bits") from None
     except (TypeError, ValueError, pl.exceptions.PolarsError) as error:
         reason = str(error).partition("\n")[0]
         raise InputError(f"{what}: not a table of columns of one length: {reason}") from None
