@@ -61,6 +61,7 @@ def test_a_model_twists_with_its_torque(tmp_path: Path) -> None:
         effect = EffectValue("contact_stiffening", {"turn_nm": 3.0}, (1.0,))
         falls = cs.Model(compliance, 28.0, effects=(effect,))
         assert refusal(lambda m=falls: cs.simulate(m, LOAD)) == expected  # type: ignore[misc]
+        assert refusal(lambda m=falls: DRIVE.train(m)) == expected  # type: ignore[misc]
         (tmp_path / "model.json").write_text(falls.to_json())
         assert expected in refusal(lambda: cs.Model.from_json(tmp_path / "model.json"))
     found = refusal(lambda: cs.Model(2.7, -1.0))

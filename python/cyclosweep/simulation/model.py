@@ -233,7 +233,13 @@ class Model:
         TrainSpring
             With play, elastic effects and friction; see
             :func:`cyclosweep.simulation.train_spring.spring_of`.
+
+        Raises
+        ------
+        InputError
+            The compliance is not above zero.
         """
+        check_line(self)
         if self.side == "input":
             return spring_of(self, largest_input_torque_nm)
         return spring_of(self, largest_input_torque_nm * ratio).scaled(ratio)
