@@ -42,7 +42,7 @@ def test_nothing_missing_is_not_said_beside_a_misfit(
 ) -> None:
     assert bent.baseline.fit.rmse_deg > 3 * bent.noise.spread_deg
     # As if no hypothesis could be told from chance.
-    monkeypatch.setattr(bent, "threshold", np.inf)
+    monkeypatch.setattr(Search, "threshold", np.inf)
     decision = decide(bent)
     assert decision.verdict == "UNKNOWN_PHYSICS"
     assert decision.unexplained

@@ -242,7 +242,7 @@ def _curves(history: History) -> Iterator[UnnamedShape]:
 
 
 def _cells(history: History) -> Iterator[UnnamedShape]:
-    """A function of load of its own for each flank and direction, and so no elastic law."""
+    """A function of load of its own for each flank and direction."""
     knots = np.linspace(0.0, 1.0, 5) * history.largest_torque_nm
 
     def cells(h: History) -> Floats:
@@ -254,7 +254,7 @@ def _cells(history: History) -> Iterator[UnnamedShape]:
         ]
         return np.column_stack(parts)
 
-    yield UnnamedShape("torque and direction", "over torque and direction", cells)
+    yield UnnamedShape("torque and direction", "over torque and direction", cells, elastic=True)
 
 
 def _runs(history: History) -> Iterator[UnnamedShape]:
