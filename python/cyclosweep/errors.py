@@ -156,7 +156,7 @@ def instance_of(what: str, found: object, *kinds: type) -> None:
         raise InputError(f"{what}: found {_short(found)}, expected {names}")
 
 
-def names_of(what: str, found: object) -> list[str]:
+def names_of(what: str, found: object, *, or_one: bool = False) -> list[str]:
     """Return names as a list, and refuse what is no list of names.
 
     Parameters
@@ -165,6 +165,8 @@ def names_of(what: str, found: object) -> list[str]:
         Name of the argument.
     found : iterable of str
         At least one name, each once.
+    or_one : bool
+        Whether a text alone is a name.
 
     Returns
     -------
@@ -173,13 +175,15 @@ def names_of(what: str, found: object) -> list[str]:
     Raises
     ------
     InputError
-        For none, one twice, a text alone or anything else.
+        For none, one twice, a text alone unless it may be a name, or anything else.
 
     Examples
     --------
     >>> names_of("outputs", ("twist_1tn_deg",))
     ['twist_1tn_deg']
     """
+    if or_one and isinstance(found, str):
+        return [found]
     is_list = isinstance(found, Iterable) and not isinstance(found, (str, bytes, Mapping))
     names = list(found) if is_list else []  # type: ignore[call-overload]
     if not names or not all(isinstance(name, str) for name in names):

@@ -84,7 +84,7 @@ def input_influence(
     rows = open_table(table)
     names = input_columns(rows, inputs)
     if results is not None:
-        wanted = names_of("results", [results] if isinstance(results, str) else results)
+        wanted = names_of("results", results, or_one=True)
     else:
         columns = list(rows.schema)
         if "status" not in columns:

@@ -114,7 +114,7 @@ def tolerance_percentiles(
     """
     if isinstance(results, (list, tuple)) and not results:
         raise InputError("results: none, expected at least one column")
-    wanted = names_of("results", [results] if isinstance(results, str) else results)
+    wanted = names_of("results", results, or_one=True)
     if isinstance(percentiles, str) or not isinstance(percentiles, Iterable):
         raise InputError(f"percentiles: found {percentiles!r}, expected a list of numbers")
     ranks = [finite_number("percentiles", each) for each in percentiles]

@@ -57,7 +57,7 @@ def pareto(
     for what, given in (("minimise", minimise), ("maximise", maximise)):
         if isinstance(given, (list, tuple)) and not given:
             continue
-        names = names_of(what, [given] if isinstance(given, str) else given)
+        names = names_of(what, given, or_one=True)
         wanted += [Objective(name, what == "maximise") for name in names]
     if not wanted:
         raise InputError("minimise, maximise: found neither, expected an objective")

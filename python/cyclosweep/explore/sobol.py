@@ -145,7 +145,7 @@ def sobol_indices(
         raise InputError(f"confidence: found {confidence:g}, expected 0.5 to 1")
     wanted = None
     if results is not None:
-        wanted = names_of("results", [results] if isinstance(results, str) else results)
+        wanted = names_of("results", results, or_one=True)
     if isinstance(model, Space | Study):
         if inputs is not None:
             raise InputError("inputs: only for a function, a space has its axes")

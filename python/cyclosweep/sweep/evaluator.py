@@ -72,7 +72,7 @@ class Evaluator:
             raise InputError(f"drive: found {drive!r}, expected a Drive")
         self.drive = drive
         self.inputs = names_of("inputs", inputs)
-        self.outputs = names_of("outputs", [outputs] if isinstance(outputs, str) else outputs)
+        self.outputs = names_of("outputs", outputs, or_one=True)
         self._alone = isinstance(outputs, str)
         self._solver: Engine = one_of("solver", solver, get_args(Engine))
         for name in self.inputs:

@@ -52,7 +52,7 @@ pub fn solve_slip(
     spring.check()?;
     elements.check()?;
     let solver = Solver::new(spring, elements, torque);
-    let whole = Piece {
+    with_widest(Piece {
         torque,
         offset,
         restart,
@@ -60,18 +60,14 @@ pub fn solve_slip(
         solver,
         angle,
         friction,
-    };
-    with_widest(SlipWork(whole));
+    });
     Ok(())
 }
 
 /// Most looks at the balance of one sample.
 const MOST_LOOKS: usize = 100;
 
-/// A history to solve.
-struct SlipWork<'a>(Piece<'a>);
-
-impl Wide for SlipWork<'_> {
+impl Wide for Piece<'_> {
     type Output = ();
 
     /// Solves pieces that know nothing of each other in step.
@@ -80,10 +76,9 @@ impl Wide for SlipWork<'_> {
     /// stand idle: two pieces together take about a tenth less time than one after the other.
     #[inline(always)]
     fn run(self) {
-        let whole = self.0;
-        match whole.middle_restart() {
+        match self.middle_restart() {
             Some(at) => {
-                let (first, second) = whole.split_at(at);
+                let (first, second) = self.split_at(at);
                 let mut paths = [Path::new(first), Path::new(second)];
                 let common = paths[0].piece.torque.len().min(paths[1].piece.torque.len());
                 solve_in_step(&mut paths, 0..common);
@@ -93,8 +88,8 @@ impl Wide for SlipWork<'_> {
                 }
             }
             None => {
-                let n = whole.torque.len();
-                solve_in_step(&mut [Path::new(whole)], 0..n);
+                let n = self.torque.len();
+                solve_in_step(&mut [Path::new(self)], 0..n);
             }
         }
     }
