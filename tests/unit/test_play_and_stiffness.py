@@ -156,3 +156,11 @@ def test_an_interval_has_the_digits_that_tell_its_ends_apart() -> None:
     assert play_words(read) == (
         "Read from the loop: free play from flank to flank 55.506 deg (95 %: 55.502 to 55.51). "
     )
+
+
+def test_a_play_below_zero_is_said_to_be_none() -> None:
+    below = Reading(estimate=-0.05, ci95=(-0.13, 0.02))
+    assert play_words(PlayAndStiffness(runs=3, free_play_deg=below)) == (
+        "Read from the loop: free play from flank to flank -0.05 deg (95 %: -0.13 to 0.02), that "
+        "is none, as the straight lines along the flanks overlap. "
+    )

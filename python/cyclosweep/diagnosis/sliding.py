@@ -80,14 +80,11 @@ class Sliding:
         Limits while the angle rises and while it falls.
     loop_share : float
         Area of the loop over that of the rectangle around it.
-    span_deg : float
-        Range of the recorded angle [deg].
     """
 
     rising: Limit
     falling: Limit
     loop_share: float
-    span_deg: float
 
     @property
     def friction_nm(self) -> float:
@@ -136,7 +133,7 @@ def find_sliding(recording: Recording) -> Sliding | None:
         return None
     if min(up.share, down.share) < PLATEAU_SHARE:
         return None
-    return Sliding(rising=up, falling=down, loop_share=width, span_deg=span)
+    return Sliding(rising=up, falling=down, loop_share=width)
 
 
 def _strokes(angle: Floats, run: np.ndarray, threshold: float) -> np.ndarray:

@@ -77,14 +77,13 @@ def play_words(read: PlayAndStiffness | None) -> str:
     """
     if read is None:
         return ""
-    said = [
-        f"{name} {_read(reading, unit)}"
-        for name, reading, unit in (
-            ("free play from flank to flank", read.free_play_deg, "deg"),
-            ("stiffness at the output", read.stiffness_at_output_nm_per_arcmin, "N m/arcmin"),
-        )
-        if reading is not None
-    ]
+    said = []
+    if play := read.free_play_deg:
+        said.append(f"free play from flank to flank {_read(play, 'deg')}")
+        if play.estimate < 0.0:
+            said.append("that is none, as the straight lines along the flanks overlap")
+    if stiffness := read.stiffness_at_output_nm_per_arcmin:
+        said.append(f"stiffness at the output {_read(stiffness, 'N m/arcmin')}")
     return f"Read from the loop: {', '.join(said)}. " if said else ""
 
 

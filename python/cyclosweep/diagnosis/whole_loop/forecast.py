@@ -190,10 +190,13 @@ def at_start(history: History, model: Model, side: Floats | None = None) -> Hist
     -------
     History
     """
-    applied = history.applied_nm - model.torque_zero_nm
+    history = history.zeroed(model.torque_zero_nm)
+    if any(value.effect.slips for value in model.effects):
+        # Found here, they are known to all states of this load.
+        _ = history.corners
+    applied = history.applied_nm
     side = flanks_of(applied, history.restart) if side is None else side
     return history.with_state(
-        applied_nm=applied,
         elastic_nm=applied,
         angle_deg=model.datum_deg
         + side * model.free_play_deg

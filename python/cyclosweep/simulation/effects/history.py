@@ -12,12 +12,19 @@ from cyclosweep.simulation.effects.twist_law import ElasticLaw
 
 __all__ = ["Flags", "Floats", "History", "Ints", "runs_and_restarts"]
 
-_OF_THE_LOAD = frozenset(("applied_nm", "side", "run", "restart", "time_s", "has_corners"))
-"""What the values that are computed once for a load history follow from."""
-_BY_THE_LOAD = frozenset(
-    ("largest_torque_nm", "run_starts", "run_count", "sense", "usual_step_s", "lapse_s", "corners")
-)
-"""Those values; another state of the model on the same load leaves them as they are."""
+_FOLLOWS_FROM = {
+    "largest_torque_nm": {"applied_nm"},
+    "run_starts": {"run"},
+    "run_count": {"run"},
+    "sense": {"applied_nm", "side", "run"},
+    "usual_step_s": {"time_s", "run"},
+    "lapse_s": {"applied_nm", "restart", "time_s"},
+    "corners": {"applied_nm", "run", "restart", "time_s", "has_corners"},
+}
+"""Values that are computed once for a load history, and what each follows from. Another state of
+the model on the same load leaves them as they are."""
+_ZEROS_KEPT = 3
+"""Zeros of the torque for which the load is kept: a fit tries a few in turn."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -101,10 +108,34 @@ class History:
         if "elastic_nm" in state:
             state = {"corner_deg": None, "corner_nm": None} | state
         other = replace(self, **state)  # type: ignore[arg-type]
-        if state.keys().isdisjoint(_OF_THE_LOAD):
-            for name in _BY_THE_LOAD & self.__dict__.keys():
+        for name, needs in _FOLLOWS_FROM.items():
+            if name in self.__dict__ and needs.isdisjoint(state):
                 other.__dict__[name] = self.__dict__[name]
         return other
+
+    def zeroed(self, zero_nm: float) -> Self:
+        """Return the same load as read from another zero of the torque, kept for the last few.
+
+        Parameters
+        ----------
+        zero_nm : float
+            Reading of the torque without load [N m].
+
+        Returns
+        -------
+        History
+        """
+        known = self._known_zeros
+        if zero_nm not in known:
+            if len(known) >= _ZEROS_KEPT:
+                del known[next(iter(known))]
+            known[zero_nm] = self.with_state(applied_nm=self.applied_nm - zero_nm)
+        return known[zero_nm]
+
+    @cached_property
+    def _known_zeros(self) -> dict[float, Self]:
+        """Loads as read from the last few zeros of the torque."""
+        return {}
 
     @cached_property
     def largest_torque_nm(self) -> float:

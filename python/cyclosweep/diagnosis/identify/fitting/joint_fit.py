@@ -91,7 +91,9 @@ class JointFit:
                 shapes[parameter.term][parameter.name] = parameter.to_physical(value)
         shapes = on_shared_elements([term.effect for term in self.terms], shapes)
         return tuple(
-            replace(term, shape=shape, amplitude=amplitude)
+            term
+            if shape == term.shape and amplitude == term.amplitude
+            else replace(term, shape=shape, amplitude=amplitude)
             for term, shape, amplitude in zip(self.terms, shapes, amplitudes, strict=True)
         )
 
