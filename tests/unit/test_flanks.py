@@ -51,6 +51,18 @@ def test_readings_within_the_width_of_a_loop_are_in_contact() -> None:
     np.testing.assert_array_equal(contact(torque, angle), torque != 0.0)
 
 
+def test_readings_are_not_taken_by_their_noise_where_the_drive_has_no_play() -> None:
+    torque = np.repeat(crossings(9), 40)
+    for seed in range(20):
+        noise = 0.3 * np.random.default_rng(seed).normal(size=len(torque))
+        for step in (0.0, 0.5):
+            angle = COMPLIANCE * torque + noise
+            angle = step * np.rint(angle / step) if step else angle
+            flanks = find_flanks(torque, angle, LINE, resolution_deg=step)
+            assert flanks.free_play_deg < flanks.scatter_deg
+            assert flanks.at(torque, angle)[1].all()
+
+
 def test_without_readings_within_the_play_none_is_on_its_way() -> None:
     torque = crossings(40)
     angle = twist(torque, 0.05 * np.random.default_rng(3).normal(size=len(torque)))

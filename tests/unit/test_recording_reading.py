@@ -311,6 +311,27 @@ def test_steps_of_an_angle_are_its_resolution(step: float, noise: float) -> None
     assert angle_lattice(step * np.rint(angle / step), torque) == pytest.approx(step, rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("step", "decimals"), [(0.164265, 5), (0.018893, 5), (360 / 8192, 4), (360 / 8192, 3)]
+)
+def test_steps_that_were_rounded_as_they_were_printed_are_a_resolution(
+    step: float, decimals: int
+) -> None:
+    rng = np.random.default_rng(4)
+    torque = np.concatenate([np.linspace(0, 30, 200), np.linspace(30, -30, 400)])
+    angle = 0.1 * torque + 0.3 * step * rng.standard_normal(600)
+    printed = np.round(step * np.rint(angle / step), decimals)
+    assert angle_lattice(printed, torque) == pytest.approx(step, rel=1e-4)
+
+
+def test_readings_of_a_continuous_angle_lie_on_no_steps() -> None:
+    rng = np.random.default_rng(5)
+    for count in range(4, 60):
+        torque = rng.uniform(-10, 10, count)
+        angle = np.round(0.3 * torque + 0.01 * rng.standard_normal(count), 5)
+        assert angle_lattice(angle, torque) == 0.0
+
+
 @pytest.mark.parametrize("readings", [1, 4])
 def test_angles_that_are_prescribed_have_no_resolution(readings: int) -> None:
     rng, place = np.random.default_rng(3), np.repeat(np.arange(-4.0, 5.0), readings)

@@ -10,6 +10,12 @@ REGULAR = 0.95
 REPEATED = 0.25
 """without those at which the torque goes less than this share of what it does between others."""
 
+EXACT = 1e-3
+"""Distance of readings from the marks of a dial, in its steps, up to which they lie on them."""
+AS_PRINTED, MANY_LEVELS = 0.02, 12
+"""The same of an encoder whose readings were rounded again as they were printed, and from how many
+different readings this is no accident."""
+
 
 def unwrap(values: Floats, period: float) -> tuple[Floats, int]:
     """Undo wraps: steps beyond half a period are taken as the shorter way round.
@@ -135,14 +141,15 @@ def angle_lattice(angle_deg: Floats, torque_nm: Floats, run: Floats | None = Non
     levels = np.unique(angle_deg)
     if len(levels) < 3 or len(levels) > 1000:
         return 0.0
-    step = float(np.diff(levels).min())
-    span = float(levels[-1] - levels[0])
-    if step < 1e-3 * span:
+    least = float(np.diff(levels).min())
+    if least < 1e-3 * float(levels[-1] - levels[0]):
         return 0.0
-    places = (levels - levels[0]) / step
-    if np.abs(places - np.rint(places)).max() > 1e-3:
+    places = _places(levels, least)
+    step, first = np.polyfit(places, levels, 1)
+    left = np.abs(levels - first - step * places).max()
+    if left > (AS_PRINTED if len(levels) >= MANY_LEVELS else EXACT) * step:
         return 0.0
-    step = float(f"{span / np.rint(places[-1]):.6g}")
+    step = float(f"{step:.6g}")
     if _is_graduation(step):
         return step
     within = np.ones(len(angle_deg) - 1, bool) if run is None else np.diff(run) == 0
@@ -150,12 +157,39 @@ def angle_lattice(angle_deg: Floats, torque_nm: Floats, run: Floats | None = Non
     return 0.0 if _advances_regularly(*moves) else step
 
 
+def _places(levels: Floats, least: float) -> Floats:
+    """Number of steps from the lowest level to each, shape (n,).
+
+    The smallest distance is known as well as it was printed, and over the whole range the error
+    adds up: the step is taken as the mean of more and more distances, the short ones first.
+
+    Parameters
+    ----------
+    levels : ndarray of float, shape (n,)
+        Different readings in ascending order [deg].
+    least : float
+        Smallest distance between two of them [deg].
+
+    Returns
+    -------
+    ndarray
+    """
+    distance = np.diff(levels)
+    count = np.ones(len(distance))
+    step = least
+    for reach in (1.5, 4.5, 20.5, np.inf):
+        near = distance < reach * step
+        count = np.maximum(np.rint(distance / step), 1.0)
+        step = float(distance[near].sum() / count[near].sum())
+    return np.r_[0.0, np.cumsum(count)]
+
+
 def _is_graduation(step_deg: float) -> bool:
     """Whether common dials and encoders have such steps: 1, 2, 2.5, 5 times 10^n, or 360/2^n."""
     mantissa = step_deg / 10.0 ** np.floor(np.log10(step_deg) + 1e-9)
     power = np.log2(360.0 / step_deg)
-    dial = bool(np.isclose(mantissa, [1.0, 2.0, 2.5, 5.0], rtol=1e-5).any())
-    return dial or bool(abs(power - np.rint(power)) < 1e-5)
+    dial = bool(np.isclose(mantissa, [1.0, 2.0, 2.5, 5.0], rtol=1e-4).any())
+    return dial or bool(abs(power - np.rint(power)) < 1e-4)
 
 
 def _advances_regularly(steps: Floats, torque_nm: Floats) -> bool:

@@ -7,7 +7,11 @@ import numpy as np
 from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.prepare.play_jumps import FEW_STEPS, sides_by_jumps
 from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
-from cyclosweep.recording.robust import robust_sigma
+from cyclosweep.recording.robust import (
+    robust_sigma,
+    rounding_sigma,
+    sigma_by_second_differences,
+)
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 
 LOADED = 0.25
@@ -33,6 +37,9 @@ FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
 
+FEWEST_SCATTERED = 8
+"""Readings under load from which their scatter is known."""
+
 
 @dataclass(frozen=True, slots=True)
 class Flanks:
@@ -42,6 +49,8 @@ class Flanks:
     ----------
     datum_deg, compliance_deg_per_nm, free_play_deg : float
         The line [deg], [deg/(N m)], [deg]; the free play is zero where none was seen.
+    scatter_deg : float
+        Standard deviation of a reading about its neighbours, rounding included [deg].
     loop_width_deg : float
         Rough width of the hysteresis loop [deg].
     loaded_nm : float
@@ -57,6 +66,7 @@ class Flanks:
     datum_deg: float
     compliance_deg_per_nm: float
     free_play_deg: float
+    scatter_deg: float
     loop_width_deg: float
     loaded_nm: float
     loaded_scored_nm: float
@@ -114,7 +124,9 @@ class Flanks:
             return self.turned.side(angle), ~self.turned.holds(angle)
         sign = np.where(torque >= 0, 1.0, -1.0)
         play = self.free_play_deg
-        if play <= 0:
+        if play <= self.scatter_deg:
+            # No reading tells where in it the shaft stands: to take those near a flank would be to
+            # take them by their noise.
             return sign, np.ones(len(torque), dtype=bool)
         loaded = np.abs(torque) > self.loaded_nm
         if scored is not None:
@@ -234,7 +246,11 @@ def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
 
 
 def find_flanks(
-    torque: Floats, angle: Floats, line: NominalLine, scored: Flags | None = None
+    torque: Floats,
+    angle: Floats,
+    line: NominalLine,
+    scored: Flags | None = None,
+    resolution_deg: float = 0.0,
 ) -> Flanks:
     """Fit a robust line through the loaded rows.
 
@@ -246,6 +262,8 @@ def find_flanks(
         Line of the uncalibrated model, for what the recording does not show.
     scored : ndarray of bool, shape (n,), optional
         Rows through which the line goes; default: all.
+    resolution_deg : float
+        Step of the angle reading [deg].
 
     Returns
     -------
@@ -278,10 +296,20 @@ def find_flanks(
     play = float(robust[2]) if both else line.free_play_deg
     residual = target[loaded] - design[loaded] @ robust
     width = 2.0 * float(np.quantile(np.abs(residual), 0.9))
+    scatter = sigma_by_second_differences(residual) if len(residual) >= FEWEST_SCATTERED else 0.0
+    scatter = float(np.hypot(scatter, rounding_sigma(resolution_deg)))
     turned = turned_play(compliance * torque, angle, sign * loaded)
     if turned is not None:
         datum, play = turned.datum_deg, turned.free_play_deg
     only = None if both or not np.any(loaded) else float(sign[loaded][0])
     return Flanks(
-        datum, compliance, max(play, 0.0), width, threshold, scored_threshold, turned, only
+        datum_deg=datum,
+        compliance_deg_per_nm=compliance,
+        free_play_deg=max(play, 0.0),
+        scatter_deg=scatter,
+        loop_width_deg=width,
+        loaded_nm=threshold,
+        loaded_scored_nm=scored_threshold,
+        turned=turned,
+        only_direction=only,
     )

@@ -12,7 +12,7 @@ from cyclosweep.simulation.effects.orders import MeshPeriodic, harmonics
 class TransmissionError(MeshPeriodic):
     """Offset periodic in the position of the mesh zone.
 
-    Orders 1 to 3 of a recorded position, where it was locked or to which it has travelled since,
+    Orders 1 to 4 of a recorded position, where it was locked or to which it has travelled since,
     and up to 12 where the shaft was turned under load past many; any order where it travels and no
     position was recorded.
     """
@@ -24,15 +24,15 @@ class TransmissionError(MeshPeriodic):
     )
     source = "Blanche, Yang, Cycloid drives with machining tolerances, J. Mech. Des. 111(3), 1989"
     tell_tale = (
-        "offset periodic in crank position, orders 1-3, whatever the load; a staircase along the "
+        "offset periodic in crank position, orders 1-4, whatever the load; a staircase along the "
         "travel"
     )
     family = "run offsets"
 
     def locked_shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, and the first few together."""
-        turned = [(order,) for order in turned_orders(history, above=3)]
-        return order_shapes([(1,), (2,), (3,), (1, 2), (1, 2, 3), *turned])
+        turned = [(order,) for order in turned_orders(history, above=4)]
+        return order_shapes([(1,), (2,), (3,), (4,), (1, 2), (2, 4), (1, 2, 3), *turned])
 
     def largest(self, history: History) -> float:
         """A hundredth of the largest twist with its play."""
