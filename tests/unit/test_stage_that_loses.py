@@ -43,3 +43,21 @@ def test_a_stage_does_not_accept_what_explains_less(
     decision = SimpleNamespace(unexplained=True)
     assert stages.accepts(stage, decision, stage.start) is accepted  # type: ignore[arg-type]
     assert (stages.fitted is before) is not accepted
+
+
+def test_what_was_given_up_comes_back_where_the_stages_since_explain_less(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search = search_of(friction(2.0), CREEP)
+    flexible = flexible_basis(search.problem, search.library)
+    stages = staged_search._Stages.begin(search, flexible, None)
+    before = stages.fitted
+    stage = stage_of(search, flexible, before)
+    creep = (Term(find("creep"), dict(CREEP.shape)),)
+    monkeypatch.setattr(staged_search, "still_needed", lambda *_: ())
+    assert stages.gives_up(stage, stage.start)
+    assert not stages.accepted
+    stages._refit(creep, search.baseline.fit)
+    assert not stages.gives_up(stage, stage.start)
+    assert stages.ended().start.names == frozenset(before.names)
+    assert stages.fitted is before

@@ -19,6 +19,7 @@ from cyclosweep.diagnosis.identify.laws.dial_check import without_other_dials
 from cyclosweep.diagnosis.identify.laws.law_in_class import (
     LawCheck,
     own_classes,
+    withdrawn_where,
 )
 from cyclosweep.diagnosis.identify.laws.run_offsets_check import (
     without_any_offsets,
@@ -89,15 +90,38 @@ def check_laws(fitted: FittedStructure, stand_ins: Sequence[LawCheck] = ()) -> t
     for term in fitted.terms:
         taken |= set(own_classes(term)) if term.name in withdrawn else set()
     sizes = [recalibrated_twist(fitted, index) for index in range(len(fitted.terms))]
-    checks = [
-        check
+    compared = [
+        ClassComparison.of(fitted, classes, indices, own, taken - own, _size_over(sizes, indices))
         for indices, own in groups
-        for check in ClassComparison.of(
-            fitted, classes, indices, own, taken - own, _size_over(sizes, indices)
-        ).checks()
     ]
+    alone = [check for each in compared for check in each.checks()]
+    checks = withdrawn_where(_smaller_than_errors(compared).__contains__, alone)
     judged = without_any_offsets(fitted, without_leftovers(fitted, classes, checks))
     return without_widest_scatter(fitted, without_other_dials(fitted, judged))
+
+
+def _smaller_than_errors(compared: Sequence[ClassComparison]) -> frozenset[str]:
+    """Names of laws with less evidence than what a larger law misses inside its own classes.
+
+    The error of a law reaches into other classes, too: what is smaller than its error where it is
+    known may be its error elsewhere.
+
+    Parameters
+    ----------
+    compared : sequence of ClassComparison
+        Of all laws of a structure, each with those of its class.
+
+    Returns
+    -------
+    frozenset of str
+    """
+    small = set[str]()
+    for each in compared:
+        larger = [other for other in compared if other.by_law > each.by_law]
+        missed = max((left.evidence for other in larger for left in other.left), default=0.0)
+        if each.by_law < missed:
+            small |= {each.fitted.terms[index].name for index in each.indices}
+    return frozenset(small)
 
 
 def shown_classes(fitted: FittedStructure) -> tuple[ShownClass, ...]:

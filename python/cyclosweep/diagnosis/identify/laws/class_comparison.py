@@ -50,8 +50,8 @@ LITTLE_MISSED = 0.05
 the noise is small no law is exact, and flexible groups are."""
 MOST_MISSED, MOST_MISSED_LOOP = 0.1, 0.25
 """What a named law may miss inside its class, as a share of both in root mean squares: laws of the
-literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops or
-follow a position or a temperature."""
+literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops, follow
+a position or a temperature, or are even in the torque."""
 ERROR_OF_OTHERS = 0.01
 """What another law misses, as a share of its own size, that may lie in the class of a smaller one:
 no law is exact to a hundredth."""
@@ -240,7 +240,8 @@ class ClassComparison:
         if self.follows_one_cause or self.is_of_offsets:
             return True
         counts = self.beyond > 0.0 or self.error_of_others > LITTLE_MISSED
-        return counts and self.missed_share <= self._with_error_of_others(LITTLE_MISSED)
+        little = MOST_MISSED_LOOP if set(self.own) == {EVEN_CURVE} else LITTLE_MISSED
+        return counts and self.missed_share <= self._with_error_of_others(little)
 
     def is_whole(self) -> bool:
         """Whether the laws miss nothing inside their class that it shows."""
@@ -286,8 +287,11 @@ def most_missed(classes: Collection[str]) -> float:
 
 
 def _is_loose(classes: Collection[str]) -> bool:
-    """Whether laws of some classes may differ as loops do, or what follows one known cause."""
-    return bool(LOOPS.union(ONE_CAUSE) & set(classes))
+    """Whether laws of some classes may differ as loops do, or what follows one known cause.
+
+    Nor does an even curve have a second effect on the list for which its law could stand.
+    """
+    return bool(LOOPS.union(ONE_CAUSE) & set(classes)) or set(classes) == {EVEN_CURVE}
 
 
 def _within_runs(offsets: ClassEvidence, residual: Floats, classes: ClassColumns) -> float:

@@ -108,8 +108,10 @@ class _Stages:
         Other explanations of what was accepted.
     kept_their_start : set of frozenset of str
         Structures whose friction was tried from other states already.
-    restarted, gave_up : bool
-        Whether the friction was changed once; whether something accepted was given up once.
+    restarted : bool
+        Whether the friction was changed once.
+    before_giving_up : (Search, Search, FittedStructure, list) or None
+        Searches, accepted structure and rivals when something accepted was given up, once.
     """
 
     searched: Search
@@ -120,7 +122,9 @@ class _Stages:
     rivals: list[tuple[Candidate, float]] = field(default_factory=list)
     kept_their_start: set[frozenset[str]] = field(default_factory=set)
     restarted: bool = False
-    gave_up: bool = False
+    before_giving_up: (
+        tuple[Search, Search, FittedStructure, list[tuple[Candidate, float]]] | None
+    ) = None
 
     @classmethod
     def begin(cls, searched: Search, flexible: Floats, begun: FittedStructure | None) -> "_Stages":
@@ -228,12 +232,15 @@ class _Stages:
         bool
             Whether something was given up, so that the stage is to be repeated.
         """
-        needed = self.accepted if self.gave_up else still_needed(search, best, self.accepted)
+        if self.before_giving_up is not None:
+            return False
+        needed = still_needed(search, best, self.accepted)
         if len(needed) >= len(self.accepted):
             return False
+        self.before_giving_up = (self.searched, self.last, self.fitted, list(self.rivals))
         if not needed:
             self.searched = self.first
-        self.gave_up, self.last, self.fitted = True, self.searched, self.searched.baseline.fit
+        self.last, self.fitted = self.searched, self.searched.baseline.fit
         self.rivals.clear()
         if needed:
             self._refit(needed, best.fit)
@@ -284,7 +291,13 @@ class _Stages:
             self.rivals += [(candidate, so_far * share) for candidate, share in others]
 
     def ended(self) -> Search:
-        """Search of the last stage, which starts from all that was accepted."""
+        """Search of the last stage, which starts from all that was accepted.
+
+        What was given up is taken back where the stages since explain less than before.
+        """
+        before = self.before_giving_up
+        if before is not None and self.fitted.rmse_deg > MISSED * before[2].rmse_deg:
+            self.searched, self.last, self.fitted, self.rivals = before
         if len(self.last.start.fit.terms) < len(self.accepted):
             self.last = stage_of(self.searched, self.flexible, self.fitted)
         self.last.rivals_of_start = self.rivals
