@@ -8,11 +8,11 @@ import pytest
 from cyclosweep.diagnosis.identify.laws.class_check import _smaller_than_errors
 
 
-def compared(name: str, by_law: float, *missed: float) -> Any:
+def compared(name: str, by_law: float, *missed: float, share: float = 1.0) -> Any:
     """Comparison of one law with its classes, by their log evidence."""
     terms = [SimpleNamespace(name=name)]
     left = [SimpleNamespace(evidence=each) for each in missed]
-    fitted = SimpleNamespace(terms=terms)
+    fitted = SimpleNamespace(terms=terms, independent_share=share)
     return SimpleNamespace(fitted=fitted, indices=[0], by_law=by_law, left=left)
 
 
@@ -30,3 +30,11 @@ def test_a_law_is_compared_with_what_a_larger_one_misses(
 
 def test_a_smaller_law_is_no_measure_of_a_larger_one() -> None:
     assert _smaller_than_errors([compared("creep", 40.0), compared("drag", 30.0, 60.0)]) == set()
+
+
+def test_terms_of_a_whole_loop_are_not_measured_so() -> None:
+    laws = [
+        compared("opening friction", 0.0, 5.0, share=0.1),
+        compared("friction", -0.7, share=0.1),
+    ]
+    assert _smaller_than_errors(laws) == set()

@@ -5,6 +5,7 @@ two readings. Friction starts its new way there, and not at the highest reading.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TypeVar
 
@@ -98,7 +99,24 @@ class Corners:
         -------
         ndarray, shape (n + m,)
         """
-        return np.asarray(np.insert(values, self.before + 1, here), dtype=values.dtype)
+        both = np.empty(len(values) + len(self), dtype=values.dtype)
+        both[self._is_reading(len(both))] = values
+        both[self.places] = here
+        return both
+
+    def taken_out(self, values: NDArray[Kind]) -> NDArray[Kind]:
+        """Values of the readings alone.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n + m,)
+            Of readings and corners, in order.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        return values[self._is_reading(len(values))]
 
     def lapse_s(self, lapse_s: Floats) -> Floats:
         """Time that leads to each reading and corner, shape (n + m,) [s].
@@ -115,12 +133,18 @@ class Corners:
         to_corner = self.share * lapse_s[self.before + 1]
         rest = lapse_s.copy()
         rest[self.before + 1] -= to_corner
-        return np.insert(rest, self.before + 1, to_corner)
+        return self.insert(rest, to_corner)
 
-    @property
+    @cached_property
     def places(self) -> Ints:
         """Places of the corners among readings and corners, shape (m,)."""
         return self.before + 1 + np.arange(len(self))
+
+    def _is_reading(self, count: int) -> Flags:
+        """Whether each of ``count`` readings and corners, in order, is a reading."""
+        reading = np.ones(count, dtype=bool)
+        reading[self.places] = False
+        return reading
 
 
 NO_CORNERS = Corners(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))

@@ -123,7 +123,7 @@ def slip_state(
         elements.share,
         forgetting=float(shape.get("forgetting", 0.0)),
     )
-    return np.delete(state, corners.places) if len(corners) else state
+    return corners.taken_out(state) if len(corners) else state
 
 
 def solve_slip(
@@ -188,8 +188,8 @@ def solve_slip(
         return SlipPath(angle, friction)
     there = corners.places
     return SlipPath(
-        np.delete(angle, there),
-        np.delete(friction, there),
+        corners.taken_out(angle),
+        corners.taken_out(friction),
         angle[there],
         corners.torque_nm - friction[there],
     )

@@ -142,7 +142,7 @@ class ViscousDrag(Effect):
         knee_nm = None if thinning is None else thinning / compliance
         carried = _core.dragged(through, lapse, restart, lag, power, rate_nm, by_sample, knee_nm)
         if len(through) > len(torque):
-            carried = np.delete(carried, corners.places)
+            carried = corners.taken_out(carried)
         # What is not carried is drag: lag times the usual rate where the twist moves at that rate.
         resisted = (torque - carried) / (lag * rate_nm)
         lost = compliance if history.drag_compliance is None else history.drag_compliance

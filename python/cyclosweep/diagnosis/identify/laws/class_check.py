@@ -104,7 +104,7 @@ def _smaller_than_errors(compared: Sequence[ClassComparison]) -> frozenset[str]:
     """Names of laws with less evidence than what a larger law misses inside its own classes.
 
     The error of a law reaches into other classes, too: what is smaller than its error where it is
-    known may be its error elsewhere.
+    known may be its error elsewhere. The terms of a whole loop were chosen by what they predict.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def _smaller_than_errors(compared: Sequence[ClassComparison]) -> frozenset[str]:
     for each in compared:
         larger = [other for other in compared if other.by_law > each.by_law]
         missed = max((left.evidence for other in larger for left in other.left), default=0.0)
-        if each.by_law < missed:
+        if each.by_law < missed and each.fitted.independent_share == 1.0:
             small |= {each.fitted.terms[index].name for index in each.indices}
     return frozenset(small)
 
