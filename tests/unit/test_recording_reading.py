@@ -376,3 +376,27 @@ def test_semicolons_with_decimal_points(tmp_path: Path) -> None:
     assert_is_the_loop(cs.Recording.read(write(tmp_path, text)))
     mixed = text.replace("29.5;1\n", "29.5;1;warm, dry\n")
     assert_is_the_loop(cs.Recording.read(write(tmp_path, mixed)))
+
+
+def test_rows_of_a_clock_that_is_rounded_are_spread_over_its_ticks(tmp_path: Path) -> None:
+    torque = 2.0 * np.r_[np.arange(10), np.arange(8, -1, -1)]
+    time_s = np.floor(np.arange(19) / 3.0)
+    time_s[14:] += 30.0
+    rows = [f"{t:g},{m:g},{28 + 2.7 * m:.2f}" for t, m in zip(time_s, torque, strict=True)]
+    text = "time_s,torque_nm,angle_deg\n" + "\n".join(rows) + "\n"
+    found = cs.Recording.read(write(tmp_path, text))
+    assert found.time_s is not None
+    steps = np.diff(found.time_s)
+    assert steps[:9] == pytest.approx(1 / 3)
+    assert found.time_s[14:18] == pytest.approx([34.0, 35.0, 35.0 + 1 / 3, 35.0 + 2 / 3])
+    assert any("rounded to 1 s while the torque moves" in note for note in found.notes)
+    assert not any(fault.kind == "clock_ticks" for fault in found.faults)
+
+
+def test_rows_of_one_reading_keep_their_time(tmp_path: Path) -> None:
+    torque = np.repeat(2.0 * np.arange(8), 3)
+    rows = [f"{k // 3},{m:g},{28 + 2.7 * m + 0.01 * (k % 2):.2f}" for k, m in enumerate(torque)]
+    text = "time_s,torque_nm,angle_deg\n" + "\n".join(rows) + "\n"
+    found = cs.Recording.read(write(tmp_path, text))
+    assert found.time_s is not None
+    assert len(np.unique(found.time_s)) == 8

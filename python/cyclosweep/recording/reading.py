@@ -28,6 +28,7 @@ from cyclosweep.recording.decimation import merge_neighbours
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.shared_ticks import spread_ticks
 from cyclosweep.recording.signals import angle_lattice
 
 __all__ = ["read", "stem"]
@@ -136,6 +137,7 @@ def _clean_columns(
     elif columns["time_s"] is not None:
         columns = drop_repeated(columns, notes)
     columns, faults = drop_missing(columns, notes)
+    columns = spread_ticks(columns, notes)
     columns["angle_deg"] = put_angle_right(columns, meta, notes)
     if meta.merge.neighbours > 1:
         columns = merge_neighbours(columns, meta.merge.neighbours, notes)

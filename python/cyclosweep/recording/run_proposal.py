@@ -3,12 +3,11 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cyclosweep.recording.choosing import Choice
 from cyclosweep.recording.proposed import Proposal, values_of
-from cyclosweep.recording.robust import sigma_by_second_differences
 from cyclosweep.recording.samples import Floats
+from cyclosweep.recording.shared_ticks import TICKS, moved_in_a_tick
 
 __all__ = ["propose_limit", "propose_runs", "propose_ticks"]
 
@@ -20,15 +19,6 @@ NEARLY_ALL = 0.95
 
 EQUAL = 0.1
 """Runs whose torques differ by less of the largest one repeat each other."""
-
-TICKS = 0.3
-"""Share of rows on the tick of the row before from which they are averaged."""
-
-MOVES = 3.0
-"""Move of the torque within a tick, over its noise, beyond which rows of the tick differ."""
-
-MOVED = 0.005
-"""The same over the range of the torque: means of less lose nothing of its peaks."""
 
 LOGGED = 2000
 """Rows beyond which nobody has read them by hand."""
@@ -139,43 +129,15 @@ def propose_ticks(numbers: dict[str, Floats], choice: Choice, made: Proposal) ->
     if not TICKS < share < 1.0:  # of a clock that stands still all do, and it is left out
         return
     torque = choice.roles["torque_nm"].column
-    moved = _moved_in_a_tick(numbers[torque], step == 0)
+    moved = moved_in_a_tick(numbers[torque], step == 0)
     if moved is not None:
         made.assumed.append(
             f"The clock is rounded: within a tick of it {torque} moves by {moved:.3g}. Rows that "
-            "share one are not averaged."
+            "share one are not averaged, but spread evenly over it."
         )
     else:
         made.meta["merge"] = {"same_time": True}  # which shortens a long recording, too
         made.remarks["merge"] = f"{share:.0%} of the rows share a clock tick with the one before"
-
-
-def _moved_in_a_tick(torque: Floats, shared: NDArray[np.bool_]) -> float | None:
-    """How far the torque moves while the clock shows one time, if it does beyond its noise.
-
-    Parameters
-    ----------
-    torque : ndarray of float, shape (n,)
-        Torque in the file's unit.
-    shared : ndarray of bool, shape (n - 1,)
-        Whether a row but the first has the time of the row before.
-
-    Returns
-    -------
-    float or None
-        Usual move from the first row of a tick to the last, in the file's unit.
-    """
-    known = torque[np.isfinite(torque)]
-    starts = np.flatnonzero(np.r_[True, ~shared])
-    stops = np.r_[starts[1:], len(torque)] - 1
-    several = stops > starts
-    moves = np.abs(torque[stops[several]] - torque[starts[several]])
-    moves = moves[np.isfinite(moves)]
-    if len(known) < 3 or not len(moves):
-        return None
-    noise = sigma_by_second_differences(known)
-    moved = float(np.median(moves))
-    return moved if moved > max(MOVES * noise, MOVED * float(np.ptp(known))) else None
 
 
 def propose_limit(numbers: dict[str, Floats], choice: Choice, made: Proposal) -> None:

@@ -181,7 +181,7 @@ def _places(levels: Floats, least: float) -> Floats:
         near = distance < reach * step
         count = np.maximum(np.rint(distance / step), 1.0)
         step = float(distance[near].sum() / count[near].sum())
-    return np.r_[0.0, np.cumsum(count)]
+    return np.asarray(np.r_[0.0, np.cumsum(count)])
 
 
 def _is_graduation(step_deg: float) -> bool:

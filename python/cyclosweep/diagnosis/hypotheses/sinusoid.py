@@ -24,12 +24,14 @@ CYCLES = 1.5
 within its range. Slower ones are left to other shapes."""
 FINEST = 250
 """Most cycles within the range of twist that are looked for."""
+APART = 2.0
+"""Cycles within the range of twist by which a ripple differs at least from that of the rounding."""
 PRIOR_PENALTY = 1.0
 """Log prior odds against a sinusoid."""
 
 
 def find_sinusoid(
-    history: History, fitted: Flags, residual: Floats
+    history: History, fitted: Flags, residual: Floats, resolution_deg: float = 0.0
 ) -> tuple[float, UnnamedShape | None]:
     """Evidence of the strongest sinusoid in a white residual, and its columns.
 
@@ -41,6 +43,8 @@ def find_sinusoid(
         Rows that are fitted.
     residual : ndarray, shape (fitted,)
         White residual of unit variance.
+    resolution_deg : float
+        Step of the angle reading [deg]; a ripple with as many cycles is its rounding.
 
     Returns
     -------
@@ -52,7 +56,7 @@ def find_sinusoid(
     found = [
         _in_time(history, fitted, residual),
         _in_time(history, fitted, residual, with_torque=True),
-        _along_twist(history, fitted, residual),
+        _along_twist(history, fitted, residual, resolution_deg),
     ]
     return max(found, key=lambda pair: pair[0])
 
@@ -107,7 +111,7 @@ def _in_time(
 
 
 def _along_twist(
-    history: History, fitted: Flags, residual: Floats
+    history: History, fitted: Flags, residual: Floats, resolution_deg: float
 ) -> tuple[float, UnnamedShape | None]:
     """Strongest sinusoid along the twist beyond the free play.
 
@@ -118,6 +122,8 @@ def _along_twist(
         Rows that are fitted.
     residual : ndarray, shape (fitted,)
         White residual of unit variance.
+    resolution_deg : float
+        Step of the angle reading [deg].
 
     Returns
     -------
@@ -140,6 +146,7 @@ def _along_twist(
         family=ALONG_TWIST,
         place="with {:.4g} cycles a degree, over the whole range",
         clock=lambda h: h.angle_deg - h.side * h.free_play_deg,
+        rounding=resolution_deg / step,
     )
 
 
@@ -155,6 +162,7 @@ def _strongest(
     clock: Callable[[History], Floats],
     factor: Callable[[History], Floats] | None = None,
     scale: Floats | None = None,
+    rounding: float = 0.0,
 ) -> tuple[float, UnnamedShape | None]:
     """Strongest frequency of a residual between two limits.
 
@@ -176,6 +184,8 @@ def _strongest(
         From a load history to a factor of the amplitude, shape (n,).
     scale : ndarray, shape (fitted,), optional
         The same factor on the fitted rows, in any unit.
+    rounding : float
+        Period of which a whole number of cycles counts for nothing [cells].
 
     Returns
     -------
@@ -189,7 +199,9 @@ def _strongest(
     series = np.bincount(cell, residual, minlength=length)[:length]
     power = np.abs(np.fft.rfft(series)) ** 2 / count
     frequency = np.fft.rfftfreq(length)
-    usable = (frequency > lowest) & (frequency < highest)
+    cycles = rounding * frequency
+    rounded = np.abs(cycles - np.rint(cycles)) * (cell.max() + 1) < APART * rounding
+    usable = (frequency > lowest) & (frequency < highest) & ~(rounded & (cycles > 0.5))
     if np.count_nonzero(usable) < 8:
         return 0.0, None
     power = power / np.maximum(_floor(power), 1.0)

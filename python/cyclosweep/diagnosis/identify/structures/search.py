@@ -265,7 +265,8 @@ class Search:
         -------
         Candidate
         """
-        found = find_sinusoid(fitted.history, self.problem.fitted, fitted.residual)
+        rows, step = self.problem.fitted, self.problem.resolution_deg
+        found = find_sinusoid(fitted.history, rows, fitted.residual, step)
         return Candidate(fitted, gain, prior, self._scan(fitted), found, self.alarm)
 
     def _room(self, candidate: Candidate) -> float:

@@ -1,0 +1,41 @@
+"""A ripple along the twist that has as many cycles as the dial has steps is its rounding."""
+
+import numpy as np
+
+import cyclosweep as cs
+from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
+from cyclosweep.diagnosis.prepare.problem import prepare
+
+STEP_DEG = 0.5
+
+
+def test_the_rounding_of_a_dial_is_no_ripple() -> None:
+    up = np.linspace(-10.0, 10.0, 301)
+    torque = np.tile(np.r_[up, up[-2:0:-1]], 2)
+    twist = 2.7 * torque
+    read = STEP_DEG * np.rint(twist / STEP_DEG)
+    problem = prepare(
+        cs.Recording.from_arrays(torque, read), cs.Drive.reference_87().nominal_line("input"), 8
+    )
+    error = (read - twist)[problem.fitted] / np.std(read - twist)
+    history = problem.history.with_state(angle_deg=twist, free_play_deg=0.0)
+    seen, ripple = find_sinusoid(history, problem.fitted, error)
+    assert seen > 50.0
+    assert ripple is not None
+    assert "with 1.998 cycles a degree" in ripple.place
+    assert find_sinusoid(history, problem.fitted, error, STEP_DEG)[0] < 0.2 * seen
+
+
+def test_another_ripple_is_seen_on_a_dial() -> None:
+    up = np.linspace(-10.0, 10.0, 301)
+    torque = np.tile(np.r_[up, up[-2:0:-1]], 2)
+    problem = prepare(
+        cs.Recording.from_arrays(torque, 2.7 * torque),
+        cs.Drive.reference_87().nominal_line("input"),
+        8,
+    )
+    wave = np.sqrt(2.0) * np.sin(2.0 * np.pi * 0.7 * problem.history.angle_deg[problem.fitted])
+    seen = [
+        find_sinusoid(problem.history, problem.fitted, wave, step)[0] for step in (0.0, STEP_DEG)
+    ]
+    assert min(seen) > 50.0
