@@ -5,13 +5,19 @@ import numpy as np
 import cyclosweep as cs
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
 from cyclosweep.diagnosis.prepare.problem import prepare
+from tests.support.arrays import Floats
 
 STEP_DEG = 0.5
 
 
+def irregular_torque() -> Floats:
+    """Torque up and down; even steps of it would mirror the rounding at other frequencies."""
+    rng = np.random.default_rng(7)
+    return np.concatenate([np.sort(rng.uniform(-10.0, 10.0, 300))[::sense] for sense in (1, -1, 1)])
+
+
 def test_the_rounding_of_a_dial_is_no_ripple() -> None:
-    up = np.linspace(-10.0, 10.0, 301)
-    torque = np.tile(np.r_[up, up[-2:0:-1]], 2)
+    torque = irregular_torque()
     twist = 2.7 * torque
     read = STEP_DEG * np.rint(twist / STEP_DEG)
     problem = prepare(
@@ -22,13 +28,12 @@ def test_the_rounding_of_a_dial_is_no_ripple() -> None:
     seen, ripple = find_sinusoid(history, problem.fitted, error)
     assert seen > 50.0
     assert ripple is not None
-    assert "with 1.998 cycles a degree" in ripple.place
-    assert find_sinusoid(history, problem.fitted, error, STEP_DEG)[0] < 0.2 * seen
+    assert "cycles a degree" in ripple.place
+    assert find_sinusoid(history, problem.fitted, error, STEP_DEG)[0] < 0.1 * seen
 
 
 def test_another_ripple_is_seen_on_a_dial() -> None:
-    up = np.linspace(-10.0, 10.0, 301)
-    torque = np.tile(np.r_[up, up[-2:0:-1]], 2)
+    torque = irregular_torque()
     problem = prepare(
         cs.Recording.from_arrays(torque, 2.7 * torque),
         cs.Drive.reference_87().nominal_line("input"),
