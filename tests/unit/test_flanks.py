@@ -139,3 +139,17 @@ def test_the_play_is_crossed_about_the_middle_of_each_run() -> None:
     _, in_contact = flanks.at(torques, angle, run=run)
     assert not in_contact[torques == 0.0].any()
     assert in_contact[np.abs(torques) > 4.0].all()
+
+
+def test_flanks_of_runs_that_begin_elsewhere_are_told_about_their_own_middle() -> None:
+    """Runs at positions of the mesh whose error is larger than the play."""
+    torque = np.tile(crossings(40, 1), 6)
+    run = np.repeat(np.arange(6), len(torque) // 6)
+    offset = 2.0 * np.cos(2.0 * np.pi * run / 6.0)
+    noise = 0.02 * np.random.default_rng(5).normal(size=len(torque))
+    angle = 0.5 * np.sign(torque) + COMPLIANCE * torque + offset + noise
+    flanks = find_flanks(torque, angle, LINE, run=run)
+    side, found = flanks.at(torque, angle, run=run)
+    np.testing.assert_array_equal(side, np.sign(torque))
+    assert found.all()
+    assert abs(flanks.free_play_deg - 0.5) < 0.02

@@ -32,7 +32,7 @@ def turned(positions: int, orders: tuple[int, ...]) -> cs.Recording:
     )
 
 
-@pytest.mark.parametrize(("positions", "looked_for"), [(12, False), (240, True)])
+@pytest.mark.parametrize(("positions", "looked_for"), [(10, False), (12, True), (240, True)])
 def test_higher_orders_are_looked_for_where_positions_are_many(
     positions: int, looked_for: bool
 ) -> None:

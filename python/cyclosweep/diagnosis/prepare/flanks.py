@@ -133,6 +133,11 @@ class Flanks:
             loaded = (np.abs(torque) > self.loaded_scored_nm) & scored
         run = np.zeros(len(torque), dtype=np.int64) if run is None else run
         inside = angle - self.datum_deg - self.compliance_deg_per_nm * torque
+        least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
+        moved = _moved_datum(inside - sign * play, sign * loaded, run, least)
+        # Of a run that is moved by more than the play, the middle of all runs tells nothing.
+        inside = np.where(np.abs(moved) > play, inside - moved, inside)
+        moved = np.where(np.abs(moved) > play, 0.0, moved)
         side = np.where(inside >= 0, 1.0, -1.0)
         side[loaded] = sign[loaded]
         if scored is not None:
@@ -146,8 +151,6 @@ class Flanks:
         side = sides_by_jumps(torque, angle, side, loaded, run, line)
         margin = min(max(2.0 * self.loop_width_deg, 0.1 * play), 0.8 * play)
         depth = play - inside * side
-        least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
-        moved = _moved_datum(inside - sign * play, sign * loaded, run, least)
         near = (depth < margin) & (play - np.abs(inside - moved) < margin)
         contact = loaded | pushed | near
         # A shaft may have been turned against the other flank without load. Where readings lie
@@ -251,6 +254,7 @@ def find_flanks(
     line: NominalLine,
     scored: Flags | None = None,
     resolution_deg: float = 0.0,
+    run: Ints | None = None,
 ) -> Flanks:
     """Fit a robust line through the loaded rows.
 
@@ -264,6 +268,44 @@ def find_flanks(
         Rows through which the line goes; default: all.
     resolution_deg : float
         Step of the angle reading [deg].
+    run : ndarray of int, shape (n,), optional
+        Run of each reading; where the middles of the runs differ by more than the play, the line
+        goes through the readings less their run's middle. Default: all are one run.
+
+    Returns
+    -------
+    Flanks
+    """
+    found = _through(torque, angle, line, scored, resolution_deg)
+    if run is None or found.turned is not None or found.only_direction is not None:
+        return found
+    loaded = np.abs(torque) > found.loaded_scored_nm
+    loaded = loaded if scored is None else loaded & scored
+    sign = np.where(torque >= 0, 1.0, -1.0)
+    left = angle - found.datum_deg - found.compliance_deg_per_nm * torque
+    moved = _moved_datum(left - sign * found.free_play_deg, sign * loaded, run, 0.0)
+    if not np.any(np.abs(moved) > found.free_play_deg):
+        return found
+    within = _through(torque, angle - moved, line, scored, resolution_deg)
+    matters = max(within.free_play_deg, OF_LOOP * within.loop_width_deg)
+    return within if np.any(np.abs(moved) > matters) else found
+
+
+def _through(
+    torque: Floats,
+    angle: Floats,
+    line: NominalLine,
+    scored: Flags | None,
+    resolution_deg: float,
+) -> Flanks:
+    """Robust line through the loaded rows; see `find_flanks`.
+
+    Parameters
+    ----------
+    torque, angle : ndarray, shape (n,)
+    line : NominalLine
+    scored : ndarray of bool, shape (n,), or None
+    resolution_deg : float
 
     Returns
     -------

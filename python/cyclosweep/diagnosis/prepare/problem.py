@@ -203,7 +203,8 @@ def prepare(
     )
     counts = recording.counts[first] & rows.full
     scored = None if recording.unscored is None else ~recording.unscored[first]
-    flanks = find_flanks(torque, angle, line, scored, recording.angle_resolution_deg)
+    step = recording.angle_resolution_deg
+    flanks = find_flanks(torque, angle, line, scored, step, run)
     piece = find_pieces(recording).of_sample[first]
     off_lines_deg = _off_lines(flanks, torque, angle, run)
     torque, torque_noise = torque_without_noise(

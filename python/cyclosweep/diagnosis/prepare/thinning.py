@@ -109,7 +109,8 @@ def _flanks(recording: Recording, line: NominalLine, most_rows: int) -> Flanks:
     assert angle is not None
     few = slice(None, None, max(len(torque) // most_rows, 1))
     scored = None if recording.unscored is None else ~recording.unscored[few]
-    return find_flanks(torque[few], angle[few], line, scored, recording.angle_resolution_deg)
+    step, run = recording.angle_resolution_deg, recording.run[few]
+    return find_flanks(torque[few], angle[few], line, scored, step, run)
 
 
 def _without_outliers(curve: Floats) -> Floats:

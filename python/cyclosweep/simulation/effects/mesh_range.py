@@ -22,6 +22,8 @@ same as one of the locking position and a pulsating compliance."""
 PLACES_A_CYCLE = 8
 """Recorded positions a cycle from which an order beyond the usual ones is looked for: so many there
 are where the shaft was turned under load, not locked at a few places."""
+USUAL_ORDER, HIGHEST_LOCKED_ORDER = 4, 6
+"""Highest order of the position that is always looked for, and where there are positions enough."""
 HIGHEST_TURNED_ORDER = 12
 """Highest order of the position that is looked for where the shaft was turned under load."""
 
@@ -63,6 +65,25 @@ def position_count(history: History) -> int:
     if history.crank_deg is None:
         return 0
     return len(np.unique(mesh_positions(history.crank_deg)))
+
+
+def locked_orders(history: History) -> range:
+    """Orders that are looked for where the mesh was locked at some positions.
+
+    Those of which two positions an order, and one, tell the amplitudes.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+
+    Returns
+    -------
+    range
+        The usual ones at least.
+    """
+    told_apart = (position_count(history) - 1) // 2
+    return range(1, 1 + min(max(told_apart, USUAL_ORDER), HIGHEST_LOCKED_ORDER))
 
 
 def turned_orders(history: History, above: int) -> range:

@@ -7,7 +7,7 @@ import numpy as np
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Parameter, Shape, ShapeForm
 from cyclosweep.simulation.effects.history import Floats, History
-from cyclosweep.simulation.effects.mesh_range import turned_orders
+from cyclosweep.simulation.effects.mesh_range import locked_orders, turned_orders
 from cyclosweep.simulation.effects.order_names import (
     LOAD_POWER,
     ORDER,
@@ -29,14 +29,15 @@ LEAST_REFERENCE_NM = 1e-6
 
 
 class PhaseDependentCompliance(MeshPeriodic):
-    """Compliance periodic in the mesh position: orders 1-4, and those of the output pins.
+    """Compliance periodic in the mesh position: orders 1-4 or 1-6, and those of the output pins.
 
     It multiplies the twist of all elastic parts that carry what friction leaves, a stiffening or a
-    side load among them. Up to order 12 where the shaft was turned under load past many positions,
-    orders 1 to 3 where it travels from recorded positions, any order where none was recorded. With
-    `load_power` it grows with another power of the load, as where contacts alone pulsate that
-    stiffen under load, and the rest of the compliance does not; below a twentieth of `reference_nm`
-    it grows in proportion to it, as contacts that are preloaded.
+    side load among them. Orders 5 and 6 where it was locked at 11 or 13 positions, up to 12 where
+    the shaft was turned under load past many positions, orders 1 to 3 where it travels from
+    recorded positions, any order where none was recorded. With `load_power` it grows with another
+    power of the load, as where contacts alone pulsate that stiffen under load, and the rest of the
+    compliance does not; below a twentieth of `reference_nm` it grows in proportion to it, as
+    contacts that are preloaded.
     """
 
     name = "phase_dependent_compliance"
@@ -45,7 +46,7 @@ class PhaseDependentCompliance(MeshPeriodic):
         "compliance pulsates with it. Uneven pins and holes add the low orders."
     )
     source = "Kumar et al. 2016, section 4 (map of active pins); McIver's claim in section 5"
-    tell_tale = "slope differs by crank position; orders 1-4, N_OP and 2 N_OP"
+    tell_tale = "slope differs by crank position; orders 1-6, N_OP and 2 N_OP"
     family = "position"
     shape_parameters = (
         *MeshPeriodic.shape_parameters,
@@ -91,9 +92,12 @@ class PhaseDependentCompliance(MeshPeriodic):
     def locked_shapes(self, history: History) -> Sequence[Shape]:
         """Single orders, the low ones together, and the pin orders."""
         pins = history.output_pin_count
-        sets = [(1,), (2,), (3,), (4,), (pins,), (2 * pins,), (1, 2), (2, 4), (1, 2, 3)]
-        turned = turned_orders(history, above=4)
-        sets += [(order,) for order in turned if order not in (pins, 2 * pins)]
+        locked = locked_orders(history)
+        single = (*locked, *turned_orders(history, above=locked[-1]))
+        sets: list[tuple[int, ...]] = [
+            (order,) for order in single if order not in (pins, 2 * pins)
+        ]
+        sets += [(pins,), (2 * pins,), (1, 2), (2, 4), (1, 2, 3)]
         return order_shapes([*sets, (1, 2, 3, 4), (pins, 2 * pins), (2, 4, pins)])
 
     def largest(self, history: History) -> float:
