@@ -27,6 +27,10 @@ LEAST_MOVED = 0.1
 OF_LOOP = 0.2
 """The same as a share of the width of the loop: of runs with different loops the middles differ."""
 
+SCATTERED = 3.0
+"""The same over the scatter of a reading, from which a run is told about its own middle: of a few
+readings the middle is not known well."""
+
 LOOP = (0.1, 0.9)
 """Quantiles of what the lines leave that stand for both branches of a loop."""
 
@@ -83,6 +87,12 @@ class Flanks:
         return max(friction_nm, LIGHT * self.loaded_nm)
 
     @property
+    def _apart_deg(self) -> float:
+        """Move of the middle of a run from which its flanks are told about it [deg]."""
+        of_loop = OF_LOOP * self.loop_width_deg
+        return max(self.free_play_deg, of_loop, SCATTERED * self.scatter_deg)
+
+    @property
     def _is_hidden(self) -> bool:
         """Whether a loop hides on which flank a light reading lies, and the torque tells it.
 
@@ -136,8 +146,9 @@ class Flanks:
         least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
         moved = _moved_datum(inside - sign * play, sign * loaded, run, least)
         # Of a run that is moved by more than the play, the middle of all runs tells nothing.
-        inside = np.where(np.abs(moved) > play, inside - moved, inside)
-        moved = np.where(np.abs(moved) > play, 0.0, moved)
+        apart = np.abs(moved) > self._apart_deg
+        inside = np.where(apart, inside - moved, inside)
+        moved = np.where(apart, 0.0, moved)
         side = np.where(inside >= 0, 1.0, -1.0)
         side[loaded] = sign[loaded]
         if scored is not None:
@@ -287,8 +298,7 @@ def find_flanks(
     if not np.any(np.abs(moved) > found.free_play_deg):
         return found
     within = _through(torque, angle - moved, line, scored, resolution_deg)
-    matters = max(within.free_play_deg, OF_LOOP * within.loop_width_deg)
-    return within if np.any(np.abs(moved) > matters) else found
+    return within if np.any(np.abs(moved) > within._apart_deg) else found
 
 
 def _through(
