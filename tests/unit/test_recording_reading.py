@@ -393,6 +393,19 @@ def test_rows_of_a_clock_that_is_rounded_are_spread_over_its_ticks(tmp_path: Pat
     assert not any(fault.kind == "clock_ticks" for fault in found.faults)
 
 
+def test_rows_of_a_rounded_clock_stay_before_the_next_run(tmp_path: Path) -> None:
+    torque = 2.0 * np.tile(np.arange(9), 2)
+    time_s = np.r_[np.repeat([0.0, 1.0, 2.0], 3), np.repeat([2.4, 3.4, 4.4], 3)]
+    rows = [
+        f"{k // 9},{t:g},{m:g},{28 + 2.7 * m:.2f}"
+        for k, (t, m) in enumerate(zip(time_s, torque, strict=True))
+    ]
+    text = "run,time_s,torque_nm,angle_deg\n" + "\n".join(rows) + "\n"
+    found = cs.Recording.read(write(tmp_path, text))
+    assert found.time_s is not None
+    assert np.all(np.diff(found.time_s) > 0)
+
+
 def test_rows_of_one_reading_keep_their_time(tmp_path: Path) -> None:
     torque = np.repeat(2.0 * np.arange(8), 3)
     rows = [f"{k // 3},{m:g},{28 + 2.7 * m + 0.01 * (k % 2):.2f}" for k, m in enumerate(torque)]

@@ -79,7 +79,7 @@ def spread_ticks(columns: Columns, notes: list[str]) -> Columns:
         return columns
     tick = float(np.median(ahead[goes_on]))
     # A longer time to the next tick is a pause, and what follows the last one is not known.
-    length = np.r_[np.where(goes_on, np.minimum(ahead, tick), tick), tick]
+    length = np.r_[np.where(ahead > 0, np.minimum(ahead, tick), tick), tick]
     place = np.arange(len(time)) - np.repeat(starts, count)
     notes.append(
         f"The clock is rounded to {tick:g} s while the torque moves: rows that share a time are "
