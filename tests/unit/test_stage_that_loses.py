@@ -61,3 +61,21 @@ def test_what_was_given_up_comes_back_where_the_stages_since_explain_less(
     assert not stages.gives_up(stage, stage.start)
     assert stages.ended().start.names == frozenset(before.names)
     assert stages.fitted is before
+
+
+def test_laws_are_settled_by_the_search_that_came_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    search = search_of(friction(2.0), CREEP)
+    flexible = flexible_basis(search.problem, search.library)
+    begun = staged_search._Stages.begin(search, flexible, None).fitted
+    later = search_of(friction(1.0))
+    monkeypatch.setattr(staged_search, "MOST_STAGES", 0)
+    settled = []
+
+    def ended(stages: staged_search._Stages) -> object:
+        stages.searched = later
+        return stages.last
+
+    monkeypatch.setattr(staged_search._Stages, "ended", ended)
+    monkeypatch.setattr(staged_search, "_with_settled_laws", lambda *given: settled.append(given))
+    staged_search.search_in_stages(search, flexible, lambda _: None, begun)
+    assert settled[0][0] is later

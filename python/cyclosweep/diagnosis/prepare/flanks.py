@@ -104,6 +104,38 @@ class Flanks:
         wide = self.loop_width_deg > self.free_play_deg
         return both and wide and self._pushed_nm < self.loaded_nm
 
+    def _is_loaded(self, torque: Floats, scored: Flags | None) -> Flags:
+        """Readings that are in contact whatever the angle says.
+
+        Parameters
+        ----------
+        torque : ndarray, shape (n,)
+            In N m.
+        scored : ndarray of bool, shape (n,), or None
+            Readings that are scored; None for all.
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+        """
+        if scored is None:
+            return np.asarray(np.abs(torque) > self.loaded_nm)
+        return np.asarray((np.abs(torque) > self.loaded_scored_nm) & scored)
+
+    def _off_middle(self, torque: Floats, angle: Floats) -> Floats:
+        """How far each reading lies from the line through the middle of the play [deg].
+
+        Parameters
+        ----------
+        torque, angle : ndarray, shape (n,)
+            Torque [N m] and twist [deg].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        return np.asarray(angle - self.datum_deg - self.compliance_deg_per_nm * torque)
+
     def at(
         self,
         torque: Floats,
@@ -138,11 +170,9 @@ class Flanks:
             # No reading tells where in it the shaft stands: to take those near a flank would be to
             # take them by their noise.
             return sign, np.ones(len(torque), dtype=bool)
-        loaded = np.abs(torque) > self.loaded_nm
-        if scored is not None:
-            loaded = (np.abs(torque) > self.loaded_scored_nm) & scored
+        loaded = self._is_loaded(torque, scored)
         run = np.zeros(len(torque), dtype=np.int64) if run is None else run
-        inside = angle - self.datum_deg - self.compliance_deg_per_nm * torque
+        inside = self._off_middle(torque, angle)
         least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
         moved = _moved_datum(inside - sign * play, sign * loaded, run, least)
         # Of a run that is moved by more than the play, the middle of all runs tells nothing.
@@ -290,11 +320,9 @@ def find_flanks(
     found = _through(torque, angle, line, scored, resolution_deg)
     if run is None or found.turned is not None or found.only_direction is not None:
         return found
-    loaded = np.abs(torque) > found.loaded_scored_nm
-    loaded = loaded if scored is None else loaded & scored
     sign = np.where(torque >= 0, 1.0, -1.0)
-    left = angle - found.datum_deg - found.compliance_deg_per_nm * torque
-    moved = _moved_datum(left - sign * found.free_play_deg, sign * loaded, run, 0.0)
+    left = found._off_middle(torque, angle) - sign * found.free_play_deg
+    moved = _moved_datum(left, sign * found._is_loaded(torque, scored), run, 0.0)
     if not np.any(np.abs(moved) > found.free_play_deg):
         return found
     within = _through(torque, angle - moved, line, scored, resolution_deg)

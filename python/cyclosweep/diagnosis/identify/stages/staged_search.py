@@ -85,7 +85,8 @@ def search_in_stages(
             continue
         if not stages.accepts(search, decision, best):
             break
-    return _with_settled_laws(stages.searched, flexible, stages.ended(), say)
+    last = stages.ended()
+    return _with_settled_laws(stages.searched, flexible, last, say)
 
 
 @dataclass
