@@ -28,39 +28,40 @@ def noisy(seed: int, torque: Floats, size: float) -> tuple[Floats, Floats]:
 def test_noise_that_the_twist_does_not_follow_is_smoothed(size: float) -> None:
     torque, piece, time = programme()
     read, scatter = noisy(1, torque, size)
-    smooth, noise = torque_without_noise(
-        read, COMPLIANCE * torque + scatter, piece, COMPLIANCE, 0.1, time
+    found = torque_without_noise(
+        read, COMPLIANCE * torque + scatter, piece, COMPLIANCE, np.full(len(torque), 0.1), time
     )
-    assert noise == pytest.approx(size, rel=0.1)
-    assert np.std(smooth - torque) < 0.5 * size
+    assert found.noise_nm == pytest.approx(size, rel=0.1)
+    assert np.std(found.torque_nm - torque) < 0.5 * size
 
 
 def test_torque_that_the_twist_follows_is_left_as_it_was_read() -> None:
     torque, piece, time = programme()
     real, scatter = noisy(2, torque, 0.1)
-    smooth, noise = torque_without_noise(
-        real, COMPLIANCE * real + scatter, piece, COMPLIANCE, 0.1, time
+    found = torque_without_noise(
+        real, COMPLIANCE * real + scatter, piece, COMPLIANCE, np.full(len(torque), 0.1), time
     )
-    assert noise == 0.0
-    assert smooth is real
+    assert found.noise_nm == 0.0
+    assert found.torque_nm is real
 
 
 def test_a_clean_torque_is_left_as_it_was_read() -> None:
     torque, piece, time = programme()
     read = np.round(torque, 6)
-    smooth, noise = torque_without_noise(
-        read, COMPLIANCE * torque + noisy(3, torque, 0.0)[1], piece, COMPLIANCE, 0.1, time
-    )
-    assert noise == 0.0
-    assert smooth is read
+    twist = COMPLIANCE * torque + noisy(3, torque, 0.0)[1]
+    found = torque_without_noise(read, twist, piece, COMPLIANCE, np.full(len(torque), 0.1), time)
+    assert found.noise_nm == 0.0
+    assert found.torque_nm is read
 
 
 def test_noise_far_below_the_mismatch_is_left() -> None:
     torque, piece, time = programme()
     read, scatter = noisy(1, torque, 0.03)
-    twist = COMPLIANCE * torque + scatter
-    assert torque_without_noise(read, twist, piece, COMPLIANCE, 5.0, time)[0] is read
-    assert torque_without_noise(read, twist, piece, COMPLIANCE, 3.0, time)[0] is not read
+    twist, ones = COMPLIANCE * torque + scatter, np.ones(len(torque))
+    assert torque_without_noise(read, twist, piece, COMPLIANCE, 5.0 * ones, time).torque_nm is read
+    assert (
+        torque_without_noise(read, twist, piece, COMPLIANCE, 3.0 * ones, time).torque_nm is not read
+    )
 
 
 def test_steps_of_a_staircase_of_weights_stay() -> None:
@@ -68,8 +69,8 @@ def test_steps_of_a_staircase_of_weights_stay() -> None:
     torque = np.repeat(np.r_[1.0:11.0], 6)
     read = torque + 0.03 * rng.normal(size=len(torque))
     twist = COMPLIANCE * torque + 0.02 * rng.normal(size=len(torque))
-    smooth, _ = torque_without_noise(read, twist, np.zeros(len(torque), np.int64), COMPLIANCE, 0.1)
-    assert np.abs(smooth - torque).max() < 0.15
+    found = torque_without_noise(read, twist, np.zeros(60, np.int64), COMPLIANCE, np.full(60, 0.1))
+    assert np.abs(found.torque_nm - torque).max() < 0.15
 
 
 def test_the_diagnosis_stays_silent_beside_noise_of_the_torque() -> None:

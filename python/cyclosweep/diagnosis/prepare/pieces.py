@@ -87,12 +87,14 @@ class Pieces:
         return Rows(row, samples >= LEAST_FULL * size, size)
 
 
-def find_pieces(recording: Recording) -> Pieces:
+def find_pieces(recording: Recording, *, at_zero: bool = True) -> Pieces:
     """Cut a recording wherever its load history bends.
 
     Parameters
     ----------
     recording : Recording
+    at_zero : bool
+        Whether it bends, too, where the torque changes its sign and the shaft crosses the play.
 
     Returns
     -------
@@ -105,7 +107,8 @@ def find_pieces(recording: Recording) -> Pieces:
     cut = np.zeros(count, dtype=bool)
     cut[0] = True
     cut[1:] |= np.diff(recording.run) != 0
-    cut[1:] |= np.diff(np.sign(torque)) != 0
+    if at_zero:
+        cut[1:] |= np.diff(np.sign(torque)) != 0
     cut[1:] |= np.diff(recording.counts)
     starts = np.flatnonzero(np.r_[True, np.diff(recording.run) != 0, True])
     for start, stop in pairwise(starts):

@@ -205,12 +205,15 @@ def prepare(
     scored = None if recording.unscored is None else ~recording.unscored[first]
     step = recording.angle_resolution_deg
     flanks = find_flanks(torque, angle, line, scored, step, run)
-    piece = find_pieces(recording).of_sample[first]
-    off_lines_deg = _off_lines(flanks, torque, angle, run)
-    torque, torque_noise = torque_without_noise(
-        torque, angle, piece, flanks.compliance_deg_per_nm, off_lines_deg, time
+    piece = find_pieces(recording, at_zero=False).of_sample[first]
+    off_lines = _off_lines(flanks, torque, angle, run)
+    smooth = torque_without_noise(
+        torque, angle, piece, flanks.compliance_deg_per_nm, off_lines, time, run
     )
+    torque, angle = smooth.torque_nm, angle - smooth.twist_deg
     side, contact = flanks.at(torque, angle, scored, run)
+    # Of a load within its noise nobody can say that it holds the shaft against a flank.
+    contact &= (np.abs(torque) > smooth.noise_nm) | (flanks.free_play_deg <= flanks.scatter_deg)
     datum, compliance = flanks.datum_deg, flanks.compliance_deg_per_nm
     play = flanks.free_play_deg
     if rows.on_one_flank is not None:
@@ -258,7 +261,7 @@ def prepare(
         one_sided=one_sided,
         loop_width_deg=flanks.loop_width_deg,
         resolution_deg=recording.angle_resolution_deg,
-        torque_noise_nm=torque_noise,
+        torque_noise_nm=smooth.noise_nm,
         nominal_compliance_deg_per_nm=line.compliance_deg_per_nm,
         nominal_free_play_deg=line.free_play_deg,
     )
@@ -284,8 +287,8 @@ def _since_first_contact(contact: Flags, restart: Flags) -> Flags:
     return np.asarray(so_far > before[np.cumsum(restart) - 1])
 
 
-def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, run: Ints) -> float:
-    """Root mean square of what straight lines on both flanks leave of the twist [deg].
+def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, run: Ints) -> Floats:
+    """What straight lines on both flanks leave of the twist [deg].
 
     Parameters
     ----------
@@ -298,13 +301,13 @@ def _off_lines(flanks: Flanks, torque_nm: Floats, angle_deg: Floats, run: Ints) 
 
     Returns
     -------
-    float
+    ndarray, shape (n,)
+        Zero of readings within the play.
     """
     side, contact = flanks.at(torque_nm, angle_deg, run=run)
     line = flanks.datum_deg + side * flanks.free_play_deg
     line = line + flanks.compliance_deg_per_nm * torque_nm
-    left = (angle_deg - line)[contact]
-    return float(np.sqrt(np.mean(left**2))) if len(left) else 0.0
+    return np.where(contact, angle_deg - line, 0.0)
 
 
 def gaps(fitted: Flags, run: np.ndarray, time: Floats | None) -> Floats:

@@ -6,8 +6,11 @@ then the twist knows nothing of it. Left in, noise of the torque looks like drag
 makes, and like friction, which holds the shaft through its small reversals.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from cyclosweep.diagnosis.prepare.programme_curves import programme_curves
 from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.simulation.effects.history import Floats, Ints
 
@@ -23,14 +26,46 @@ or a step: such rows are left as they were read."""
 FOLLOWS = 0.5
 """Share of the compliance with which the twist follows what the torque does from row to row, from
 which that is torque and no noise."""
+CLEARLY = 2.0
+"""Standard deviations of that share by which it has to lie above: where the readings cannot tell,
+what is smoothed away is lost in the noise of the twist, and what is left in looks like drag."""
 SEEN = 1.0
 """Noise of the torque, as twist over what scatters there and summed over all rows, from which any
 test could see it."""
 SMALL = 0.02
 """Noise of the torque, as twist over what a straight line leaves, up to which the errors of laws
 hide what it does; the torque as read is then also what a repaired model is given."""
+LARGE = 0.5
+"""Slow noise of the torque, as twist over what else is slow in it, from which errors of the curves
+are seen there."""
+AVERAGED = 16
+"""Rows over which noise of the torque is averaged to see how much of it is slow."""
 SINGULAR = 1e10
 """Condition number from which rows at too few places fix no parabola."""
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothTorque:
+    """Torque without the noise of its sensor.
+
+    Where that noise is large beside the noise of the twist, even a line through all readings of a
+    ramp is off by more than the noise of the twist allows, and its error lasts as long as the ramp.
+    The twist is then also compared with what the torque as read would make of it.
+
+    Attributes
+    ----------
+    torque_nm : ndarray, shape (n,)
+        The torque, by which rates, turning points and friction are found [N m].
+    noise_nm : float
+        Standard deviation of the noise that was smoothed; zero where it is the torque as read.
+    twist_deg : ndarray, shape (n,)
+        Twist by the noise, to be taken off the twist that was read [deg]; zero where its error does
+        not matter.
+    """
+
+    torque_nm: Floats
+    noise_nm: float
+    twist_deg: Floats
 
 
 def torque_without_noise(
@@ -38,9 +73,10 @@ def torque_without_noise(
     angle_deg: Floats,
     piece: Ints,
     compliance_deg_per_nm: float,
-    mismatch_deg: float,
+    off_lines_deg: Floats,
     time_s: Floats | None = None,
-) -> tuple[Floats, float]:
+    run: Ints | None = None,
+) -> "SmoothTorque":
     """Smooth the torque along the pieces of the load history, where it scatters by noise.
 
     Parameters
@@ -52,29 +88,33 @@ def torque_without_noise(
         point within one.
     compliance_deg_per_nm : float
         Rough compliance of the drive at the measured shaft.
-    mismatch_deg : float
-        Root mean square of what a straight line on each flank leaves of the twist [deg].
+    off_lines_deg : ndarray, shape (n,)
+        What a straight line on each flank leaves of the twist [deg]; zero of readings within the
+        play.
     time_s : ndarray, shape (n,), optional
         Clock [s]; without it rows count as equally spaced.
+    run : ndarray of int, shape (n,), optional
+        Run of each row; default: all are one run.
 
     Returns
     -------
-    torque_nm : ndarray, shape (n,)
+    SmoothTorque
         The torque as it was read where the twist follows it, or where no test could tell.
-    noise_nm : float
-        Standard deviation of the noise that was smoothed; zero where it is the torque as read.
     """
+    as_read = SmoothTorque(torque_nm, 0.0, np.zeros(len(torque_nm)))
     place = np.arange(len(torque_nm), dtype=np.float64) if time_s is None else time_s
     both = np.vstack([torque_nm, angle_deg])
     (nearest, _), share = _parabolas(both, place, piece, REACHES[0])
     left = np.sqrt(np.maximum(1.0 - share, 0.0))
     beyond = np.divide(torque_nm - nearest, left, out=np.zeros_like(left), where=left > 0.0)
     if not np.any(left > 0.0):
-        return torque_nm, 0.0
+        return as_read
     noise = robust_sigma(beyond[left > 0.0])
     steady = (left > 0.0) & (np.abs(beyond) <= CORNER * noise)
-    if compliance_deg_per_nm * noise <= SMALL * mismatch_deg:
-        return torque_nm, 0.0
+    touching = off_lines_deg != 0.0
+    mismatch = float(np.sqrt(np.mean(off_lines_deg[touching] ** 2))) if np.any(touching) else 0.0
+    if compliance_deg_per_nm * noise <= SMALL * mismatch:
+        return as_read
     smooth = both.copy()
     low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
     agrees = steady
@@ -84,15 +124,44 @@ def torque_without_noise(
         low, high = np.maximum(low, fitted[0] - room), np.minimum(high, fitted[0] + room)
         agrees = agrees & (low <= high)
         smooth[:, agrees] = fitted[:, agrees]
+    run = np.zeros(len(piece), dtype=np.int64) if run is None else run
+    clipped = np.clip(beyond[left > 0.0], -CORNER * noise, CORNER * noise)
+    curves = programme_curves(torque_nm, place, piece, run, float(np.sqrt(np.mean(clipped**2))))
+    smooth[0] = np.where(np.isfinite(curves), curves, smooth[0])
     ripple, jitter = (both - smooth)[:, steady]
     size = robust_sigma(jitter)
     power = float(ripple @ ripple)
     if compliance_deg_per_nm * np.sqrt(power) <= SEEN * size:
-        return torque_nm, 0.0
+        return as_read
     followed = float(ripple @ np.clip(jitter, -CORNER * size, CORNER * size)) / power
-    if followed > FOLLOWS * compliance_deg_per_nm:
-        return torque_nm, 0.0
-    return smooth[0], noise
+    if followed > FOLLOWS * compliance_deg_per_nm + CLEARLY * size / np.sqrt(power):
+        return as_read
+    error = torque_nm - smooth[0]
+    slow = compliance_deg_per_nm * _slow_size(error, run)
+    of_twist = np.sqrt(max(_slow_size(off_lines_deg, run) ** 2 - slow**2, 0.0))
+    if slow > LARGE * of_twist:
+        return SmoothTorque(smooth[0], noise, compliance_deg_per_nm * error)
+    return SmoothTorque(smooth[0], noise, np.zeros(len(error)))
+
+
+def _slow_size(error: Floats, run: Ints) -> float:
+    """Size of noise by its averages over some rows, times the root of their number.
+
+    Parameters
+    ----------
+    error : ndarray, shape (n,)
+    run : ndarray of int, shape (n,)
+        Run of each row.
+
+    Returns
+    -------
+    float
+        The standard deviation itself where it is white; zero of fewer rows.
+    """
+    sums = np.cumsum(np.r_[0.0, error])
+    same = run[:-AVERAGED] == run[AVERAGED:] if len(error) > AVERAGED else np.zeros(0, dtype=bool)
+    means = (sums[AVERAGED:-1] - sums[: -AVERAGED - 1])[same] / np.sqrt(AVERAGED)
+    return robust_sigma(means) if len(means) else 0.0
 
 
 def smoothed_in_words(noise_nm: float) -> str:
