@@ -92,14 +92,16 @@ def _of_run(run: int, torque: Floats, angle: Floats) -> LoopLines | None:
     rising = np.gradient(smooth) > 0
     edges = np.linspace(angle.min(), angle.max(), min(ANGLE_BINS, len(torque) // 4) + 1)
     place = np.clip(np.searchsorted(edges, angle, side="right") - 1, 0, len(edges) - 2)
-    sums = []
+    torques, angles = [], []
     for part in (rising, ~rising):
         count = np.bincount(place[part], minlength=len(edges) - 1)
-        total = np.bincount(place[part], torque[part], minlength=len(edges) - 1)
-        sums.append(np.where(count > 0, total / np.maximum(count, 1), np.nan))
-    up, down = sums
+        for mean, values in ((torques, torque), (angles, angle)):
+            total = np.bincount(place[part], values[part], minlength=len(edges) - 1)
+            mean.append(np.where(count > 0, total / np.maximum(count, 1), np.nan))
+    (up, down), (up_deg, down_deg) = torques, angles
     middle, half = 0.5 * (up + down), 0.5 * (up - down)
-    centre = 0.5 * (edges[1:] + edges[:-1])
+    # Where the readings of a bin lie, not its middle: few of them lie about it evenly.
+    centre, apart = 0.5 * (up_deg + down_deg), 0.5 * (up_deg - down_deg)
     largest = np.nanmax(np.abs(middle)) if np.isfinite(middle).any() else 0.0
     low, high = (share * largest for share in LINE_SHARES)
     ends, slopes, flanks = [], [], np.zeros(len(middle), dtype=bool)
@@ -112,6 +114,7 @@ def _of_run(run: int, torque: Floats, angle: Floats) -> LoopLines | None:
         ends.append(float(end))
         slopes.append(float(slope))
         flanks |= on
+        half[on] -= apart[on] / slope
     between = np.isfinite(half) & (np.abs(middle) < high)
     friction = float(np.mean(half[between]))
     if abs(friction) < ROUNDING * largest:
