@@ -35,7 +35,8 @@ def sine() -> tuple[Floats, Floats]:
 
 def found(time: Floats, torque: Floats, piece: Ints, seed: int) -> Floats:
     read = torque + NOISE * np.random.default_rng(seed).normal(size=len(torque))
-    return programme_curves(read, time, piece, np.zeros(len(time), np.int64), NOISE)
+    run = np.zeros(len(time), np.int64)
+    return programme_curves(read, read, time, piece, run, NOISE)[0]
 
 
 def pieces(torque: Floats, off: int = 0) -> Ints:

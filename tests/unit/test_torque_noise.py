@@ -92,3 +92,12 @@ def test_the_diagnosis_stays_silent_beside_noise_of_the_torque() -> None:
     assert found.answer.noise.torque_nm == pytest.approx(0.027, rel=0.15)
     (said,) = [each.text for each in found.answer.findings if each.topic == "torque noise"]
     assert "0.027 N m" in said or "0.026 N m" in said or "0.028 N m" in said
+
+
+def test_steps_of_two_readings_each_are_no_noise() -> None:
+    """Lines through such a staircase differ from it as from noise; the twist follows the steps."""
+    steps = np.r_[np.arange(70.0, 950.0, 290.0), np.arange(880.0, -950.0, -290.0)]
+    torque = np.tile(np.repeat(steps, 2), 4)
+    twist = 0.00036 * torque + 0.002 * np.random.default_rng(6).normal(size=len(torque))
+    piece, off = np.zeros(len(torque), np.int64), np.full(len(torque), 0.02)
+    assert torque_without_noise(torque, twist, piece, 0.00036, off).torque_nm is torque

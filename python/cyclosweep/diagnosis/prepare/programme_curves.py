@@ -36,23 +36,31 @@ WINDOW = 0.15
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    """Rows from `start` up to `stop`, and the torque along them; None: as it was read."""
+    """Rows from `start` up to `stop`, and the curve along them; None: as they were read."""
 
     start: int
     stop: int
-    curve: Floats | None
+    curve: "_Curve | None"
 
 
 @dataclass(frozen=True, slots=True)
 class _Curve:
-    """Torque along some rows, and the number of its coefficients."""
+    """Columns of which a curve through some rows is made."""
 
-    torque: Floats
-    terms: int
+    basis: Floats
+
+    @property
+    def terms(self) -> int:
+        """Number of its coefficients."""
+        return int(self.basis.shape[1])
+
+    def through(self, values: Floats) -> Floats:
+        """The curve that comes closest to some values, shape (rows,) or (rows, k) as they are."""
+        return np.asarray(self.basis @ np.linalg.lstsq(self.basis, values, rcond=None)[0])
 
 
 def programme_curves(
-    torque_nm: Floats, place: Floats, piece: Ints, run: Ints, noise_nm: float
+    torque_nm: Floats, angle_deg: Floats, place: Floats, piece: Ints, run: Ints, noise_nm: float
 ) -> Floats:
     """Replace the torque by lines and curves where it differs from them by noise alone.
 
@@ -60,6 +68,8 @@ def programme_curves(
     ----------
     torque_nm : ndarray, shape (n,)
         As it was read [N m].
+    angle_deg : ndarray, shape (n,)
+        Twist, of which the same curves are taken [deg].
     place : ndarray, shape (n,)
         Clock, or number of the row; it grows within each piece.
     piece : ndarray of int, shape (n,)
@@ -72,23 +82,28 @@ def programme_curves(
 
     Returns
     -------
-    ndarray, shape (n,)
-        NaN where no curve was found, and at readings far from it.
+    ndarray, shape (2, n)
+        Torque [N m] and twist [deg]; NaN where no curve was found, and at readings far from it.
     """
-    found = np.full(len(torque_nm), np.nan)
+    found = np.full((2, len(torque_nm)), np.nan)
     unit = torque_nm / noise_nm
-    for start, stop in pairwise(_edges(run)):
-        sine = _sine(unit[start:stop], place[start:stop])
-        if sine is not None:
-            found[start:stop] = sine
+    both = np.column_stack([torque_nm, angle_deg])
+    stretches = [
+        _Stretch(start, stop, _sine(unit[start:stop], place[start:stop]))
+        for start, stop in pairwise(_edges(run))
+    ]
+    known = np.zeros(len(unit), dtype=bool)
+    for sine in stretches:
+        known[sine.start : sine.stop] = sine.curve is not None
     for start, stop in pairwise(_moved(unit, place, _edges(piece))):
-        if np.all(np.isfinite(found[start:stop])):
-            continue
-        for stretch in _stretches(unit, place, start, stop):
-            if stretch.curve is not None:
-                found[stretch.start : stretch.stop] = stretch.curve
-    corner = np.abs(unit - found) > OUTLIER
-    return np.where(corner, np.nan, noise_nm * found)
+        if not np.all(known[start:stop]):
+            stretches += _stretches(unit, place, start, stop)
+    for each in stretches:
+        if each.curve is not None:
+            rows = slice(each.start, each.stop)
+            found[:, rows] = each.curve.through(both[rows]).T
+    corner = np.abs(torque_nm - found[0]) > OUTLIER * noise_nm
+    return np.where(corner, np.nan, found)
 
 
 def _edges(label: Ints) -> Ints:
@@ -144,18 +159,18 @@ def _stretches(torque: Floats, place: Floats, start: int, stop: int) -> list[_St
     rows = slice(start, stop)
     straight = _polynomial(torque[rows], place[rows], STRAIGHT)
     if straight is not None or stop - start < FEWEST or np.any(np.diff(place[rows]) <= 0.0):
-        return [_Stretch(start, stop, None if straight is None else straight.torque)]
+        return [_Stretch(start, stop, straight)]
     cuts, loss = _lines(torque[rows], place[rows])
     curve = _polynomial(torque[rows], place[rows], CURVED)
     if curve is not None:
         charge = curve.terms * np.log(stop - start)
-        if float(np.sum((torque[rows] - curve.torque) ** 2)) + charge <= loss:
-            return [_Stretch(start, stop, curve.torque)]
+        if float(np.sum((torque[rows] - curve.through(torque[rows])) ** 2)) + charge <= loss:
+            return [_Stretch(start, stop, curve)]
     lines = []
     for first, last in pairwise(start + cuts):
         part = slice(first, last)
         line = _polynomial(torque[part], place[part], STRAIGHT)
-        lines.append(_Stretch(int(first), int(last), None if line is None else line.torque))
+        lines.append(_Stretch(int(first), int(last), line))
     return lines
 
 
@@ -179,14 +194,13 @@ def _polynomial(torque: Floats, place: Floats, degrees: tuple[int, ...]) -> _Cur
     for degree in degrees:
         if count < ROWS_A_TERM * degree + 1:
             return None
-        basis = np.polynomial.legendre.legvander(x, degree)
-        curve = basis @ np.linalg.lstsq(basis, torque, rcond=None)[0]
-        if _is_noise(torque - curve):
-            return _Curve(curve, degree + 1)
+        curve = _Curve(np.polynomial.legendre.legvander(x, degree))
+        if _is_noise(torque - curve.through(torque)):
+            return curve
     return None
 
 
-def _sine(torque: Floats, place: Floats) -> Floats | None:
+def _sine(torque: Floats, place: Floats) -> _Curve | None:
     """Sine of several cycles with harmonics and a line; None where more than noise is left.
 
     Parameters
@@ -196,7 +210,7 @@ def _sine(torque: Floats, place: Floats) -> Floats | None:
 
     Returns
     -------
-    ndarray, shape (n,), or None
+    _Curve or None
     """
     from scipy.optimize import minimize_scalar
 
@@ -211,19 +225,18 @@ def _sine(torque: Floats, place: Floats) -> Floats | None:
     if cycles < FEWEST_CYCLES or harmonics < 1:
         return None
 
-    def curve(cycles: float) -> Floats:
+    def curve(cycles: float) -> _Curve:
         phase = 2.0 * np.pi * cycles * np.outer(x, np.arange(1, harmonics + 1))
-        basis = np.column_stack([np.ones(count), x, np.cos(phase), np.sin(phase)])
-        return np.asarray(basis @ np.linalg.lstsq(basis, torque, rcond=None)[0])
+        return _Curve(np.column_stack([np.ones(count), x, np.cos(phase), np.sin(phase)]))
 
     best = minimize_scalar(
-        lambda cycles: float(np.sum((torque - curve(cycles)) ** 2)),
+        lambda cycles: float(np.sum((torque - curve(cycles).through(torque)) ** 2)),
         bounds=(cycles - 1.0, cycles + 1.0),
         method="bounded",
         options={"xatol": 1e-7},
     )
     found = curve(float(best.x))
-    return found if _is_noise(torque - found) else None
+    return found if _is_noise(torque - found.through(torque)) else None
 
 
 def _is_noise(residual: Floats) -> bool:

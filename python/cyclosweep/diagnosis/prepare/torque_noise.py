@@ -126,8 +126,9 @@ def torque_without_noise(
         smooth[:, agrees] = fitted[:, agrees]
     run = np.zeros(len(piece), dtype=np.int64) if run is None else run
     clipped = np.clip(beyond[left > 0.0], -CORNER * noise, CORNER * noise)
-    curves = programme_curves(torque_nm, place, piece, run, float(np.sqrt(np.mean(clipped**2))))
-    smooth[0] = np.where(np.isfinite(curves), curves, smooth[0])
+    spread = float(np.sqrt(np.mean(clipped**2)))
+    curves = programme_curves(torque_nm, angle_deg, place, piece, run, spread)
+    smooth = np.where(np.isfinite(curves), curves, smooth)
     ripple, jitter = (both - smooth)[:, steady]
     size = robust_sigma(jitter)
     power = float(ripple @ ripple)

@@ -11,6 +11,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     LOOPS,
     ODD_CURVE,
     ONE_CAUSE,
+    RATE_LOOP,
     RUN,
     WAYS_APART,
 )
@@ -52,8 +53,8 @@ MOST_MISSED, MOST_MISSED_LOOP = 0.1, 0.25
 """What a named law may miss inside its class, as a share of both in root mean squares: laws of the
 literature leave 0 to 0.1 of each other where they are curves, to 0.25 where they are loops, follow
 a position or a temperature, or are even in the torque."""
-ONE_EFFECT = frozenset({EVEN_CURVE})
-"""Class with a single effect on the list: its law can stand for no other."""
+ONE_EFFECT = frozenset({EVEN_CURVE, RATE_LOOP})
+"""Classes with a single effect on the list: its law can stand for no other."""
 ERROR_OF_OTHERS = 0.01
 """What another law misses, as a share of its own size, that may lie in the class of a smaller one:
 no law is exact to a hundredth."""
@@ -241,9 +242,10 @@ class ClassComparison:
             return True
         if self.follows_one_cause or self.is_of_offsets:
             return True
+        if set(self.own) <= ONE_EFFECT:
+            return self.missed_share <= MOST_MISSED_LOOP
         counts = self.beyond > 0.0 or self.error_of_others > LITTLE_MISSED
-        little = MOST_MISSED_LOOP if set(self.own) == ONE_EFFECT else LITTLE_MISSED
-        return counts and self.missed_share <= self._with_error_of_others(little)
+        return counts and self.missed_share <= self._with_error_of_others(LITTLE_MISSED)
 
     def is_whole(self) -> bool:
         """Whether the laws miss nothing inside their class that it shows."""
@@ -293,7 +295,7 @@ def _is_loose(classes: Collection[str]) -> bool:
 
     So may those of a class of one effect.
     """
-    return bool(LOOPS.union(ONE_CAUSE) & set(classes)) or set(classes) == ONE_EFFECT
+    return bool(LOOPS.union(ONE_CAUSE) & set(classes)) or set(classes) <= ONE_EFFECT
 
 
 def _within_runs(offsets: ClassEvidence, residual: Floats, classes: ClassColumns) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.library import Library
 from cyclosweep.diagnosis.hypotheses.sinusoid import find_sinusoid
+from cyclosweep.diagnosis.identify.fitting.cancelling import cancel
 from cyclosweep.diagnosis.identify.fitting.fit import fit
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.fitting.signs import with_right_signs
@@ -214,8 +215,8 @@ class Search:
             joint: FittedStructure | None = with_right_signs(fitted)
             if joint is not None and term.slips:
                 joint = best_placed(joint)
-            if joint is None or joint.loss > parent.fit.loss:
-                # One more term fits no worse, unless the fit has ended in a bad optimum.
+            # One more term fits no worse, unless the fit has ended in a bad optimum.
+            if joint is None or joint.loss > parent.fit.loss or cancel(joint, self.baseline.fit):
                 continue
             chi2_gain = self._further_chi2(parent.fit, joint)
             added = added_evidence(chi2_gain, joint, parent.scan, rank, penalty)
@@ -334,7 +335,7 @@ class Search:
                 self.problem, self.noise, terms, candidate.fit, rounds=rounds, rival=candidate.fit
             )
             signed = with_right_signs(joint)
-            if signed is None:
+            if signed is None or cancel(signed, self.baseline.fit):
                 continue
             added = float(evidence(self._further_chi2(candidate.fit, signed), rank))
             if added <= 1.0:
