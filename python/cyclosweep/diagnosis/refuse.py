@@ -4,6 +4,7 @@ import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.fitting.fit import FEWEST_FITTED
+from cyclosweep.diagnosis.left_out import in_words, left_out_by_settings
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.plausibility import likely_mistakes
 from cyclosweep.diagnosis.prepare.problem import Problem
@@ -19,10 +20,9 @@ PLAUSIBLE = (0.1, 10.0)
 
 RECORD_AGAIN = "mend the fault and repeat the recording"
 RECORD_MORE = "repeat the recording with {}"
-SETTINGS = (
-    "correct {} in the settings (the TOML file) or the drive file and diagnose the same file again;"
-    " nothing has to be recorded anew"
-)
+ANEW = "and diagnose the same file again; nothing has to be recorded anew"
+SETTINGS = f"correct {{}} in the settings (the TOML file) or the drive file {ANEW}"
+SETTINGS_ALONE = f"correct {{}} in the settings (the TOML file) {ANEW}"
 SETTINGS_OR_RIG = (
     "look first at {} in the settings (the TOML file) and diagnose the same file again; only where "
     "they are right, {} and repeat the recording"
@@ -41,6 +41,7 @@ MEND = {
     "time_backwards": SETTINGS_OR_RIG.format(
         "the column and unit of the time and the column of the run", "mend the clock"
     ),
+    "too_few_selected": SETTINGS_ALONE.format("[select]"),
     "too_few_samples": RECORD_MORE.format("more readings: loading, unloading, both directions"),
     "constant_torque": RECORD_MORE.format("a load that rises and falls in both directions"),
     "constant_angle": SETTINGS_OR_RIG.format("the column of the angle", "mend the angle sensor"),
@@ -60,10 +61,32 @@ class NoDiagnosisError(Exception):
 
 
 def check_recording(recording: Recording) -> None:
-    """Raise `NoDiagnosisError` where reading the recording found a fault that forbids it."""
+    """Raise `NoDiagnosisError` where reading the recording found a fault that forbids it.
+
+    Parameters
+    ----------
+    recording : Recording
+        What was measured.
+
+    Raises
+    ------
+    NoDiagnosisError
+        The first fault with a verdict, or settings that leave hardly a reading under load.
+    """
     fault = recording.blocking_fault
     if fault is not None and fault.verdict is not None:
         raise NoDiagnosisError(fault.verdict, fault.reason, MEND.get(fault.kind, RECORD_AGAIN))
+    loaded = np.count_nonzero(recording.torque_nm)
+    held = recording.in_runs(recording.holdout_runs)
+    fitted = np.count_nonzero(recording.torque_nm[recording.counts & ~held])
+    left_out = left_out_by_settings(recording)
+    if left_out and fitted < FEWEST_FITTED <= loaded:
+        raise NoDiagnosisError(
+            "INSUFFICIENT_DATA",
+            f"{fitted or 'none'} of the {loaded} readings under load are to be fitted, and at "
+            f"least {FEWEST_FITTED} are needed: {in_words(left_out)}",
+            SETTINGS_ALONE.format(" and ".join(left_out)),
+        )
 
 
 def check_prepared(problem: Problem, drive: Drive) -> None:
@@ -82,22 +105,50 @@ def check_prepared(problem: Problem, drive: Drive) -> None:
         Too few readings, a torque that hardly changes, or an impossible compliance.
     """
     if problem.count < FEWEST_FITTED:
-        raise NoDiagnosisError(
-            "INSUFFICIENT_DATA",
+        raise _too_little(
+            problem,
             f"only {problem.count} readings are in contact and to be fitted; at least "
             f"{FEWEST_FITTED} are needed to calibrate stiffness, free play and datum",
-            RECORD_MORE.format("more readings under load, loading and unloading"),
+            "more readings under load, loading and unloading",
         )
     torque = problem.history.applied_nm[problem.fitted]
     if float(np.ptp(np.abs(torque))) < LEAST_CHANGE * float(np.abs(torque).max()):
         both = torque.min() < 0.0 < torque.max()
         what = "under load the torque has one size only" if both else "the torque hardly changes"
-        raise NoDiagnosisError(
-            "INSUFFICIENT_DATA",
+        raise _too_little(
+            problem,
             f"{what}, so no compliance can be read",
-            RECORD_MORE.format("a load that rises and falls in both directions"),
+            "a load that rises and falls in both directions",
         )
     check_compliance(problem, drive, problem.history.compliance_deg_per_nm)
+
+
+def _too_little(problem: Problem, reason: str, more: str) -> NoDiagnosisError:
+    """Return the error for a recording of which too little is fitted.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    reason : str
+        What is too little.
+    more : str
+        What a better recording would have.
+
+    Returns
+    -------
+    NoDiagnosisError
+        It asks for the settings first where they leave out readings under load.
+    """
+    left_out = left_out_by_settings(problem.recording)
+    if not left_out:
+        return NoDiagnosisError("INSUFFICIENT_DATA", reason, RECORD_MORE.format(more))
+    loaded = np.count_nonzero(problem.recording.torque_nm)
+    return NoDiagnosisError(
+        "INSUFFICIENT_DATA",
+        f"{reason}; of {loaded} readings under load, {in_words(left_out)}",
+        SETTINGS_OR_RIG.format(" and ".join(left_out), f"load what is fitted with {more}"),
+    )
 
 
 def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:

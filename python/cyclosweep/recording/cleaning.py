@@ -9,6 +9,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from cyclosweep.errors import InputError
+from cyclosweep.recording.checks import MIN_SAMPLES
 from cyclosweep.recording.columns import Columns
 from cyclosweep.recording.faults import Fault
 from cyclosweep.recording.metadata import Metadata
@@ -21,6 +22,7 @@ __all__ = [
     "beyond_limits",
     "drop_missing",
     "drop_repeated",
+    "few_selected",
     "keep_selected",
     "merge_ticks",
     "put_angle_right",
@@ -88,7 +90,7 @@ def keep_selected(
     Raises
     ------
     InputError
-        When no row has one of the values.
+        When no row has one of the values, or none is within the limits.
     """
     path, meta_path = paths
     keep = np.ones(frame.height, dtype=bool)
@@ -98,11 +100,45 @@ def keep_selected(
             raise InputError(f"{meta_path}, key select.{key}: no row of {path} has {allowed}")
         keep &= mask
     for key, limit in meta.abs_max.items():
-        keep &= np.abs(_values(key, columns, frame)) <= limit
+        mask = np.abs(_values(key, columns, frame)) <= limit
+        if not mask.any() and frame.height:
+            raise InputError(
+                f"{meta_path}, key select.abs_max.{key}: found {limit:g}, which no row of {path} "
+                "is within"
+            )
+        keep &= mask
+    if not keep.any() and frame.height:
+        raise InputError(f"{meta_path}, key select: no row of {path} fits all that it asks for")
     if keep.all():
         return columns
     notes.append(f"Selection keeps {keep.sum()} of {len(keep)} rows.")
     return _rows(columns, keep)
+
+
+def few_selected(before: int, columns: Columns) -> tuple[Fault, ...]:
+    """Find a recording of which ``[select]`` keeps too little.
+
+    Parameters
+    ----------
+    before : int
+        Rows of the file.
+    columns : dict of str to ndarray of float, shape (kept rows,), or None
+        What is kept.
+
+    Returns
+    -------
+    tuple of Fault
+        Empty where the file is too short by itself.
+    """
+    run = columns["run"]
+    kept = 0 if run is None else len(run)
+    if columns["angle_deg"] is None or not kept < MIN_SAMPLES <= before:
+        return ()
+    reason = (
+        f"[select] keeps {kept} of {before} rows: at least {MIN_SAMPLES} are needed to tell "
+        "stiffness, free play and datum from scatter."
+    )
+    return (Fault("too_few_selected", "INSUFFICIENT_DATA", reason),)
 
 
 def without_stopped_clock(columns: Columns, notes: list[str]) -> Columns:

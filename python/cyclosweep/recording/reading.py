@@ -11,6 +11,7 @@ from cyclosweep.recording.cleaning import (
     beyond_limits,
     drop_missing,
     drop_repeated,
+    few_selected,
     keep_selected,
     merge_ticks,
     put_angle_right,
@@ -117,7 +118,7 @@ def _clean_columns(
     columns : dict of str to ndarray of float, shape (n,), or None
         With ``unscored``, 1 where a sample is not scored.
     faults : tuple of Fault
-        Of samples that are missing, and of names that speak against the metadata.
+        Of samples that are missing or not selected, and of names that speak against the metadata.
 
     Raises
     ------
@@ -130,6 +131,7 @@ def _clean_columns(
     columns = canonical_columns(path, frame, sources, notes)
     columns["unscored"] = beyond_limits(meta.score.abs_max, columns, frame)
     columns = keep_selected((path, meta_path), meta, columns, frame, notes)
+    few = few_selected(frame.height, columns)
     clock = columns["time_s"]
     columns = without_stopped_clock(columns, notes)
     if meta.merge.same_time and (clock is None or columns["time_s"] is not None):
@@ -141,7 +143,7 @@ def _clean_columns(
     columns["angle_deg"] = put_angle_right(columns, meta, notes)
     if meta.merge.neighbours > 1:
         columns = merge_neighbours(columns, meta.merge.neighbours, notes)
-    return columns, (*faults, *remarks)
+    return columns, (*few, *faults, *remarks)
 
 
 def _resolution(meta: Metadata, columns: Columns, run: Floats, notes: list[str]) -> float:

@@ -252,6 +252,8 @@ class Recording(Samples):
         lost = np.zeros(len(self), dtype=np.bool_)
         lost[counts] = lost_of_them
         modulo = self.modulo_fault(self._play_deg())
+        if any(fault.kind == "too_few_selected" for fault in self.faults):
+            found = tuple(fault for fault in found if fault.kind != "too_few_samples")
         found = (*found, *saturation, *(() if modulo is None else (modulo,)))
         unscored = lost if self.unscored is None else self.unscored | lost
         return replace(
