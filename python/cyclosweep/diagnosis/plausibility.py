@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import log
 
-from cyclosweep.diagnosis.exchanged_columns import EXCHANGED, are_exchanged
 from cyclosweep.recording import Recording
+from cyclosweep.recording.exchanged_columns import EXCHANGED, are_exchanged
 from cyclosweep.recording.units import factor_of
 from cyclosweep.result import CalibratedParameter, Doubt
 from cyclosweep.result.plausibility import Quantity
@@ -220,7 +220,8 @@ def doubts(
     compliance_is_far = not 1.0 / FAR_COMPLIANCE <= factor <= FAR_COMPLIANCE
     suggested: tuple[str, ...] = ()
     if factor > 0:
-        if compliance_is_far and are_exchanged(recording, compliance.estimate, abs(nominal)):
+        torque, angle = recording.torque_nm, recording.angle_deg
+        if compliance_is_far and angle is not None and are_exchanged(torque, angle, abs(nominal)):
             suggested = (EXCHANGED,)
         elif compliance_is_far:
             suggested = likely_mistakes(factor, play_factor, ratio)

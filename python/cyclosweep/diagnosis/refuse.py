@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.plausibility import likely_mistakes
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.recording import Recording
+from cyclosweep.recording.exchanged_columns import EXCHANGED, are_exchanged
 from cyclosweep.result import Answer, NextExperiment, NoiseEstimate, Repair, SelfCheck, Verdict
 
 LEAST_CHANGE = 0.02
@@ -172,6 +173,7 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
     ratio = compliance / problem.nominal_compliance_deg_per_nm
     if lower <= ratio <= upper:
         return
+    _refuse_exchanged(problem, compliance)
     torque, angle = problem.history.applied_nm, problem.angle_deg
     if ratio < 0 and torque @ (angle - angle.mean()) > 0:
         return
@@ -191,6 +193,33 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
         f"the compliance at the {problem.recording.side} shaft is {compliance:.4g} deg/(N m), "
         f"{ratio:.4g} times the nominal {problem.nominal_compliance_deg_per_nm:.4g}{hint}",
         SETTINGS.format("unit, side or drive"),
+    )
+
+
+def _refuse_exchanged(problem: Problem, compliance: float) -> None:
+    """Raise `NoDiagnosisError` where torque and angle look exchanged.
+
+    Parameters
+    ----------
+    problem : Problem
+        The prepared recording.
+    compliance : float
+        Compliance as read or fitted, which no drive of this file has [deg/(N m)].
+
+    Raises
+    ------
+    NoDiagnosisError
+        It asks for the columns.
+    """
+    recording, nominal = problem.recording, problem.nominal_compliance_deg_per_nm
+    angle = recording.angle_deg
+    if angle is None or nominal <= 0 or not are_exchanged(recording.torque_nm, angle, nominal):
+        return
+    raise NoDiagnosisError(
+        "DATA_FAULT",
+        f"the compliance at the {recording.side} shaft is {compliance:.4g} deg/(N m), where the "
+        f"drive file says {nominal:.4g}, as where {EXCHANGED}",
+        SETTINGS_ALONE.format("the columns of torque and angle"),
     )
 
 

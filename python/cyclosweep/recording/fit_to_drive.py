@@ -1,10 +1,13 @@
 """Unit of the angle, side and modulo of a recording, told by the drive where the file does not."""
 
+from shlex import quote
 from typing import Any
 
 import numpy as np
 
 from cyclosweep.design.drive import Drive
+from cyclosweep.design.nominal_line import Side
+from cyclosweep.recording.exchanged_columns import EXCHANGED, are_exchanged
 from cyclosweep.recording.nominal import (
     FAR,
     MOST_LOAD,
@@ -72,6 +75,8 @@ def fit_to_drive(
         made.assumed.append(f"Unit of {angle.column} not stated: degrees assumed (--angle-unit).")
     if guess is not None:
         _take(guess, angle, column, known, made, is_stated=stated, is_settled=is_settled)
+        if not guess.clear:
+            _suspect_exchange(torque, turned, columns, known, made)
     if not stated:
         period = _period(values_of("angle_deg", columns, numbers), torque, known.drive)
     if period is not None and "modulo" not in column:
@@ -174,10 +179,13 @@ def _take(
         if known.side is None:
             _take_side(guess, made, f"{guess.side} shaft, {reason}")
         return
-    text = (
-        f"the compliance is {guess.factor:.3g} times the drive's at the {guess.side} shaft, "
-        "the nearest of all"
-    )
+    text = f"the compliance is {guess.factor:.3g} times the drive's at the {guess.side} shaft"
+    which = "the nearer of the two"
+    if known.side is None and guess.shafts == 1:
+        which = "the only one that bears the torque"
+        text += f", {which}"
+    elif known.side is None or not is_stated:
+        text += ", the nearest of all"
     if not is_stated:
         side = "" if known.side is not None else " and --side SIDE"
         made.open.append(
@@ -192,7 +200,39 @@ def _take(
     else:
         made.checks.append(f"In these units {text}: check units, side and drive.")
     if known.side is None:
-        _take_side(guess, made, f"{guess.side} shaft, the nearer of the two")
+        _take_side(guess, made, f"{guess.side} shaft, {which}")
+
+
+def _suspect_exchange(
+    torque: Floats,
+    angle: Floats,
+    columns: dict[str, dict[str, Any]],
+    known: Known,
+    made: Proposal,
+) -> None:
+    """Remark on torque and angle that look exchanged, with the options that exchange them.
+
+    Parameters
+    ----------
+    torque, angle : ndarray of float, shape (rows,)
+        As they are read [N m], [deg].
+    columns : dict
+        Proposed columns.
+    known : Known
+        With the drive, and the side where the user gives it.
+    made : Proposal
+        What is to be checked is added to it.
+    """
+    assert known.drive is not None
+    sides: tuple[Side, ...] = ("input", "output") if known.side is None else (known.side,)
+    for side in sides:
+        if are_exchanged(torque, angle, known.drive.nominal_line(side).compliance_deg_per_nm):
+            of_torque, of_angle = (quote(columns[r]["column"]) for r in ("angle_deg", "torque_nm"))
+            made.checks.append(
+                f"The compliance at the {side} shaft is as where {EXCHANGED}: if that is so, say "
+                f"--torque {of_torque} --angle {of_angle}."
+            )
+            return
 
 
 def _take_side(guess: Guess, made: Proposal, why: str) -> None:

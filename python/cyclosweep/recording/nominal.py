@@ -69,12 +69,15 @@ class Guess:
         Measured over nominal compliance.
     clear : bool
         Whether no other guess comes near.
+    shafts : int
+        Shafts among which the side was chosen: those that bear the torque.
     """
 
     unit: str
     side: Side
     factor: float
     clear: bool
+    shafts: int = 1
 
 
 def unit_by_steps(angle: Floats) -> str | None:
@@ -226,4 +229,4 @@ def explain(
     clear = found[0][0] < math.log(near) and (
         len(found) == 1 or found[1][0] - found[0][0] > math.log(CLEAR) / 2
     )
-    return Guess(found[0][1], found[0][2], found[0][3], clear)
+    return Guess(found[0][1], found[0][2], found[0][3], clear, len(sides))

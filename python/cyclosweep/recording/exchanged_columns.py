@@ -4,7 +4,10 @@ from math import log
 
 import numpy as np
 
-from cyclosweep.recording import Recording
+from cyclosweep.recording.nominal import slope_of
+from cyclosweep.recording.samples import Floats
+
+__all__ = ["EXCHANGED", "are_exchanged"]
 
 FAR_FROM_ZERO, NEAR_ZERO = 0.2, 0.05
 """Least size over the largest, from which the torque never comes near zero, and up to which the
@@ -18,23 +21,30 @@ EXCHANGED = (
 )
 
 
-def are_exchanged(recording: Recording, compliance: float, nominal: float) -> bool:
+def are_exchanged(torque_nm: Floats, angle_deg: Floats, nominal: float) -> bool:
     """Whether compliance and readings look as if torque and angle were exchanged.
+
+    The compliance is that of straight lines, whose jump at zero torque may be negative, as a play
+    becomes by the exchange.
 
     Parameters
     ----------
-    recording : Recording
-        What was measured, with an angle.
-    compliance : float
-        As it was found, above zero [deg/(N m)].
+    torque_nm : ndarray of float, shape (n,)
+        What was read as the torque [N m].
+    angle_deg : ndarray of float, shape (n,)
+        What was read as the angle [deg].
     nominal : float
-        By the drive's file, above zero [deg/(N m)].
+        Compliance by the drive's file, above zero [deg/(N m)].
 
     Returns
     -------
     bool
     """
-    torque, angle = np.abs(recording.torque_nm), np.abs(np.asarray(recording.angle_deg))
+    compliance = slope_of(torque_nm, angle_deg)
+    if compliance is None:
+        return False
+    known = np.isfinite(torque_nm) & np.isfinite(angle_deg)
+    torque, angle = np.abs(torque_nm[known]), np.abs(angle_deg[known])
     biased = torque.min() > FAR_FROM_ZERO * torque.max()
     unloaded = angle.min() < NEAR_ZERO * angle.max()
     return bool(biased and unloaded and abs(log(compliance * nominal)) < NEAR)
