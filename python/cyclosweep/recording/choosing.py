@@ -7,7 +7,7 @@ import numpy as np
 from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import BadCellError
 from cyclosweep.recording.file_table import FileTable
-from cyclosweep.recording.metadata import CANONICAL_COLUMNS
+from cyclosweep.recording.metadata import APART, CANONICAL_COLUMNS
 from cyclosweep.recording.roles import Named, describe, role_by_name
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.units import MEANINGS, UNIT_EXAMPLES
@@ -139,7 +139,7 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
     Raises
     ------
     InputError
-        For a column that the user names and that is not there or holds text.
+        For a column that the user names and that is not there or holds text, or names twice.
     """
     choice = Choice()
     named = {name: describe(name, table.units.get(name)) for name in numbers}
@@ -150,6 +150,12 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
             found = ", ".join(numbers) or "none"
             flag = _FLAGS.get(role, role)
             raise InputError(f"{flag}: found {column!r}, expected one of the columns {found}")
+        for other, own in choice.roles.items():
+            if own.column == column and {role, other} <= set(APART):
+                raise InputError(
+                    f"{_FLAGS.get(role, role)}: found column {column!r}, which "
+                    f"{_FLAGS.get(other, other)} names, too; expected a column of its own"
+                )
         choice.roles[role] = named[column]
     choice.commands = [n.column for n in named.values() if n.role == "torque_nm" and n.is_command]
     for role in CANONICAL_COLUMNS:

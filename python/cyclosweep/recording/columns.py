@@ -1,6 +1,7 @@
 """From the columns of a file to canonical columns: found by name, scaled, unwrapped."""
 
 from collections.abc import Iterable, Mapping
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import polars as pl
 from cyclosweep.errors import InputError
 from cyclosweep.recording.endings import ENDINGS
 from cyclosweep.recording.faults import Fault
-from cyclosweep.recording.metadata import CANONICAL_COLUMNS, Column, Metadata, conversion
+from cyclosweep.recording.metadata import APART, CANONICAL_COLUMNS, Column, Metadata, conversion
 from cyclosweep.recording.opening import open_table
 from cyclosweep.recording.samples import Floats
 from cyclosweep.recording.signals import unwrap
@@ -117,7 +118,7 @@ def refuse_missing_columns(
     sources: Mapping[str, Column],
     header: list[str],
 ) -> None:
-    """Refuse a file without a column that the metadata name.
+    """Refuse a file without a column that the metadata name, or one that is read as two things.
 
     Parameters
     ----------
@@ -137,6 +138,13 @@ def refuse_missing_columns(
             raise InputError(
                 f"{meta_path}, key columns.{name}: column {source.column!r} is not in {path}, "
                 f"found {found}"
+            )
+    for name, other in combinations([role for role in APART if role in sources], 2):
+        if sources[name].column == sources[other].column:
+            key = name if name in meta.columns else other
+            raise InputError(
+                f"{meta_path}, key columns.{key}: found column {sources[key].column!r}, which "
+                f"{other if key == name else name} reads, too; expected a column of its own"
             )
 
 

@@ -19,6 +19,9 @@ from cyclosweep.recording.units import QUANTITIES, UNIT_EXAMPLES, find_unit
 CANONICAL_COLUMNS = ("torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c")
 """Column names of a recording, each with its unit."""
 
+APART = ("torque_nm", "angle_deg", "time_s")
+"""Canonical columns of which no two come from one column; a position may be told by the angle."""
+
 CanonicalName = Literal["torque_nm", "angle_deg", "time_s", "run", "crank_deg", "temperature_c"]
 SelectValue = int | float | str
 
