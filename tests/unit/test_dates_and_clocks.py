@@ -87,3 +87,31 @@ def test_rows_of_a_tick_are_averaged_only_where_the_torque_stands(
     found = inspected(path)
     assert ("merge" in found["metadata"]) is not is_rounded
     assert any("The clock is rounded" in text for text in found["assumed"]) is is_rounded
+
+
+@pytest.mark.parametrize(
+    ("name", "first", "clock"),
+    [
+        ("Date", "2024-07-11T15:47:{:02d}", True),
+        ("Datum", "11.07.2024 15:47:{:02d}", True),
+        ("Messdatum", "15:47:{:02d}", True),
+        ("Date", "2024-07-{:02d}", False),
+        ("Datum", "11.07.2024", False),
+        ("Batch", "2024-07-11T15:47:{:02d}", False),
+    ],
+)
+def test_a_date_with_times_is_the_clock(tmp_path: Path, name: str, first: str, clock: bool) -> None:
+    path = tmp_path / "loop.csv"
+    rows = [f"{first.format(k + 1)};{k % 7};{28 + 2.7 * (k % 7)}" for k in range(24)]
+    path.write_text("\n".join([f"{name};Torque [N m];Angle [deg]", *rows]) + "\n")
+    found = inspected(path)
+    assert found["metadata"]["columns"].get("time_s") == (name if clock else None)
+    if clock:
+        assert "23 s long" in found["facts"]["clock"]
+
+
+def test_a_column_called_time_is_the_clock_before_a_date(tmp_path: Path) -> None:
+    path = tmp_path / "loop.csv"
+    rows = [f"2024-07-11 15:47:{k:02d};{k};{k % 7};{28 + 2.7 * (k % 7)}" for k in range(24)]
+    path.write_text("\n".join(["Date;Time [s];Torque [N m];Angle [deg]", *rows]) + "\n")
+    assert inspected(path)["metadata"]["columns"]["time_s"]["column"] == "Time [s]"

@@ -6,19 +6,15 @@ import numpy as np
 
 from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import BadCellError
+from cyclosweep.recording.clocks import DAY_S
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.metadata import APART, CANONICAL_COLUMNS
-from cyclosweep.recording.roles import Named, describe, role_by_name
+from cyclosweep.recording.roles import Named, describe, reads_like_a_date, role_by_name
+from cyclosweep.recording.same_signal import same_signal
 from cyclosweep.recording.samples import Floats
-from cyclosweep.recording.units import MEANINGS, UNIT_EXAMPLES, find_unit
+from cyclosweep.recording.units import MEANINGS, UNIT_EXAMPLES
 
 __all__ = ["Choice", "choose", "numbers_of"]
-
-SAME_SIGNAL = 0.999999
-"""Correlation beyond which two columns may be one signal in two units."""
-
-SAME_READING = 2e-3
-"""Largest distance of their readings then, over the range: both are rounded."""
 
 MOST_TEXTS = 5
 """Different texts in a column that still is one of numbers: an overload, a word for no reading."""
@@ -176,6 +172,8 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
             choice.assumed += [
                 f"{n.column}: unit {n.unknown_unit!r} is not known: not read." for n in unknown
             ]
+        if role == "time_s" and not candidates:
+            candidates = [n for n in named.values() if _is_dated_clock(n, table, numbers)]
         if not candidates and role in (*_FLAGS, "time_s"):
             why = _why_not(role, table, numbers)
             if why is not None:
@@ -184,6 +182,47 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
         _choose_one(role, candidates, numbers, choice)
     _note_current(named, numbers, choice)
     return choice
+
+
+def _is_dated_clock(named: Named, table: FileTable, numbers: dict[str, Floats]) -> bool:
+    """Whether a column that is called a date holds times, too, and not whole days alone.
+
+    Parameters
+    ----------
+    named : Named
+        What its name says.
+    table : FileTable
+        The file, read, with its notes.
+    numbers : dict of str to ndarray of float, shape (rows,)
+        Columns of the file; dates and times as seconds since the first.
+
+    Returns
+    -------
+    bool
+    """
+    if named.role is not None or not reads_like_a_date(named.column):
+        return False
+    values = numbers[named.column]
+    known = values[np.isfinite(values)]
+    whole_days = bool(np.all(known % DAY_S == 0.0))
+    return not whole_days and _holds_times(table, named.column) and _can_be("time_s", values)
+
+
+def _holds_times(table: FileTable, column: str) -> bool:
+    """Whether dates or times of day were read in a column, which a note says.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file, read.
+    column : str
+        One of its columns.
+
+    Returns
+    -------
+    bool
+    """
+    return any(note.startswith(f"{column} holds dates") for note in table.notes)
 
 
 def _why_not(role: str, table: FileTable, numbers: dict[str, Floats]) -> str | None:
@@ -276,7 +315,7 @@ def _choose_one(
             )
         return
     first = best[0]
-    apart = [n for n in best[1:] if not _same(first, n, numbers)]
+    apart = [n for n in best[1:] if not same_signal(first, n, numbers)]
     if not apart:
         choice.roles[role] = first
         return
@@ -314,54 +353,6 @@ def _can_be(role: str, values: Floats) -> bool:
     if role == "time_s":
         return len(known) < 2 or float(np.mean(np.diff(known) < 0)) < 0.1
     return True
-
-
-def _same(first: Named, other: Named, numbers: dict[str, Floats]) -> bool:
-    """Whether two columns are one signal, which their units tell apart if anything does.
-
-    Two sensors of one torque may follow each other as closely; their readings differ by a gain or
-    a zero.
-
-    Parameters
-    ----------
-    first, other : Named
-        The columns.
-    numbers : dict of str to ndarray of float, shape (rows,)
-        Columns of the file.
-
-    Returns
-    -------
-    bool
-    """
-    a, b = (_canonical(n, numbers[n.column]) for n in (first, other))
-    known = np.isfinite(a) & np.isfinite(b)
-    if known.sum() < 3 or not np.ptp(a[known]) or not np.ptp(b[known]):
-        return False
-    if abs(float(np.corrcoef(a[known], b[known])[0, 1])) <= SAME_SIGNAL:
-        return False
-    apart = a[known] - b[known]
-    if first.role == "time_s":  # whose zero means nothing
-        apart = apart - np.median(apart)
-    return float(np.abs(apart).max()) <= SAME_READING * float(np.ptp(a[known]))
-
-
-def _canonical(named: Named, values: Floats) -> Floats:
-    """Readings in the canonical unit.
-
-    Parameters
-    ----------
-    named : Named
-        What name and unit of their column say.
-    values : ndarray of float, shape (rows,)
-        In the file's unit.
-
-    Returns
-    -------
-    ndarray of float, shape (rows,)
-        As they are where no unit is known.
-    """
-    unit = None if named.unit is None else find_unit(named.unit, named.role)
-    return values if unit is None else values * unit.factor + unit.offset
 
 
 def _note_current(named: dict[str, Named], numbers: dict[str, Floats], choice: Choice) -> None:

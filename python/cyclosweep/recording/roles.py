@@ -18,6 +18,7 @@ __all__ = [
     "Named",
     "describe",
     "name_weight",
+    "reads_like_a_date",
     "reads_like_counts",
     "role_by_name",
     "with_unit",
@@ -164,6 +165,17 @@ def role_by_name(column: str) -> str | None:
     """Canonical column that a name stands for, whatever its unit."""
     bare = split_name(column)[0]
     return _role_of(bare.strip(), _words_of(bare))
+
+
+def reads_like_a_date(column: str) -> bool:
+    """Whether a name speaks of a date, below which times of day may stand, too.
+
+    Examples
+    --------
+    >>> reads_like_a_date("Date"), reads_like_a_date("Messdatum"), reads_like_a_date("Data")
+    (True, True, False)
+    """
+    return any(word == "date" or word.endswith("datum") for word in _words_of(column))
 
 
 def reads_like_counts(column: str) -> bool:
