@@ -1,5 +1,6 @@
 """Diagnosis of a folder: every recording has a row, what is done is kept, a dose reads as one."""
 
+import io
 import json
 import os
 import subprocess
@@ -9,10 +10,13 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
+from rich.console import Console
+from rich.rule import Rule
 
 import cyclosweep as cs
 from cyclosweep.atomic import write_text
-from cyclosweep.cli.diagnose import shortened
+from cyclosweep.cli.diagnose import _FolderTable, shortened
+from cyclosweep.cli.output import print_tables
 from cyclosweep.diagnosis.folder import recordings_in
 from cyclosweep.diagnosis.series import conditions_of, small_loops_of, trends
 from cyclosweep.recording.metadata import Metadata
@@ -348,3 +352,29 @@ def test_names_in_the_terminal_are_not_broken() -> None:
         len(each) <= 36 and each.endswith("pre1") for each in short
     )
     assert shortened(["alone_and_much_too_long"], 5) == ["alone_and_much_too_long"]
+
+
+@pytest.mark.parametrize("width", [40, 50, 60, 80, 120])
+def test_the_table_of_a_folder_fits_its_terminal_and_breaks_no_word(width: int) -> None:
+    headings = ["recording", "lubricant", "verdict", "play (deg)", "compliance (deg/(N m))"]
+    row = ["a_long_name", "NLGI 2", "Cause identified", "56.1", "2.69"]
+    stream = io.StringIO()
+    table = _FolderTable(headings, [row, ["b", *row[1:]]], set(headings[:3]))
+    Console(file=stream, width=width, color_system=None).print(table)
+    text = stream.getvalue()
+    assert max(len(line.rstrip()) for line in text.splitlines()) <= width
+    assert "…" not in text
+    for word in " ".join([*headings[1:], *row]).split():
+        assert word in text
+
+
+def test_tables_are_as_wide_as_columns_says_and_120_without_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for columns, width in (("50", 50), (None, 120)):
+        if columns is None:
+            monkeypatch.delenv("COLUMNS", raising=False)
+        else:
+            monkeypatch.setenv("COLUMNS", columns)
+        print_tables([Rule(characters="-")])
+        assert len(capsys.readouterr().out.strip()) == width

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -25,7 +24,9 @@ from cyclosweep.display import shown_steps
 from cyclosweep.errors import DesignError, InputError, require_matplotlib
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from collections.abc import Iterator
+
+    from rich.console import Console, ConsoleOptions, RenderableType
 
     from cyclosweep.diagnosis import Diagnosis
     from cyclosweep.diagnosis.folder import Series
@@ -233,35 +234,76 @@ def _diagnose_folder(
         )
 
 
-def _folder_table(series: Series) -> Table:
-    """Table across the recordings: conditions, verdict in words, friction, play, compliance."""
-    from rich.table import Table
+@dataclass(frozen=True)
+class _FolderTable:
+    """A table that rich prints, where there is less room than it needs as a few lines a recording.
 
+    Attributes
+    ----------
+    headings : list of str
+        The first is the recording's.
+    rows : list of list of str
+        Cells; the first is the name, whole.
+    words : set of str
+        Headings of columns of words, which stand at the left.
+    """
+
+    headings: list[str]
+    rows: list[list[str]]
+    words: set[str]
+
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[RenderableType]:
+        """Table, or lines."""
+        from rich.measure import Measurement
+        from rich.padding import Padding
+        from rich.table import Table
+        from rich.text import Text
+
+        room = max(options.max_width - ROOM_OF_VALUES, SHORTEST_NAME)
+        names = shortened([row[0] for row in self.rows], room)
+        rows = [[name, *row[1:]] for name, row in zip(names, self.rows, strict=True)]
+        table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+        for place, heading in enumerate(self.headings):
+            side: Literal["left", "right"] = "left" if heading in self.words else "right"
+            longest = max(
+                len(word) for text in (heading, *(row[place] for row in rows))
+                for word in text.split(" ")
+            )  # fmt: skip
+            table.add_column(heading, justify=side, no_wrap=place == 0, min_width=longest)
+        for row in rows:
+            table.add_row(*row)
+        if Measurement.get(console, options.update(width=1000), table).minimum <= options.max_width:
+            yield table
+            return
+        for name, *cells in self.rows:
+            yield Text(name, style="bold")
+            lines = [f"{h}: {c}" for h, c in zip(self.headings[1:], cells, strict=True)]
+            yield Padding(Text("\n".join(lines)), (0, 0, 0, 2))
+
+
+def _folder_table(series: Series) -> _FolderTable:
+    """Table across the recordings: conditions, verdict in words, friction, play, compliance."""
     from cyclosweep.report.series_page import heading, verdict_of
     from cyclosweep.report.wording import number
     from cyclosweep.result.series import MEASURES
     from cyclosweep.result.words import readable
 
     rows = series.table.to_dicts()
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
-    names = [str(row["recording"]) for row in rows]
-    room = max(shutil.get_terminal_size().columns - ROOM_OF_VALUES, SHORTEST_NAME)
-    table.add_column("recording", no_wrap=True)
-    for condition in series.conditions:
-        table.add_column(readable(condition))
-    table.add_column("verdict")
     measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
-    for measure in measures:
-        table.add_column(heading(measure), justify="right")
-    for name, row in zip(shortened(names, room), rows, strict=True):
+    conditions = [readable(condition) for condition in series.conditions]
+    lines = []
+    for row in rows:
         values = [row.get(key) for key in (*series.conditions, *measures)]
         cells = [
             number(value) if isinstance(value, float) else str("–" if value is None else value)
             for value in values
         ]
         cells.insert(len(series.conditions), verdict_of(row))
-        table.add_row(name, *cells)
-    return table
+        lines.append([str(row["recording"]), *cells])
+    words = ["recording", *conditions, "verdict"]
+    return _FolderTable([*words, *map(heading, measures)], lines, set(words))
 
 
 def shortened(names: list[str], room: int) -> list[str]:

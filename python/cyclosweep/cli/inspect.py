@@ -126,7 +126,7 @@ def inspect(
     elif out is None:
         state = "incomplete" if found.proposal.open else "--out writes it"
         print(f"\nProposed metadata file ({state}):\n")
-        print(found.toml, end="")
+        _print_proposal(found.toml, _width())
     else:
         print(f"\nWritten: {out}")
         if not found.proposal.open and found.recording and not found.recording.is_program:
@@ -190,7 +190,7 @@ def _next(recording: Path, out: Path, found: Inspection) -> str:
 
 def _print(found: Inspection) -> None:
     """Print what was understood, as narrow as the terminal is."""
-    width = max(shutil.get_terminal_size((100, 24)).columns, _NARROWEST)
+    width = _width()
     print(found.path)
     if found.settings is not None:
         _paragraph("settings in force", str(found.settings), width)
@@ -217,6 +217,30 @@ def _print(found: Inspection) -> None:
     _list("The file suggests otherwise", found.suggested, width)
     _list("Assumed", found.proposal.assumed, width)
     _list("To be said first", found.proposal.open, width)
+
+
+def _width() -> int:
+    """Columns of the terminal."""
+    return max(shutil.get_terminal_size((100, 24)).columns, _NARROWEST)
+
+
+def _print_proposal(toml: str, width: int) -> None:
+    """Print the metadata file, its comments as narrow as the terminal is.
+
+    Parameters
+    ----------
+    toml : str
+        The file.
+    width : int
+        Columns of the terminal.
+    """
+    for line in toml.splitlines():
+        if line.startswith("# "):
+            line = textwrap.fill(
+                line[2:], width, initial_indent="# ", subsequent_indent="# ",
+                break_long_words=False, break_on_hyphens=False,
+            )  # fmt: skip
+        print(line)
 
 
 def _column_line(column: ColumnFacts) -> str:

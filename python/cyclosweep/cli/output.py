@@ -68,11 +68,12 @@ def survive_encoding() -> None:
 
 
 def print_tables(renderables: Iterable[RenderableType]) -> None:
-    """Print tables, as wide as the terminal."""
+    """Print tables, as wide as the terminal or as COLUMNS says."""
     from rich.console import Console
 
     # Without a terminal rich would cut the tables to 80 columns.
-    console = Console(width=None if sys.stdout.isatty() else 120)
+    is_known = sys.stdout.isatty() or os.environ.get("COLUMNS", "").isdigit()
+    console = Console(width=None if is_known else 120)
     for renderable in renderables:
         console.print(renderable)
 
