@@ -275,3 +275,22 @@ def test_what_is_no_table_is_one_line(tmp_path: Path) -> None:
     assert result.returncode == 2
     assert len(result.stderr.splitlines()) == 1
     assert run("inspect", str(tmp_path / "gone.csv")).returncode == 2
+
+
+@pytest.mark.parametrize("columns", [50, 70])
+def test_the_proposal_is_as_narrow_as_the_terminal(tmp_path: Path, columns: int) -> None:
+    _, torque, angle, _ = loop()
+    path = write(tmp_path / "loop.csv", "M [Nm],phi [deg]", torque, angle)
+    result = run("inspect", str(path), "--drive", "reference-87", columns=columns)
+    proposed = result.stdout.partition("Proposed metadata file")[2].splitlines()[1:]
+    assert max(map(len, proposed)) <= columns
+    said = " ".join(line.removeprefix("# ") for line in proposed if line.startswith("# "))
+    assert "Assumed: Side not given: input shaft, the compliance is then" in said
+
+
+def test_tabs_between_cells_are_said_in_words(tmp_path: Path) -> None:
+    _, torque, angle, _ = loop()
+    rows = "".join(f"{t:g}\t{a:g}\n" for t, a in zip(torque, angle, strict=True))
+    path = tmp_path / "loop.tsv"
+    path.write_text("Drehmoment [Nm]\tWinkel [deg]\n" + rows.replace(".", ","))
+    assert "Cells divided by tabs, decimal commas." in inspected(path)["notes"]

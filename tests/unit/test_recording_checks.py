@@ -98,7 +98,9 @@ def test_unrelated_columns_are_a_data_fault() -> None:
 
 
 def test_absurd_numbers_are_a_data_fault() -> None:
-    assert kinds(cs.Recording.from_arrays(TORQUE * 1e300, ANGLE)) == {"absurd_value": "DATA_FAULT"}
+    recording = cs.Recording.from_arrays(TORQUE * 1e300, ANGLE)
+    assert kinds(recording) == {"absurd_value": "DATA_FAULT"}
+    assert recording.faults[0].reason.startswith("The torque reaches")
 
 
 def test_contradictions_come_before_shortage() -> None:

@@ -187,3 +187,10 @@ def test_a_loop_that_runs_backwards_is_called_so() -> None:
 def test_an_unknown_without_shape_or_effects_still_has_a_sentence() -> None:
     answer = Answer(verdict="UNKNOWN_PHYSICS", mismatch=Mismatch(p_value=0.001))
     assert "something that no listed effect explains" in summary_of(answer)
+
+
+def test_what_the_diagnosis_asks_is_said_once() -> None:
+    data = make()
+    data = replace(data, result=replace(data.result, notes=(*data.result.notes, UNBROKEN)))
+    text = " ".join(printed(data, 100).split())
+    assert text.count("Runs follow each other without a pause") == 1

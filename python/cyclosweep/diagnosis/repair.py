@@ -12,6 +12,7 @@ from cyclosweep.recording.cleaning import REVERSED
 from cyclosweep.recording.unbroken_runs import ONE_HISTORY
 from cyclosweep.result import Baseline, CalibratedParameter, LearnedError
 from cyclosweep.result.part import finite
+from cyclosweep.result.words import readable
 from cyclosweep.simulation.effects.history import Floats
 from cyclosweep.simulation.model import Model
 
@@ -55,6 +56,29 @@ class RepairedModel:
     learned: LearnedError | None = None
 
 
+def stand_in(name: str, behaviour: str | None) -> str:
+    """Say that an effect stands for its class only.
+
+    Parameters
+    ----------
+    name : str
+        The effect.
+    behaviour : str or None
+        Its class in words.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> stand_in("viscous_drag", "loop").partition(":")[0]
+    'viscous drag is a stand-in for this class'
+    """
+    words = f"{readable(name)} is a stand-in for this class: {behaviour or 'without a name'}"
+    return f"{words}; its law was not found to hold"
+
+
 def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     """Turn the accepted structure into a simulation that can be compared with the published one.
 
@@ -84,11 +108,7 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     if REVERSED in problem.recording.notes:
         model = replace(model, notes=(*model.notes, TURNED_ROUND))
     unnamed = [check for check in concluded.naming.withdrawn if check.name in fitted.names]
-    notes = tuple(
-        f"{check.name} is a stand-in for this class: {check.behaviour or 'without a name'}; "
-        "its law was not found to hold"
-        for check in unnamed
-    )
+    notes = tuple(stand_in(check.name, check.behaviour) for check in unnamed)
     return RepairedModel(
         model=replace(model, notes=(*model.notes, *notes)),
         before=Baseline(

@@ -64,15 +64,18 @@ def find_faults(
 
 def _absurd(recording: Samples) -> tuple[Fault, ...]:
     """Refuse numbers that no torque, angle or clock has."""
-    for name, unit in (("torque_nm", "N m"), ("angle_deg", "deg"), ("time_s", "s")):
+    signals = (
+        ("torque", "torque_nm", "N m"), ("angle", "angle_deg", "deg"), ("clock", "time_s", "s"),
+    )  # fmt: skip
+    for word, name, unit in signals:
         values = getattr(recording, name)
         largest = 0.0 if values is None else float(np.abs(values).max(initial=0.0))
         if largest > ABSURD:
-            reason = f"{name} reaches {largest:.3g} {unit}: no rig reads that."
+            reason = f"The {word} reaches {largest:.3g} {unit}: no rig reads that."
             return (Fault("absurd_value", "DATA_FAULT", reason),)
     torque = float(np.abs(recording.torque_nm).max(initial=0.0))
     if 0.0 < torque < SMALLEST_TORQUE_NM:
-        reason = f"torque_nm reaches only {torque:.3g} N m: no sensor reads that."
+        reason = f"The torque reaches only {torque:.3g} N m: no sensor reads that."
         return (Fault("absurd_value", "DATA_FAULT", reason),)
     return ()
 

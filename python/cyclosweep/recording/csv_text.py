@@ -204,7 +204,7 @@ def open_csv(content: bytes, path: Path, options: TableOptions, wanted: Collecti
             "column names such as torque_nm,angle_deg"
         )
     decimal_comma = separator != "," and b"," in content[stop : stop + 10_000]
-    notes = [f"Cells divided by '{separator}', decimal commas."] if decimal_comma else []
+    notes = [_decimal_commas(separator)] if decimal_comma else []
     decimal, thousands = ("," if decimal_comma else "."), ""
     text = CsvText(content, stop, line, line, separator, decimal, thousands, names, {}, notes)
     return _spelt(text, options)
@@ -312,7 +312,7 @@ def _spelt(text: CsvText, options: TableOptions) -> CsvText:
     if thousands == decimal:
         thousands = ""
     if decimal == "," and not any("decimal commas" in note for note in notes):
-        notes.append(f"Cells divided by '{text.separator}', decimal commas.")
+        notes.append(_decimal_commas(text.separator))
     return replace(
         text, decimal=decimal, thousands=thousands, notes=notes, missing=tuple(options.missing)
     )
@@ -373,3 +373,9 @@ def without_thousands(text: CsvText) -> CsvText:
     group = re.escape(text.thousands.encode())
     body = re.sub(rb"(?<=\d)" + group + rb"(?=\d{3}(?!\d))", b"", text.content[text.start :])
     return replace(text, content=text.content[: text.start] + body, thousands="")
+
+
+def _decimal_commas(separator: str) -> str:
+    """Note on the signs between cells and in numbers."""
+    named = {"\t": "tabs", " ": "blanks"}.get(separator, f"'{separator}'")
+    return f"Cells divided by {named}, decimal commas."

@@ -103,8 +103,8 @@ def _remarks(data: ReportData) -> list[str]:
 
 def _notes(data: ReportData) -> list[str]:
     """First notes on how the recording was read, without what is said elsewhere."""
-    reasons = {fault.reason for fault in data.recording.faults}
-    notes = [note for note in data.result.notes if note not in reasons]
+    said = {*sentences.asked(data), *(fault.reason for fault in data.recording.faults)}
+    notes = [note for note in data.result.notes if note not in said]
     return _unsaid(data, notes)[:MOST_NOTES]
 
 
