@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+import cyclosweep as cs
 from cyclosweep.recording.checks import find_faults
 from cyclosweep.recording.samples import Samples
 from cyclosweep.recording.structure import find_structure
@@ -46,3 +47,13 @@ def test_a_column_of_another_shape_is_refused(run: npt.NDArray[np.int64]) -> Non
 
 def test_the_frame_holds_what_was_recorded() -> None:
     assert loop().to_frame().columns == ["torque_nm", "angle_deg", "run"]
+
+
+@pytest.mark.parametrize("name", ["torque_nm", "angle_deg", "time_s", "run"])
+def test_complex_numbers_are_refused(name: str) -> None:
+    arrays = {key: np.arange(9.0) for key in ("torque_nm", "angle_deg", "time_s", "run")}
+    for wrong in (arrays[name] + 1j, list(arrays[name] + 0j)):
+        with pytest.raises(cs.InputError, match=f"{name}: found complex numbers, expected real"):
+            cs.Recording.from_arrays(**{**arrays, name: wrong})
+        with pytest.raises(cs.InputError, match=f"{name}: found complex numbers, expected real"):
+            cs.Recording(name="r", **{**arrays, name: np.asarray(wrong)})

@@ -65,6 +65,7 @@ class Samples:
             if given is None:
                 continue
             array: NDArray[Any] = np.asarray(given)
+            _refuse_complex(name, array)
             if kind is np.int64 and array.dtype.kind == "f":
                 _refuse_fractions(name, array)
             array = np.asarray(array, dtype=kind)
@@ -136,6 +137,25 @@ def _refuse_fractions(name: str, values: NDArray[Any]) -> None:
         raise InputError(f"{name}, sample {wrong[0] + 1}: found {found:g}, expected an integer")
 
 
+def _refuse_complex(name: str, values: NDArray[Any]) -> None:
+    """Refuse complex numbers, of which numpy would keep the real part.
+
+    Parameters
+    ----------
+    name : str
+        What they are called in the message.
+    values : ndarray
+        Numbers.
+
+    Raises
+    ------
+    InputError
+        For any of them.
+    """
+    if values.dtype.kind == "c":
+        raise InputError(f"{name}: found complex numbers, expected real ones")
+
+
 def floats_of(name: str, values: ArrayLike | None) -> Floats | None:
     """Make an array of floats, where there is one to make.
 
@@ -168,9 +188,11 @@ def numbers_of(name: str, values: ArrayLike) -> Floats:
     ndarray, shape (n,)
     """
     try:
-        array = np.asarray(values, dtype=np.float64)
+        given: NDArray[Any] = np.asarray(values)
+        array = given if given.dtype.kind == "c" else np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: expected numbers, one a sample") from None
+    _refuse_complex(name, array)
     if array.ndim != 1:
         raise InputError(f"{name}: found shape {array.shape}, expected numbers, one a sample")
     return array
