@@ -32,6 +32,21 @@ def test_a_second_diagnosis_leaves_nothing_of_the_first(tmp_path: Path) -> None:
     assert not (tmp_path / "model.json").exists()
 
 
+def test_an_emptied_folder_of_pictures_goes_and_other_files_stay(tmp_path: Path) -> None:
+    pictures = tmp_path / "pictures"
+    pictures.mkdir()
+    found = diagnosed()
+    found.write(tmp_path, report=False)
+    assert pictures.is_dir()  # nothing of ours was in it
+    (pictures / "loop.png").write_bytes(b"")
+    (pictures / "notes.txt").write_text("mine")
+    found.write(tmp_path, report=False)
+    assert [path.name for path in pictures.iterdir()] == ["notes.txt"]
+    (pictures / "notes.txt").rename(pictures / "map.png")
+    found.write(tmp_path, report=False)
+    assert not pictures.exists()
+
+
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii", "cp437", "latin-1", "utf-8"])
 def test_a_terminal_of_any_encoding_shows_the_summary(tmp_path: Path, encoding: str) -> None:
     file = tmp_path / "loop.csv"

@@ -1,5 +1,6 @@
 """What `cyclosweep.diagnose` returns: the answer, the repaired model, and their files."""
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -211,8 +212,12 @@ class Diagnosis:
         target.mkdir(parents=True, exist_ok=True)
         write_text(target / "diagnosis.json", self.to_json())
         # Not before: where nothing can be written, the earlier answer stays whole.
-        for old in [target / "report.html", target / "model.json", *target.glob("pictures/*.png")]:
+        pictures = list(target.glob("pictures/*.png"))
+        for old in [target / "report.html", target / "model.json", *pictures]:
             old.unlink(missing_ok=True)
+        if pictures:
+            with suppress(OSError):  # other files may stand there
+                (target / "pictures").rmdir()
         if self.model is not None:
             write_text(target / "model.json", self.model.to_json())
         if report:
