@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -51,7 +53,9 @@ def test_the_frame_holds_what_was_recorded() -> None:
 
 @pytest.mark.parametrize("name", ["torque_nm", "angle_deg", "time_s", "run"])
 def test_complex_numbers_are_refused(name: str) -> None:
-    arrays = {key: np.arange(9.0) for key in ("torque_nm", "angle_deg", "time_s", "run")}
+    arrays: dict[str, Any] = {
+        key: np.arange(9.0) for key in ("torque_nm", "angle_deg", "time_s", "run")
+    }
     for wrong in (arrays[name] + 1j, list(arrays[name] + 0j)):
         with pytest.raises(cs.InputError, match=f"{name}: found complex numbers, expected real"):
             cs.Recording.from_arrays(**{**arrays, name: wrong})
