@@ -219,7 +219,7 @@ def _diagnose_folder(
                   for each in series.trends]  # fmt: skip
         print_json({"table": series.table.to_dicts(), "trends": trends})
     else:
-        print_tables([_folder_table(series)])
+        print_tables([_folder_table(series)], any_width=True)
         for row in series.table.to_dicts():
             if row.get("remarks"):
                 print(f"Check first, {row['recording']}: {row['remarks']}")

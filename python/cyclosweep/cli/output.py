@@ -67,12 +67,21 @@ def survive_encoding() -> None:
             stream.reconfigure(errors="cyclosweep.spelt")
 
 
-def print_tables(renderables: Iterable[RenderableType]) -> None:
-    """Print tables, as wide as the terminal or as COLUMNS says."""
+def print_tables(renderables: Iterable[RenderableType], *, any_width: bool = False) -> None:
+    """Print tables, as wide as the terminal.
+
+    Parameters
+    ----------
+    renderables : iterable of rich renderables
+        Tables.
+    any_width : bool
+        They have a form for few columns: COLUMNS counts without a terminal, too.
+    """
     from rich.console import Console
 
     # Without a terminal rich would cut the tables to 80 columns.
-    is_known = sys.stdout.isatty() or os.environ.get("COLUMNS", "").isdigit()
+    by_columns = any_width and os.environ.get("COLUMNS", "").isdigit()
+    is_known = sys.stdout.isatty() or by_columns
     console = Console(width=None if is_known else 120)
     for renderable in renderables:
         console.print(renderable)
