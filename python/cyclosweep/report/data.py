@@ -11,6 +11,7 @@ from cyclosweep.recording import Recording
 from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.report.residual_scale import MAY_BE_IN_PLAY_SHARE, scale_deg
 from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, answer_of
+from cyclosweep.result.stand_in_words import stand_in_words
 
 Floats = NDArray[np.float64]
 
@@ -127,8 +128,14 @@ class ReportData:
 
     @property
     def is_repaired(self) -> bool:
-        """Whether the repaired model differs from the published one."""
-        return bool(self.result.effects)
+        """Whether the repaired model differs from the published one, by effects or stand-ins."""
+        return bool(self.result.effects or self.result.repaired.stand_ins)
+
+    @property
+    def stand_in_note(self) -> str:
+        """Which stand-ins the figures "after" hold, as a sentence to add; empty without any."""
+        names = stand_in_words(self.result)
+        return f" After: with {names}, which is not named as a cause." if names else ""
 
     @property
     def scored(self) -> NDArray[np.bool_]:

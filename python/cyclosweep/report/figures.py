@@ -26,6 +26,7 @@ from cyclosweep.report.residual_figures import map_figure, profiles_figures
 from cyclosweep.report.residual_panel import Residual, ResidualAxis
 from cyclosweep.report.thin import thin
 from cyclosweep.report.wording import number
+from cyclosweep.result.stand_in_words import stand_in_words
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -128,7 +129,7 @@ def _main_caption(data: ReportData, dots: ResidualDots, largest_deg: Floats) -> 
     -------
     str
     """
-    change = " with the effects named below" if data.is_repaired else ", as nothing was repaired"
+    change = _change(data)
     words = [
         "Before: the published model with calibrated stiffness, free play and datum. "
         f"After: the same{change}. Shaded: where simulation and recording "
@@ -148,6 +149,13 @@ def _main_caption(data: ReportData, dots: ResidualDots, largest_deg: Floats) -> 
             "residuals, most of them on the way through the dead zone."
         )
     return " ".join(words)
+
+
+def _change(data: ReportData) -> str:
+    """What the repaired model has beyond the calibrated one, in words."""
+    named = "the effects named below" if data.result.effects else ""
+    parts = [part for part in (named, stand_in_words(data.result)) if part]
+    return f" with {' and '.join(parts)}" if parts else ", as nothing was repaired"
 
 
 def zoom_figure(data: ReportData) -> Figure:

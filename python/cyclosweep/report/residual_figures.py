@@ -47,7 +47,7 @@ def profiles_figures(data: ReportData) -> list[Figure]:
         key="profiles",
         title="Residual against torque, angle, run, time, rate and position",
         caption="Means of bins. The band is simultaneous: noise alone leaves all means of a panel "
-        "inside in 99 of 100 cases. Rings lie outside." + _left_out(data),
+        "inside in 99 of 100 cases. Rings lie outside." + _left_out(data) + data.stand_in_note,
         panels=tuple(
             Placed(panel=panel, row=k // columns, column=k % columns)
             for k, panel in enumerate(panels)
@@ -93,7 +93,7 @@ def map_figure(data: ReportData) -> Figure:
         title="Residual map",
         caption=f"Mean residual by torque, run and direction: orange −{number(limit)} deg, white "
         f"0, blue +{number(limit)} deg. A dot marks a cell that noise does not explain, all cells "
-        "taken together at 99 %." + _left_out(data),
+        "taken together at 99 %." + _left_out(data) + data.stand_in_note,
         panels=panels,
         columns=2,
         row_height=max(150.0, 17.0 * len(names) + 88),

@@ -18,6 +18,7 @@ from cyclosweep.report.wording import (
 )
 from cyclosweep.result import EffectParameter, FoundEffect, Region
 from cyclosweep.result.contradictions import NONE_NEEDED
+from cyclosweep.result.stand_in_words import removed_by_stand_ins, stand_in_words
 from cyclosweep.result.words import readable, telling_digits
 
 LEAST_BACKWARDS = 0.01
@@ -96,7 +97,9 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
             rows.append(("–", label, "not computed"))
             continue
         if data.is_repaired and after is not None:
-            rows.append((f"{number(before)} → {number(after)} deg", label, "before → after"))
+            names = stand_in_words(data.result)
+            remark = f"before → after, {names}" if names else "before → after"
+            rows.append((f"{number(before)} → {number(after)} deg", label, remark))
         else:
             rows.append((f"{number(before)} deg", label, "calibrated model"))
     if data.result.noise.sigma_deg is not None:
@@ -137,12 +140,13 @@ def unknown(data: ReportData) -> str:
     """Shape, place and size of what has no name, in one sentence."""
     rest = data.result.unknown
     if rest is None:
-        return ""
+        return removed_by_stand_ins(data.result)
     place = f", {rest.place}" if rest.place else ""
-    return (
+    said = (
         f"{readable(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
         "No effect of the vocabulary explains it."
     )
+    return f"{said} {removed_by_stand_ins(data.result)}".rstrip()
 
 
 def findings(data: ReportData) -> list[str]:

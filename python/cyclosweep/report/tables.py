@@ -82,6 +82,7 @@ def loop_table(data: ReportData) -> Table | None:
             " No sample lies within ±3 % of that torque: lost motion and hysteresis loss are "
             "straight-line extensions of the nearest samples."
         )
+    note += data.stand_in_note
     return Table("Loop figures", ("", *(n for n, _ in columns)), tuple(rows), note)
 
 
@@ -115,7 +116,7 @@ def parameter_table(data: ReportData) -> Table | None:
         "fit before; behind ± stands the half width of the 95 % interval. With effects in the "
         "model, its compliance and play are what these leave: the drive's own stand at the top of "
         "the page. The compliance scale counts the effects that bend the line, between half and "
-        "full torque.",
+        "full torque." + data.stand_in_note,
         frozenset({1}),
     )
 
@@ -178,7 +179,7 @@ def held_out_table(data: ReportData) -> Table | None:
         "Held-out errors",
         ("block", "samples", "before (deg rms)", "after (deg rms)", "floor (deg rms)"),
         rows,
-        "The floor is what noise, or one replicate against another, leaves.",
+        "The floor is what noise, or one replicate against another, leaves." + data.stand_in_note,
     )
 
 
@@ -210,7 +211,8 @@ def _forecast_table(data: ReportData) -> Table:
         "when the shaft leaves a flank, and a crossing of the dead zone that comes a moment early "
         "or late costs the whole play for that moment. With the flank as recorded, the same model "
         "is asked only for the twist on it. The distance to the curve forgives early and late "
-        "alike. The floor is what an earlier run leaves as the prediction of this one.",
+        "alike. The floor is what an earlier run leaves as the prediction of this one."
+        + data.stand_in_note,
         frozenset({1}),
         frozenset(range(0, len(rows), 3)),
     )  # fmt: skip

@@ -14,6 +14,7 @@ from cyclosweep.result.calibration_words import (
 )
 from cyclosweep.result.effects import Explanation, Remainder
 from cyclosweep.result.proof import HeldOutBlock
+from cyclosweep.result.stand_in_words import removed
 from cyclosweep.result.words import (
     degrees,
     falls,
@@ -192,24 +193,16 @@ def _remains(rest: Remainder, size: str, answer: Answer) -> str:
 
 def _stand_ins(answer: Answer) -> str:
     """Say what a repair removes whose laws may not be named, where that is most of the mismatch."""
-    laws = answer.repaired.stand_ins
-    if not laws:
-        return ""
-    errors, on = (answer.baseline.rmse_deg, answer.repaired.rmse_deg), "of the mismatch"
-    left_out = (answer.baseline.holdout_rmse_deg, answer.repaired.holdout_rmse_deg)
-    if left_out[0]:
-        errors, on = left_out, "of the mismatch on data not used"
-    before, after = errors
-    if not before or after is None or 1.0 - (after / before) ** 2 < MOST:
+    laws, found = answer.repaired.stand_ins, removed(answer)
+    if not laws or found is None or found.share < MOST:
         return ""
     others = [effect.name for effect in answer.effects if effect.name not in laws]
     beside = f" beside {listed(others)}" if others else ""
     stand_in = "a stand-in" if len(laws) == 1 else "stand-ins"
-    removed = f"{100 * (1.0 - (after / before) ** 2):.3g} %"
     return (
         f" It behaves like {listed(laws)}, whose law is not decided: the repaired model, with "
-        f"{stand_in} of that name{beside}, removes {removed} {on} ({degrees(before)} to "
-        f"{degrees(after)})."
+        f"{stand_in} of that name{beside}, {found.in_words}; what a stand-in removes does not count "
+        "as explained."
     )
 
 
