@@ -69,7 +69,7 @@ def page(data: ReportData) -> str:
             section("Parameters", table_html(tables.parameter_table(data))),
             section("Every effect that was tried", table_html(tables.hypothesis_table(data))),
             _beside(
-                bullets("Explanations that fit", sentences.explanations(data)),
+                bullets(sentences.explanations_heading(data), sentences.explanations(data)),
                 bullets("Possible, with 95 % upper bounds", sentences.possible(data)),
                 bullets("Not found, with 95 % upper bounds", sentences.bounds(data)),
                 bullets("What this recording cannot show", sentences.untestable(data)),

@@ -21,6 +21,10 @@ from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.stand_in_words import removed_by_stand_ins, stand_in_words
 from cyclosweep.result.words import readable, telling_digits
 
+FIT = "Explanations that fit"
+"""Heading of the explanations."""
+FIT_BEST = "Explanations that fit best of those compared"
+"""The same where something is left that has no name."""
 LEAST_BACKWARDS = 0.01
 """Friction below zero, over the largest torque, from which a loop runs the wrong way round."""
 BACKWARDS = (
@@ -142,10 +146,13 @@ def unknown(data: ReportData) -> str:
     if rest is None:
         return removed_by_stand_ins(data.result)
     place = f", {rest.place}" if rest.place else ""
-    said = (
-        f"{readable(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
-        "No effect of the vocabulary explains it."
-    )
+    if rest.shape in {effect.name for effect in data.result.effects}:
+        said = f"What the law of {readable(rest.shape)} misses, {angle(rest.size_deg)}{place}."
+    else:
+        said = (
+            f"{readable(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
+            "No listed effect explains it within the noise."
+        )
     return f"{said} {removed_by_stand_ins(data.result)}".rstrip()
 
 
@@ -178,12 +185,25 @@ def asked(data: ReportData) -> list[str]:
     return [note for note in data.result.notes if note in (ONE_HISTORY, UNBROKEN)]
 
 
+def explanations_heading(data: ReportData) -> str:
+    """Heading of the explanations; where something is left without a name, they only fit best."""
+    return FIT if data.result.unknown is None else FIT_BEST
+
+
 def explanations(data: ReportData) -> list[str]:
-    """Structures that fit about as well as the best."""
+    """Structures that fit about as well as the best; laws that were not found to hold, marked."""
+    named = {effect.name for effect in data.result.effects}
+    unsure = set(data.result.repaired.stand_ins) - named
     rows = []
     for explanation in data.result.explanation_set:
-        names = [*explanation.effects, *explanation.without_name]
-        text = " + ".join(map(readable, names)) or "nothing missing"
+        effects = [
+            f"{readable(name)} (a stand-in, whose law was not found to hold)"
+            if name in unsure
+            else readable(name)
+            for name in explanation.effects
+        ]
+        names = [*effects, *map(readable, explanation.without_name)]
+        text = " + ".join(names) or "nothing missing"
         rows.append(f"{text}: probability {probability(explanation.probability)}")
     return rows
 

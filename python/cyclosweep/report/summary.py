@@ -11,7 +11,8 @@ NOTHING_TO_DO = "Nothing:"
 LEADS = (CHECK_FIRST, LOOK_AT_PART, RECORD_NEXT, NOTHING_TO_DO)
 """Words with which what is to be done now begins, set in bold on the page."""
 NOTHING_TOLD = (
-    "The model misses something that no listed effect explains; its shape and place do not show."
+    "The model misses something that no listed effect explains within the noise; its shape and "
+    "place do not show."
 )
 """Sentence where the error is too large for the noise and no test says why."""
 SHOWN_BY_LOOPS = frozenset(
@@ -163,19 +164,26 @@ def _rest(answer: Answer) -> str:
     rest = answer.unknown
     if rest is None:
         return "" if answer.effects else NOTHING_TOLD
-    what = f"{shape_in_words(rest.shape)} of {rest.size_deg:.2g} deg"
     named = {effect.name for effect in answer.effects}
+    if rest.shape in named:
+        return (
+            f"{space}What is left, {rest.size_deg:.2g} deg, is what the law of "
+            f"{readable(rest.shape)} misses."
+        )
+    what = f"{shape_in_words(rest.shape)} of {rest.size_deg:.2g} deg"
     others = [law for law in answer.repaired.stand_ins if law not in named]
     if answer.effects and others:
         return (
             f"{space}What is left, {what}, behaves like {listed(others)}, but follows none of the "
-            "listed laws."
+            "listed laws within the noise."
         )
     if answer.effects:
-        return f"{space}What is left, {what}, no listed effect explains."
-    text = f"The model misses something that no listed effect explains: {what}."
+        return f"{space}What is left, {what}, no listed effect explains within the noise."
+    text = f"The model misses something that no listed effect explains within the noise: {what}."
     laws = answer.repaired.stand_ins
-    return text + (f" It behaves like {listed(laws)}." if laws else "")
+    if not laws:
+        return text
+    return f"{text} It behaves most like {listed(laws)}, whose law was not found to hold."
 
 
 def _open(answer: Answer) -> str:

@@ -201,8 +201,8 @@ def _stand_ins(answer: Answer) -> str:
     stand_in = "a stand-in" if len(laws) == 1 else "stand-ins"
     return (
         f" It behaves like {listed(laws)}, whose law is not decided: the repaired model, with "
-        f"{stand_in} of that name{beside}, {found.in_words}; what a stand-in removes does not count "
-        "as explained."
+        f"{stand_in} of that name{beside}, {found.in_words}; what a stand-in removes does not "
+        "count as explained."
     )
 
 
