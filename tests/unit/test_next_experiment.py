@@ -1,30 +1,34 @@
 """The next experiment: loads in newton metres, a programme to start from, nothing that is known."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.verify.experiment import (
-    MENU,
-    USUAL,
-    rig_programme,
-)
+from cyclosweep.diagnosis.verify.experiment import FINER, next_experiment, rig_programme
+from cyclosweep.diagnosis.verify.menu import MENU, SHOWN_BY, able_to_show
 from cyclosweep.simulation.effects import VOCABULARY
-from tests.support.searches import search_of_recording
+from tests.support.searches import search_of, search_of_recording
 from tests.unit.test_diagnosis_answer import found
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 
 
 def test_the_loads_are_said_in_newton_metres() -> None:
-    for case in ("ambiguous", "too noisy"):
-        diagnosis = found(case)
-        plan = diagnosis.answer.next_experiment
-        assert plan is not None
-        largest = float(np.abs(diagnosis.recording.torque_nm).max())
-        assert len(plan.loads_nm) >= 3
-        (of_menu,) = [each for each in MENU if each.words == plan.program]
-        expected = [share * largest for share in of_menu.shares]
-        assert plan.loads_nm == pytest.approx(expected, rel=5e-3)
-        assert plan.rig_programme == "weights-and-protractor"
+    diagnosis = found("ambiguous")
+    plan = diagnosis.answer.next_experiment
+    assert plan is not None
+    largest = float(np.abs(diagnosis.recording.torque_nm).max())
+    search = search_of()
+    shown = next_experiment(search, [], "clearance_takeup", 100.0 * search.noise.sigma_deg)
+    for each, top in ((plan, largest), (shown, search.problem.largest_torque_nm)):
+        assert len(each.loads_nm) >= 3
+        (of_menu,) = [one for one in MENU if one.words == each.program]
+        expected = [share * top for share in of_menu.shares]
+        assert each.loads_nm == pytest.approx(expected, rel=5e-3)
+    assert plan.rig_programme == "motor-current"  # two rates
+    assert shown.rig_programme == "weights-and-protractor"
 
 
 def test_every_programme_of_the_menu_goes_as_far_as_its_loads_say() -> None:
@@ -39,9 +43,52 @@ def test_the_programme_to_start_from_is_that_of_the_rig() -> None:
     output = cs.Recording.from_arrays(torque, angle, side="output")
     motor = cs.Recording.from_arrays(torque, angle, torque_from="motor-current")
     by_hand = cs.Recording.from_arrays(torque, angle)
-    assert rig_programme(output) == "torque-sensor-and-encoder"
-    assert rig_programme(motor) == "motor-current"
-    assert rig_programme(by_hand) == "weights-and-protractor"
+    (loops,) = able_to_show(["overload_softening"])
+    assert rig_programme(output, loops) == "torque-sensor-and-encoder"
+    assert rig_programme(motor, loops) == "motor-current"
+    assert rig_programme(by_hand, loops) == "weights-and-protractor"
+
+
+def test_no_programme_is_named_that_cannot_do_what_is_asked() -> None:
+    torque, angle = np.arange(9.0), np.arange(9.0)
+    output = cs.Recording.from_arrays(torque, angle, side="output")
+    by_hand = cs.Recording.from_arrays(torque, angle)
+    (rates,) = able_to_show(["viscous_drag"])
+    (dwells,) = able_to_show(["creep"])
+    assert rig_programme(by_hand, rates) == "motor-current"  # weights have no clock
+    assert rig_programme(by_hand, dwells) == ""
+    assert rig_programme(output, dwells) == "torque-sensor-and-encoder"
+    for plan in MENU:
+        name = rig_programme(by_hand, plan)
+        if name:
+            header = (RIGS / f"{name}.csv").read_text(encoding="utf-8").partition("\n")[0]
+            needs = {"rates": "time_s", "positions": "crank_deg"}.get(plan.varies, "torque_nm")
+            assert needs in header.split(",")
+
+
+@pytest.mark.parametrize(
+    ("effect", "words"),
+    [
+        ("viscous_drag", "three rates"),
+        ("creep", "holds"),
+        ("load_asymmetry", "loops"),
+        ("overload_softening", "1.4 times the largest torque"),
+    ],
+)
+def test_the_programme_changes_what_the_effect_follows(effect: str, words: str) -> None:
+    search = search_of()
+    plan = next_experiment(search, [], effect, 100.0 * search.noise.sigma_deg)
+    assert words in plan.program
+    assert plan.separates == (effect,)
+    assert "1.4 times" in words or "1.4 times" not in plan.program
+
+
+def test_nothing_is_proposed_that_would_drown_in_the_noise() -> None:
+    plan = found("too noisy").answer.next_experiment  # 0.001 deg in noise of 0.2 deg
+    assert plan is not None
+    assert plan.program == FINER
+    assert not plan.separates
+    assert not plan.loads_nm
 
 
 def test_what_is_named_is_not_to_be_shown_again() -> None:
@@ -51,10 +98,11 @@ def test_what_is_named_is_not_to_be_shown_again() -> None:
     assert not named & set(unknown.next_experiment.separates)
 
 
-def test_the_usual_programmes_are_those_of_the_menu() -> None:
+def test_every_effect_has_programmes_of_the_menu() -> None:
     made = [plan.make for plan in MENU]
-    assert all(programme in made for programme in USUAL.values())
-    assert set(USUAL) <= {effect.name for effect in VOCABULARY}
+    assert all(programme in made for able in SHOWN_BY.values() for programme in able)
+    assert set(SHOWN_BY) == {effect.name for effect in VOCABULARY}
+    assert able_to_show(["an effect of a user"]) == MENU
 
 
 def test_torques_that_do_not_count_are_not_asked_for_again() -> None:

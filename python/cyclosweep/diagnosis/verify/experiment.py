@@ -1,8 +1,6 @@
 """The next experiment: the load programme from a menu that best separates what is left."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from typing import get_args
 
 import numpy as np
 
@@ -10,178 +8,22 @@ from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.identify.structures.candidate import Candidate
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.verify.menu import STEP_S, Plan, Varied, able_to_show
 from cyclosweep.recording import Recording
 from cyclosweep.result import NextExperiment
 from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.history import Floats, History
 
-Load = tuple[Floats, Floats, Floats, Floats]
-"""Torque [N m], run, position [deg] and temperature [degC]."""
-
-STEP_S = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """A load programme in words and the history it makes, for a largest torque.
-
-    Attributes
-    ----------
-    words : str
-        What to do.
-    make : callable
-        History of a largest torque [N m].
-    shares : tuple of float
-        Torques between which one run is ramped, over the largest torque.
-    """
-
-    words: str
-    make: Callable[[float], Load]
-    shares: tuple[float, ...]
-
-
-def _line(points: Sequence[float], seconds: float) -> Floats:
-    """Torque along straight ramps of equal duration.
-
-    Parameters
-    ----------
-    points : sequence of float
-        Torques at the ends of the ramps [N m].
-    seconds : float
-        Duration of all ramps [s].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        In N m.
-    """
-    count = max(int(seconds / STEP_S / max(len(points) - 1, 1)), 4)
-    parts = [np.linspace(a, b, count, endpoint=False) for a, b in pairwise(points)]
-    return np.concatenate([*parts, [points[-1]]])
-
-
-def _runs(torques: Sequence[Floats], cranks: Sequence[float], warm: float = 0.0) -> Load:
-    """Torque, run, position and temperature of consecutive runs.
-
-    Parameters
-    ----------
-    torques : sequence of ndarray
-        Torque of each run [N m].
-    cranks : sequence of float
-        Position of the mesh in each run [deg].
-    warm : float
-        Rise of temperature over all runs [K].
-
-    Returns
-    -------
-    Load
-    """
-    run = np.concatenate([np.full(len(t), k, dtype=np.float64) for k, t in enumerate(torques)])
-    crank = np.concatenate([np.full(len(t), c) for t, c in zip(torques, cranks, strict=True)])
-    share = np.arange(len(run)) / max(len(run) - 1, 1)
-    return np.concatenate(torques), run, crank, 20.0 + warm * share
-
-
-LOOP = (0.0, 1.0, -1.0, 0.0)
-"""Ends of the ramps of a loop, over the largest torque."""
-NESTED = (0.0, 1.0, -1.0, 0.6, -0.4, 1.0, 0.4, 0.8, 0.0)
-"""Ends of the ramps of nested loops, over the largest torque."""
-LADDER = (0.2, 0.4, 0.7, 1.0, 1.2, 0.3)
-"""Amplitudes of a ladder of loops, over the largest torque."""
-
-
-def _nested(top: float) -> Load:
-    """Nested and biased loops, twice."""
-    points = [share * top for share in NESTED]
-    return _runs([_line(points, 500), _line(points, 500)], [0, 0])
-
-
-def _rates(top: float) -> Load:
-    """The same loop at three rates."""
-    points = [share * top for share in LOOP]
-    return _runs([_line(points, s) for s in (60, 200, 700)], [0, 0, 0])
-
-
-def _holds(top: float) -> Load:
-    """Holds at full load and without load, both directions."""
-    up, down = _line([0, top], 40), _line([top, 0], 40)
-    path = np.concatenate([up, np.full(300, top), down, np.full(200, 0.02 * top)])
-    return _runs([path, -path], [0, 0])
-
-
-def _places(top: float) -> Load:
-    """The same loop at eight positions of the mesh."""
-    points = [share * top for share in LOOP]
-    spots = [0, 45, 90, 135, 180, 225, 270, 315]
-    return _runs([_line(points, 120) for _ in spots], spots)
-
-
-def _returns(top: float) -> Load:
-    """Small loops returning to three positions while the rig warms up by 4 K."""
-    points = [0, 0.5 * top, -0.5 * top, 0]
-    spots = [0, 120, 240, 0, 120, 240, 0, 120]
-    return _runs([_line(points, 120) for _ in spots], spots, warm=4.0)
-
-
-def _soak(top: float) -> Load:
-    """Small loops at one position while the rig warms up by 10 K."""
-    points = [0, 0.3 * top, -0.3 * top, 0]
-    return _runs([_line(points, 120) for _ in range(8)], [0] * 8, warm=10.0)
-
-
-def _ladder(top: float) -> Load:
-    """Loops of growing amplitude, then a small one."""
-    return _runs([_line([0, s * top, -s * top, 0], 150) for s in LADDER], [0] * len(LADDER))
-
-
-def _wide(top: float) -> Load:
-    """Two loops to 1.4 times the largest torque."""
-    return _runs([_line([0, 1.4 * top, -1.4 * top, 0], 600) for _ in range(2)], [0, 0])
-
-
-MENU: tuple[Plan, ...] = (
-    Plan("nested and biased loops to the largest torque, twice", _nested, NESTED),
-    Plan("the same loop at three rates, one to ten", _rates, LOOP),
-    Plan(
-        "holds of five minutes at full load and without load, both directions",
-        _holds,
-        (0.0, 1.0, 0.0, -1.0, 0.0),
-    ),
-    Plan("the same loop at eight positions of the mesh zone", _places, LOOP),
-    Plan(
-        "small loops returning to three positions while the rig warms up by 4 K",
-        _returns,
-        tuple(0.5 * share for share in LOOP),
-    ),
-    Plan(
-        "small loops at one position while the rig warms up by 10 K",
-        _soak,
-        tuple(0.3 * share for share in LOOP),
-    ),
-    Plan(
-        "loops of growing amplitude, then a small one again",
-        _ladder,
-        (0.0, *(sign * share for share in LADDER for sign in (1.0, -1.0)), 0.0),
-    ),
-    Plan(
-        "two loops to 1.4 times the largest torque, if the drive may be loaded so far",
-        _wide,
-        tuple(1.4 * share for share in LOOP),
-    ),
+BETTER = 1.05
+"""Factor of detectability by which a programme has to be better than one before it on the menu."""
+CAN_DECIDE = 2.0
+"""Signal-to-noise ratio from which a programme shows anything."""
+FINER = (
+    "the same programme once more, read more finely or several times: by no load would it stand "
+    "out of the noise of this recording"
 )
-
-USUAL: dict[str, Callable[[float], Load]] = {
-    "creep": _holds,
-    "viscous_drag": _rates,
-    "transmission_error": _places,
-    "phase_dependent_compliance": _places,
-    "thermal_drift": _soak,
-    "overload_softening": _wide,
-}
-"""Programme by which an effect is usually told, by name of the effect."""
-PREFERENCE = 3.0
-"""Factor of detectability by which another programme has to be better than the usual one."""
+"""Next experiment where no programme shows what is asked."""
 
 
 def next_experiment(
@@ -214,49 +56,71 @@ def next_experiment(
     else:
         return NextExperiment(program=NONE_NEEDED, minutes=0)
     best: tuple[float, Plan, int] | None = None
-    most = 0.0
-    for plan in MENU:
+    most = CAN_DECIDE / BETTER
+    for plan in able_to_show(_effects_of(terms) or names):
         history = _history(search, plan)
         value = _detectability(search, history, terms, weakest, tolerance_deg)
-        if not np.isfinite(value):
-            continue
-        usual = not terms and weakest is not None and USUAL.get(weakest) is plan.make
-        weight = value * (PREFERENCE if usual else 1.0)
-        if weight > 1.05 * most:
-            best, most = (value, plan, len(history)), weight
+        if value > BETTER * most:
+            best, most = (value, plan, len(history)), value
     if best is None:
-        value, plan, rows = 0.0, MENU[0], 900
-    else:
-        value, plan, rows = best
+        return NextExperiment(program=FINER)
+    value, plan, rows = best
     top = search.problem.largest_torque_nm
     return NextExperiment(
         program=plan.words,
         separates=tuple(names),
         loads_nm=tuple(float(f"{share * top:.3g}") for share in plan.shares),
-        rig_programme=rig_programme(search.problem.recording),
-        detectability=None if best is None else round(float(value), 2),
+        rig_programme=rig_programme(search.problem.recording, plan),
+        detectability=round(float(value), 2),
         minutes=int(np.ceil(rows * STEP_S / 60.0)) + 5,
     )
 
 
-def rig_programme(recording: Recording) -> str:
-    """Name the programme of ``examples/rigs`` for a rig like that of a recording.
+RIGS: dict[str, frozenset[Varied]] = {
+    "weights-and-protractor": frozenset({"loads", "positions"}),
+    "motor-current": frozenset({"loads", "rates"}),
+    "torque-sensor-and-encoder": frozenset(get_args(Varied)),
+}
+"""What the programmes of ``examples/rigs`` change, or have a column for."""
+
+
+def rig_programme(recording: Recording, plan: Plan) -> str:
+    """Name the programme of ``examples/rigs`` that is like a plan, for a rig like a recording's.
 
     Parameters
     ----------
     recording : Recording
-        Says at which shaft was measured, whether with a clock, and whence the torque is.
+        Says at which shaft was measured, and whence the torque is.
+    plan : Plan
+        What is to be done.
 
     Returns
     -------
     str
-        As it is called in docs/rigs.md.
+        As it is called in docs/rigs.md; empty where that of the rig cannot do it.
     """
-    if recording.torque_from == "motor-current":
-        return "motor-current"
     if recording.side == "output":
-        return "torque-sensor-and-encoder"
-    return "weights-and-protractor"
+        name = "torque-sensor-and-encoder"
+    elif recording.torque_from == "motor-current" or plan.varies == "rates":
+        name = "motor-current"
+    else:
+        name = "weights-and-protractor"
+    return name if plan.varies in RIGS[name] else ""
+
+
+def _effects_of(terms: list[tuple[str, list[Term], Candidate]]) -> list[str]:
+    """Names of the effects in which two explanations differ.
+
+    Parameters
+    ----------
+    terms : list of (str, list of Term, Candidate)
+        Two names, each with the terms that only this explanation has; may be empty.
+
+    Returns
+    -------
+    list of str
+    """
+    return [term.name for _, own, _ in terms for term in own]
 
 
 def _contested(rivals: list[Candidate]) -> list[tuple[str, list[Term], Candidate]]:
