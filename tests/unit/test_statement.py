@@ -2,6 +2,10 @@
 
 from dataclasses import replace
 
+from cyclosweep.recording import Recording
+from cyclosweep.report import ReportData
+from cyclosweep.report.sentences import effect_cards
+from cyclosweep.report.summary import summary_of
 from cyclosweep.report.wording import verdict_words
 from cyclosweep.result import (
     Answer,
@@ -12,6 +16,7 @@ from cyclosweep.result import (
     Explanation,
     FoundEffect,
     HeldOutBlock,
+    Mismatch,
     NoiseEstimate,
     PlayAndStiffness,
     Reading,
@@ -112,6 +117,20 @@ def test_the_tolerance_decides_what_is_open() -> None:
         ),
     )
     assert "thermal drift and viscous drag could be as large as 1.5 deg" in statement_of(poor)
+
+
+def test_an_effect_below_the_tolerance_is_called_so() -> None:
+    assert "does not matter" not in statement_of(IDENTIFIED) + summary_of(IDENTIFIED)
+    small = replace(IDENTIFIED, tolerance_deg=0.8)
+    said = " Creep is below the tolerance of 0.8 deg (48 arcmin), the size below which an effect"
+    for verdict in ("IDENTIFIED", "MOSTLY_EXPLAINED", "UNKNOWN_PHYSICS"):
+        told = replace(small, verdict=verdict, mismatch=Mismatch(p_value=0.001))
+        assert said in statement_of(told)
+        assert said in summary_of(told)
+    near = replace(IDENTIFIED, tolerance_deg=0.55)  # within the interval of the size
+    assert "Creep is probably below the tolerance of 0.55 deg" in statement_of(near)
+    data = ReportData(recording=Recording.from_arrays([], name="none"), result=small)
+    assert effect_cards(data)[0][1].endswith("; below the tolerance of 0.8 deg (48 arcmin)")
 
 
 def test_what_remains_is_described_and_a_drift_takes_the_place_of_a_calibration() -> None:

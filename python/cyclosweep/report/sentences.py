@@ -19,6 +19,7 @@ from cyclosweep.report.wording import (
 from cyclosweep.result import EffectParameter, FoundEffect, Region
 from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.stand_in_words import removed_by_stand_ins, stand_in_words
+from cyclosweep.result.tolerance_words import below_tolerance
 from cyclosweep.result.words import readable, telling_digits
 
 FIT = "Explanations that fit"
@@ -39,7 +40,7 @@ def effect_cards(data: ReportData) -> list[tuple[str, str, str, str, str]]:
     return [
         (
             readable(effect.name),
-            _size(effect),
+            _size(effect, data.result.tolerance_deg),
             _evidence(effect),
             effect.physics,
             LOOK_AT.get(effect.name, ""),
@@ -57,14 +58,22 @@ def look_at(data: ReportData) -> list[str]:
     ]
 
 
-def _size(effect: FoundEffect) -> str:
-    """Size of an effect with its interval, and the torque that it is worth."""
+def _size(effect: FoundEffect, tolerance_deg: float | None) -> str:
+    """Size of an effect with its interval, the torque that it is worth, and whether it matters.
+
+    Parameters
+    ----------
+    effect : FoundEffect
+    tolerance_deg : float or None
+        Size below which an effect does not matter [deg].
+    """
     size = effect.size_deg
     digits = telling_digits(size.estimate, size.ci95)
     text = f"{angle(size.estimate, digits)}, 95 % interval {interval(size.ci95, digits)} deg"
     if effect.size_nm is not None:
         text += f"; worth {number(effect.size_nm)} N m"
-    return text
+    below = below_tolerance(effect, tolerance_deg)
+    return f"{text}; {below}" if below else text
 
 
 def _evidence(effect: FoundEffect) -> str:

@@ -4,6 +4,7 @@ from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
+from cyclosweep.result.tolerance_words import tolerance_words
 from cyclosweep.result.words import degrees, falls, listed, readable, shape_in_words
 
 CHECK_FIRST, LOOK_AT_PART, RECORD_NEXT = "Check first:", "Look at", "Record next:"
@@ -62,7 +63,7 @@ def summary_of(answer: Answer) -> str:
             return answer.statement
     if answer.verdict == "UNKNOWN_PHYSICS" and answer.mismatch.p_value is None:
         return answer.statement  # refused before anything was fitted
-    return f"{_named(answer)}{_rest(answer)}"
+    return f"{_named(answer)}{tolerance_words(answer)}{_rest(answer)}"
 
 
 def do_now(answer: Answer) -> str:

@@ -15,6 +15,7 @@ from cyclosweep.result.calibration_words import (
 from cyclosweep.result.effects import Explanation, Remainder
 from cyclosweep.result.proof import HeldOutBlock
 from cyclosweep.result.stand_in_words import removed
+from cyclosweep.result.tolerance_words import tolerance_words
 from cyclosweep.result.words import (
     degrees,
     falls,
@@ -108,8 +109,8 @@ def _identified(answer: Answer) -> str:
     names = listed([effect.name for effect in answer.effects])
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. Size after "
-        f"re-calibration: {_sizes(answer)}. It shows most at {place_of(answer.mismatch.regions)}."
-        f"{_improvement(answer)} {_calibration(answer)}"
+        f"re-calibration: {_sizes(answer)}.{tolerance_words(answer)} It shows most at "
+        f"{place_of(answer.mismatch.regions)}.{_improvement(answer)} {_calibration(answer)}"
     )
 
 
@@ -138,9 +139,9 @@ def _mostly_explained(answer: Answer) -> str:
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
         f"mismatch; what is left {_beside_noise(answer)} and has no name of its own: {remains}."
-        f"{_missed(answer)}{_classes(answer)} Size after re-calibration: {_sizes(answer)}. "
-        f"It shows most at {place_of(answer.mismatch.regions)}.{_improvement(answer)} "
-        f"{_calibration(answer)}"
+        f"{_missed(answer)}{_classes(answer)} Size after re-calibration: {_sizes(answer)}."
+        f"{tolerance_words(answer)} It shows most at {place_of(answer.mismatch.regions)}."
+        f"{_improvement(answer)} {_calibration(answer)}"
     )
 
 
@@ -163,7 +164,7 @@ def _unknown(answer: Answer) -> str:
         )
     return (
         f"Unknown physics:{known} something without a name in the vocabulary remains{remains}."
-        f"{_classes(answer)}{_stand_ins(answer)} It shows most at "
+        f"{_classes(answer)}{_stand_ins(answer)}{tolerance_words(answer)} It shows most at "
         f"{place_of(answer.mismatch.regions)}. {calibration}"
     )
 
