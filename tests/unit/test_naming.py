@@ -81,6 +81,17 @@ def test_friction_keeps_its_name_where_the_curve_beside_it_loses_its_own(
     assert found.part.fit.names == ("friction_hysteresis",)
 
 
+def test_a_prediction_says_which_readings_its_error_counts(
+    searched: Search, whole: WholeLoopFit
+) -> None:
+    contact = searched.baseline.fit
+    assert contact.prediction.counted == "readings in contact"
+    assert whole.prediction.counted == "whole loops"
+    # Errors before and after are of one kind.
+    assert whole.baseline_prediction(contact).counted == "whole loops"
+    assert contact.baseline_prediction(contact).counted == "readings in contact"
+
+
 def test_bounds_of_shapes_add_to_what_whole_loops_tell(whole: WholeLoopFit) -> None:
     """Errors were once those of the flanks alone, 0.16 to 0.64 of these."""
     scale = np.sqrt(np.diag(whole.covariance))

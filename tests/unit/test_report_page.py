@@ -355,6 +355,18 @@ def test_unknown_physics_has_shape_place_and_size(whole: ReportData) -> None:
     assert "What was left out of the model" not in text
 
 
+def test_which_readings_the_errors_count_is_said(whole: ReportData) -> None:
+    said = {}
+    for counted in ("readings in contact", "whole loops"):
+        base = replace(whole.result.baseline, counted=counted)
+        data = replace(whole, result=replace(whole.result, baseline=base))
+        said[counted] = main_figure(data).caption, headline(data)[1][1]
+    assert "Errors count readings in contact" in said["readings in contact"][0]
+    assert said["readings in contact"][1] == "fit error"
+    assert "Errors count whole loops, the way through the play included" in said["whole loops"][0]
+    assert said["whole loops"][1] == "fit error, way through the play included"
+
+
 def test_the_file_appears_whole(tmp_path: Path, whole: ReportData) -> None:
     path = write_html(whole, tmp_path / "report.html")
     assert path.read_text(encoding="utf-8") == page(whole)

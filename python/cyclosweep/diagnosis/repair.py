@@ -112,10 +112,14 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     return RepairedModel(
         model=replace(model, notes=(*model.notes, *notes)),
         before=Baseline(
-            parameters=calibration_of(base, problem), rmse_deg=finite(before.error_deg)
+            parameters=calibration_of(base, problem),
+            rmse_deg=finite(before.error_deg),
+            counted=before.counted,
         ),
         after=Baseline(
-            parameters=calibrated_parameters(fitted, problem), rmse_deg=finite(after.error_deg)
+            parameters=calibrated_parameters(fitted, problem),
+            rmse_deg=finite(after.error_deg),
+            counted=after.counted,
         ),
         before_deg=_at_samples(problem, before.angle_deg, base),
         after_deg=_at_samples(problem, after.angle_deg, fitted),

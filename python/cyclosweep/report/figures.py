@@ -31,6 +31,16 @@ from cyclosweep.result.stand_in_words import stand_in_words
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+COUNTED = {
+    "readings in contact": [
+        "Errors count readings in contact, each on the flank that the recording shows."
+    ],
+    "whole loops": [
+        "Errors count whole loops, the way through the play included: where a simulation crosses "
+        "it early or late, a reading is wrong by the whole play."
+    ],
+}
+"""What is said of the readings that errors count."""
 NAME_MEASURED = "measured"
 NAME_BEFORE = "simulation before"
 NAME_AFTER = "simulation after"
@@ -136,6 +146,7 @@ def _main_caption(data: ReportData, dots: ResidualDots, largest_deg: Floats) -> 
         "differ beyond noise; samples of other directions or runs are grey. Grey band: ±2 standard "
         f"deviations of the noise of a dot ({number(dots.sigma_deg)} deg)."
     ]
+    words += COUNTED.get(data.result.baseline.counted or "", [])
     if dots.averaged > 1:
         words.append(
             f"A dot is the mean of {dots.averaged} neighbouring samples, as in the diagnosis."

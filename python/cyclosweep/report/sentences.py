@@ -96,6 +96,10 @@ def _parameters(parameters: Mapping[str, EffectParameter]) -> str:
     )
 
 
+LOOPS = "way through the play included"
+"""What errors of whole loops count that others do not."""
+
+
 def headline(data: ReportData) -> list[tuple[str, str, str]]:
     """Figures beside the verdict: value, what it is, remark."""
     base, repaired = data.result.baseline, data.result.repaired
@@ -106,6 +110,8 @@ def headline(data: ReportData) -> list[tuple[str, str, str]]:
     ):
         if before is None and after is None:
             continue
+        if base.counted == "whole loops":
+            label += f", {LOOPS}"
         if not before and not after:  # as with --quick: no error is exactly zero
             rows.append(("–", label, "not computed"))
             continue

@@ -1,7 +1,13 @@
 """The result of a diagnosis: its types, its JSON form and schema, and its statement in words."""
 
 from cyclosweep.result.answer import SCHEMA, Answer, Finding, RunToRunDrift
-from cyclosweep.result.calibration import Baseline, CalibratedParameter, NoiseEstimate, Thinning
+from cyclosweep.result.calibration import (
+    Baseline,
+    CalibratedParameter,
+    Counted,
+    NoiseEstimate,
+    Thinning,
+)
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.effects import (
     BehaviourClass,
@@ -37,6 +43,7 @@ __all__ = [
     "Between",
     "Bound",
     "CalibratedParameter",
+    "Counted",
     "Doubt",
     "DriveChange",
     "EffectParameter",

@@ -2,8 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
-from cyclosweep.result.part import Part
+from cyclosweep.result.part import LEFT_OUT, Part
+
+Counted = Literal["readings in contact", "whole loops"]
+"""Which readings an error counts."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,3 +72,8 @@ class Baseline(Part):
     """Root mean square error on the fitted data [deg]."""
     holdout_rmse_deg: float | None = None
     """Root mean square error on data that were not fitted [deg]; 0 where it was not computed."""
+    counted: Counted | None = field(default=None, metadata=LEFT_OUT)
+    """Which readings the errors count, before and after the repair: those in contact, each on the
+    flank that the recording shows; or those of whole loops, on the way through the play too, where
+    the simulation finds the flank for itself and a crossing that comes early or late costs the
+    whole play. Errors of one kind are not comparable with those of the other."""

@@ -51,14 +51,14 @@ class WholeLoopFit(FittedStructure):
     @property
     def prediction(self) -> Prediction:
         """Twist of all rows, crossings of the dead zone included."""
-        return Prediction(self.forecast.angle_deg, self.forecast.error_deg)
+        return Prediction(self.forecast.angle_deg, self.forecast.error_deg, "whole loops")
 
     def baseline_prediction(self, baseline: FittedStructure) -> Prediction:
         """Twist of all rows by the published model calibrated on whole loops.
 
         The ``baseline`` fitted to rows in contact is not needed.
         """
-        return Prediction(self.before.angle_deg, self.before.error_deg)
+        return Prediction(self.before.angle_deg, self.before.error_deg, "whole loops")
 
     @property
     def independent_share(self) -> float:

@@ -37,7 +37,7 @@ class ContactFit(FittedStructure):
     @property
     def prediction(self) -> Prediction:
         """Twist of all rows on the recorded flank."""
-        return Prediction(self.mean_deg, self.rmse_deg)
+        return Prediction(self.mean_deg, self.rmse_deg, "readings in contact")
 
     def baseline_prediction(self, baseline: FittedStructure) -> Prediction:
         """Twist of all rows by the calibrated published model on the recorded flank."""

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from cyclosweep.result import Counted
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 
@@ -15,10 +16,13 @@ class Prediction:
         Twist of all rows [deg].
     error_deg : float
         Root mean square of the difference on the fitted rows [deg].
+    counted : str
+        Which rows these are.
     """
 
     angle_deg: Floats
     error_deg: float
+    counted: Counted
 
 
 @dataclass(frozen=True, eq=False)
