@@ -95,6 +95,30 @@ def test_one_run_has_no_interval_and_a_missing_value_has_a_reason() -> None:
     assert "only one flank" in (alone.reason or "")
 
 
+def test_the_friction_of_short_runs_is_read_from_all_of_them() -> None:
+    branch = np.r_[0.2:6:30j, 6:0.2:30j, -0.2:-6:30j, -6:-0.2:30j]
+    torque = np.tile(branch, 2)
+    elastic = torque - 0.3 * np.sign(np.gradient(torque))
+    angle = 28.0 * np.sign(torque) + 2.7 * elastic
+    run = np.repeat([1, 2], len(branch))
+    one = play_and_stiffness(cs.Recording.from_arrays(torque, angle), FITTED, 87.0)
+    two = play_and_stiffness(cs.Recording.from_arrays(torque, angle, run=run), FITTED, 87.0)
+    assert one.friction_nm is not None
+    assert two.friction_nm == one.friction_nm
+    assert one.friction_nm.estimate == pytest.approx(0.3, abs=0.03)
+    assert two.runs == 0
+    assert two.definition.endswith("all runs together")
+    assert two.reason is None
+
+
+def test_a_friction_that_cannot_be_read_is_said_to_be_none_read() -> None:
+    torque = np.r_[1:5:5j, -1:-5:5j]
+    read = play_and_stiffness(cs.Recording.from_arrays(torque, torque), FITTED, 13.0)
+    assert read.friction_nm is None
+    assert "friction takes rising and falling branches" in (read.reason or "")
+    assert shown(read)["friction at the input, half the loop's width"] == ("not read", "–")
+
+
 def shown(
     read: PlayAndStiffness, named: tuple[str, ...] = (), possible: tuple[str, ...] = ()
 ) -> dict[str, tuple[str, str]]:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import stats
 
 from cyclosweep.recording import Recording
-from cyclosweep.report.straight_lines import LINE_SHARES, straight_lines
+from cyclosweep.report.straight_lines import LINE_SHARES, friction_of_all, straight_lines
 from cyclosweep.report.wording import ARCMIN
 from cyclosweep.result import CalibratedParameter, PlayAndStiffness, Reading
 from cyclosweep.result.part import NORMAL_95
@@ -24,6 +24,11 @@ BY_MODEL = (
     "the published model fitted to all readings, a straight line on each flank: free play is the "
     "distance of the lines at zero torque, compliance their slope"
 )
+BY_ALL_RUNS = "; friction half the width of the loop in torque at equal angle, all runs together"
+FEW_FOR_FRICTION = (
+    "friction takes rising and falling branches on both flanks, of more readings than there are"
+)
+"""Why there is no friction."""
 
 
 def play_and_stiffness(
@@ -56,13 +61,19 @@ def play_and_stiffness(
     -------
     PlayAndStiffness
     """
-    reason: str | None = None
     lines = straight_lines(recording)
     friction = _reading([line.friction_nm for line in lines])
+    by_model = BY_MODEL
+    if not lines and (width := friction_of_all(recording)) is not None:
+        friction, by_model = Reading(estimate=width), BY_MODEL + BY_ALL_RUNS
+    reasons = [] if friction is not None else [FEW_FOR_FRICTION]
     if hidden is not None:
-        reason = f"friction hides play and stiffness: {hidden}"
+        reasons.append(f"friction hides play and stiffness: {hidden}")
         return PlayAndStiffness(
-            definition=BY_LINES, runs=len(lines), friction_nm=friction, reason=reason
+            definition=BY_LINES,
+            runs=len(lines),
+            friction_nm=friction,
+            reason="; ".join(reasons),
         )
     if lines:
         play = _reading([line.play_deg for line in lines])
@@ -71,13 +82,13 @@ def play_and_stiffness(
         play = _fitted(calibrated.get("free_play_deg"), 2.0)
         compliance = _fitted(calibrated.get("compliance_deg_per_nm"), 1.0)
     if play is None:
-        reason = "only one flank was loaded, so that no play can be read"
+        reasons.append("only one flank was loaded, so that no play can be read")
     if unsteady:
         compliance = None
-        reason = "the loops drift from run to run, so that no stiffness can be read"
+        reasons.append("the loops drift from run to run, so that no stiffness can be read")
     at_input = recording.side == "input"
     return PlayAndStiffness(
-        definition=BY_LINES if lines else BY_MODEL,
+        definition=BY_LINES if lines else by_model,
         runs=len(lines),
         free_play_deg=play,
         free_play_at_output_deg=_times(play, 1.0 / ratio if at_input else 1.0),
@@ -86,7 +97,7 @@ def play_and_stiffness(
             _times(compliance, ARCMIN / (ratio**2 if at_input else 1.0))
         ),
         friction_nm=friction,
-        reason=reason,
+        reason="; ".join(reasons) or None,
     )
 
 

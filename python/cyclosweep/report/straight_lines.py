@@ -71,6 +71,27 @@ def straight_lines(recording: Recording) -> list[LoopLines]:
     return found
 
 
+def friction_of_all(recording: Recording) -> float | None:
+    """Read the friction from all runs that count taken together, where no single one suffices.
+
+    Parameters
+    ----------
+    recording : Recording
+        With an angle, loaded in both directions.
+
+    Returns
+    -------
+    float or None
+        Half the width of the loop in torque at equal angle [N m]; None where the readings are too
+        few, or a branch or a flank is missing.
+    """
+    if recording.angle_deg is None:
+        return None
+    rows = recording.counts & ~np.isin(recording.run, list(recording.conditioning_runs))
+    lines = _of_run(0, recording.torque_nm[rows], recording.angle_deg[rows])
+    return None if lines is None else lines.friction_nm
+
+
 def _of_run(run: int, torque: Floats, angle: Floats) -> LoopLines | None:
     """Read one run; None where a branch or a flank is missing.
 

@@ -333,7 +333,7 @@ def _width_label(data: ReportData) -> str:
 
 
 def _friction(reading: Reading | None, backwards: bool) -> tuple[str, str]:
-    """Friction and its interval; none where the interval holds zero.
+    """Friction and its interval; none where the interval holds zero, or where it was not read.
 
     Parameters
     ----------
@@ -346,12 +346,13 @@ def _friction(reading: Reading | None, backwards: bool) -> tuple[str, str]:
     -------
     (str, str)
     """
-    if reading is not None:
-        if reading.ci95 is None and reading.estimate <= 0.0 and not backwards:
-            return "none found", NOTHING
-        low, high = reading.ci95 or (reading.estimate, reading.estimate)
-        if low <= 0.0 <= high:
-            return "none found", f"at most {_torques(high)}" if high > 0.0 else NOTHING
+    if reading is None:
+        return "not read", NOTHING
+    if reading.ci95 is None and reading.estimate <= 0.0 and not backwards:
+        return "none found", NOTHING
+    low, high = reading.ci95 or (reading.estimate, reading.estimate)
+    if low <= 0.0 <= high:
+        return "none found", f"at most {_torques(high)}" if high > 0.0 else NOTHING
     return _read(reading, _torques)
 
 
