@@ -18,6 +18,7 @@ from cyclosweep.report.wording import (
 )
 from cyclosweep.result import EffectParameter, FoundEffect, Region
 from cyclosweep.result.contradictions import NONE_NEEDED
+from cyclosweep.result.shape_words import cause_in_words, shape_of_size
 from cyclosweep.result.stand_in_words import removed_by_stand_ins, stand_in_words
 from cyclosweep.result.tolerance_words import below_tolerance
 from cyclosweep.result.words import readable, telling_digits
@@ -164,9 +165,9 @@ def unknown(data: ReportData) -> str:
     if rest.shape in {effect.name for effect in data.result.effects}:
         said = f"What the law of {readable(rest.shape)} misses, {angle(rest.size_deg)}{place}."
     else:
+        what = shape_of_size(rest.shape, angle(rest.size_deg)).removeprefix("a ")
         said = (
-            f"{readable(rest.shape).capitalize()} of {angle(rest.size_deg)}{place}. "
-            "No listed effect explains it within the noise."
+            f"{what[:1].upper()}{what[1:]}{place}. No listed effect explains it within the noise."
         )
     return f"{said} {removed_by_stand_ins(data.result)}".rstrip()
 
@@ -217,7 +218,7 @@ def explanations(data: ReportData) -> list[str]:
             else readable(name)
             for name in explanation.effects
         ]
-        names = [*effects, *map(readable, explanation.without_name)]
+        names = [*effects, *map(cause_in_words, explanation.without_name)]
         text = " + ".join(names) or "nothing missing"
         rows.append(f"{text}: probability {probability(explanation.probability)}")
     return rows

@@ -4,8 +4,9 @@ from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
+from cyclosweep.result.shape_words import cause_in_words, shape_of_size
 from cyclosweep.result.tolerance_words import tolerance_words
-from cyclosweep.result.words import degrees, falls, listed, readable, shape_in_words
+from cyclosweep.result.words import degrees, falls, listed, readable
 
 CHECK_FIRST, LOOK_AT_PART, RECORD_NEXT = "Check first:", "Look at", "Record next:"
 NOTHING_TO_DO = "Nothing:"
@@ -171,7 +172,7 @@ def _rest(answer: Answer) -> str:
             f"{space}What is left, {rest.size_deg:.2g} deg, is what the law of "
             f"{readable(rest.shape)} misses."
         )
-    what = f"{shape_in_words(rest.shape)} of {rest.size_deg:.2g} deg"
+    what = shape_of_size(rest.shape, f"{rest.size_deg:.2g} deg")
     others = [law for law in answer.repaired.stand_ins if law not in named]
     if answer.effects and others:
         return (
@@ -206,7 +207,7 @@ def _open(answer: Answer) -> str:
 def _options(answer: Answer) -> str:
     """Explanations with their probabilities."""
     return " or ".join(
-        f"{' + '.join(map(readable, (*each.effects, *each.without_name)))} "
+        f"{' + '.join(map(cause_in_words, (*each.effects, *each.without_name)))} "
         f"({100 * each.probability:.0f} %)"
         for each in answer.explanation_set
     )

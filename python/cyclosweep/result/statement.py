@@ -14,6 +14,7 @@ from cyclosweep.result.calibration_words import (
 )
 from cyclosweep.result.effects import Explanation, Remainder
 from cyclosweep.result.proof import HeldOutBlock
+from cyclosweep.result.shape_words import cause_in_words, shape_of_size
 from cyclosweep.result.stand_in_words import removed
 from cyclosweep.result.tolerance_words import tolerance_words
 from cyclosweep.result.words import (
@@ -22,7 +23,6 @@ from cyclosweep.result.words import (
     listed,
     place_of,
     readable,
-    shape_in_words,
     telling_digits,
     with_article,
 )
@@ -185,11 +185,9 @@ def _remains(rest: Remainder, size: str, answer: Answer) -> str:
     -------
     str
     """
-    words = shape_in_words(rest.shape)
     if rest.shape in {effect.name for effect in answer.effects}:
-        words = f"what the law of {readable(rest.shape)} misses"
-        return f"{words}, {size}, {rest.place}"
-    return f"{words} of {size}, {rest.place}"
+        return f"what the law of {readable(rest.shape)} misses, {size}, {rest.place}"
+    return f"{shape_of_size(rest.shape, size)}, {rest.place}"
 
 
 def _stand_ins(answer: Answer) -> str:
@@ -332,7 +330,7 @@ def _improvement(answer: Answer) -> str:
 def _option(explanation: Explanation) -> str:
     """One explanation with its probability."""
     names = [*explanation.effects, *explanation.without_name]
-    return f"{' + '.join(map(readable, names))} ({100 * explanation.probability:.0f} %)"
+    return f"{' + '.join(map(cause_in_words, names))} ({100 * explanation.probability:.0f} %)"
 
 
 def _others(explanations: Sequence[Explanation]) -> str:

@@ -105,24 +105,9 @@ def readable(name: str) -> str:
     return name.replace("_", " ")
 
 
-PHRASES = {
-    "one run apart": "one run that stands apart",
-    "run offsets": "offsets from run to run",
-    "position offsets": "offsets from position to position",
-}
-"""Shapes without a name that take no article, as a sentence puts them."""
-
-
 def with_article(words: str) -> str:
     """Put "a" or "an" before some words."""
     return f"{'an' if words[:1] in 'aeiou' else 'a'} {words}"
-
-
-def shape_in_words(shape: str) -> str:
-    """A shape without a name in a sentence; where it has that of an effect, what it is like."""
-    if shape in PHRASES:
-        return PHRASES[shape]
-    return f"something like {readable(shape)}" if "_" in shape else with_article(shape)
 
 
 def listed(names: Sequence[str]) -> str:

@@ -254,7 +254,9 @@ def _cells(history: History) -> Iterator[UnnamedShape]:
         ]
         return np.column_stack(parts)
 
-    yield UnnamedShape("torque and direction", "over torque and direction", cells, elastic=True)
+    yield UnnamedShape(
+        "torque and direction", "over the whole range of torque", cells, elastic=True
+    )
 
 
 def _runs(history: History) -> Iterator[UnnamedShape]:
