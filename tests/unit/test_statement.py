@@ -2,10 +2,11 @@
 
 from dataclasses import replace
 
-from cyclosweep.recording import Recording
+import cyclosweep as cs
 from cyclosweep.report import ReportData
 from cyclosweep.report.sentences import effect_cards
 from cyclosweep.report.summary import summary_of
+from cyclosweep.report.tables import play_table
 from cyclosweep.report.wording import verdict_words
 from cyclosweep.result import (
     Answer,
@@ -100,6 +101,30 @@ def test_play_and_stiffness_are_those_of_the_loop() -> None:
     assert "stiffness at the output 0.2 N m/arcmin. Calibration:" in text
 
 
+def test_where_the_temperature_moves_the_compliance_each_value_says_when_it_holds() -> None:
+    read = PlayAndStiffness(
+        runs=3,
+        free_play_deg=Reading(estimate=56.0),
+        stiffness_at_output_nm_per_arcmin=Reading(estimate=43.5),
+    )
+    drifting = replace(
+        IDENTIFIED, effects=(replace(CREEP, name="thermal_drift"),), play_and_stiffness=read
+    )
+    text = statement_of(drifting)
+    assert "Read from the loop (means over the recording, whose temperature changed): free" in text
+    assert "Calibration at 20 degC: compliance +4.0 % against nominal" in text
+    steady = statement_of(replace(IDENTIFIED, play_and_stiffness=read))
+    assert "Read from the loop: free play" in steady
+    assert "Calibration: compliance" in steady
+    notes = []
+    for answer in (drifting, replace(IDENTIFIED, play_and_stiffness=read)):
+        recording = cs.Recording.from_arrays([], name="none")
+        table = play_table(ReportData(recording=recording, result=answer))
+        assert table is not None
+        notes.append("holds at 20 degC" in table.note)
+    assert notes == [True, False]
+
+
 def test_the_tolerance_decides_what_is_open() -> None:
     nothing = replace(
         IDENTIFIED,
@@ -129,7 +154,7 @@ def test_an_effect_below_the_tolerance_is_called_so() -> None:
         assert said in summary_of(told)
     near = replace(IDENTIFIED, tolerance_deg=0.55)  # within the interval of the size
     assert "Creep is probably below the tolerance of 0.55 deg" in statement_of(near)
-    data = ReportData(recording=Recording.from_arrays([], name="none"), result=small)
+    data = ReportData(recording=cs.Recording.from_arrays([], name="none"), result=small)
     assert effect_cards(data)[0][1].endswith("; below the tolerance of 0.8 deg (48 arcmin)")
 
 

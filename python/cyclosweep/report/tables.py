@@ -19,6 +19,7 @@ from cyclosweep.report.wording import (
     without_unit,
 )
 from cyclosweep.result import CalibratedParameter, Reading
+from cyclosweep.result.calibration_words import AT_REFERENCE, follows_temperature
 from cyclosweep.result.words import listed, readable, telling_digits
 
 FRICTIONS = {"friction_hysteresis", "load_dependent_friction"}
@@ -308,6 +309,11 @@ def play_table(data: ReportData) -> Table | None:
         note += " No intervals: there is a single run to read from."
     elif read.runs:
         note += f" Intervals by Student's t over {read.runs} runs."
+    if follows_temperature(data.result):
+        note += (
+            " The values are means over the recording, whose temperature changed: the calibration "
+            f"beside thermal drift, under Parameters, holds{AT_REFERENCE}."
+        )
     if read.reason:
         note += f" A value is missing because {read.reason}."
     return Table("Free play and stiffness", ("", "value", "95 % interval"), shown, note)

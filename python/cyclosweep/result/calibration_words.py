@@ -3,12 +3,17 @@
 from collections.abc import Mapping, Sequence
 from math import isclose
 
-from cyclosweep.result.answer import Finding
+from cyclosweep.result.answer import Answer, Finding
 from cyclosweep.result.calibration import CalibratedParameter
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
 from cyclosweep.result.words import degrees, telling_digits
+from cyclosweep.simulation.effects.thermal_drift import REFERENCE_C
 
+AT_REFERENCE = f" at {REFERENCE_C:g} degC"
+"""Temperature at which the calibration holds where something follows the temperature."""
+MEANS = " (means over the recording, whose temperature changed)"
+"""What is read from the loop there."""
 HIDDEN = "as friction hides it"
 """Words by which a finding says why play or stiffness is not given."""
 HIDDEN_BY_FRICTION = (
@@ -32,6 +37,12 @@ def is_hidden_by_friction(findings: Sequence[Finding], topic: str) -> bool:
     bool
     """
     return any(each.topic == topic and HIDDEN in each.text for each in findings)
+
+
+def follows_temperature(answer: Answer) -> bool:
+    """Whether the repaired model has an effect that follows the temperature, named or not."""
+    named = [effect.name for effect in answer.effects]
+    return "thermal_drift" in (*named, *answer.repaired.stand_ins)
 
 
 def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParameter]) -> str:
@@ -63,13 +74,15 @@ def change_words(change: DriveChange, parameters: Mapping[str, CalibratedParamet
     return f"{words}. No stiffness of it holds to three digits."
 
 
-def play_words(read: PlayAndStiffness | None) -> str:
+def play_words(read: PlayAndStiffness | None, *, warms: bool = False) -> str:
     """Say the free play and the stiffness of the drive; nothing where they were not read.
 
     Parameters
     ----------
     read : PlayAndStiffness or None
         What was read from the loop.
+    warms : bool
+        Whether they moved with the temperature, so that they are means over the recording.
 
     Returns
     -------
@@ -84,7 +97,7 @@ def play_words(read: PlayAndStiffness | None) -> str:
             said.append("that is none, as the straight lines along the flanks overlap")
     if stiffness := read.stiffness_at_output_nm_per_arcmin:
         said.append(f"stiffness at the output {_read(stiffness, 'N m/arcmin')}")
-    return f"Read from the loop: {', '.join(said)}. " if said else ""
+    return f"Read from the loop{MEANS if warms else ''}: {', '.join(said)}. " if said else ""
 
 
 def _read(reading: Reading, unit: str) -> str:
@@ -97,8 +110,20 @@ def _read(reading: Reading, unit: str) -> str:
     return f"{text} (95 %: {ends[0]:.{digits}g} to {ends[1]:.{digits}g})"
 
 
-def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
-    """What the calibration found, against nominal."""
+def calibration_words(parameters: Mapping[str, CalibratedParameter], *, warms: bool = False) -> str:
+    """What the calibration found, against nominal.
+
+    Parameters
+    ----------
+    parameters : mapping of str to CalibratedParameter
+        Calibrated parameters by name.
+    warms : bool
+        Whether the model has an effect beside them that follows the temperature.
+
+    Returns
+    -------
+    str
+    """
     scale = parameters["compliance_scale"].estimate
     line = parameters.get("compliance_deg_per_nm")
     # Where effects bend the line, its own slope is no compliance of the drive.
@@ -107,7 +132,9 @@ def calibration_words(parameters: Mapping[str, CalibratedParameter]) -> str:
     datum = parameters["datum_deg"].estimate
     # Adding zero turns a negative zero into zero.
     change = round(100 * (scale - 1), 1) + 0.0
-    words = f"Calibration: compliance {change:+.1f} % against nominal"
+    words = (
+        f"Calibration{AT_REFERENCE if warms else ''}: compliance {change:+.1f} % against nominal"
+    )
     words += " (between half and full torque)" if bent else ""
     if play.std_error is not None:
         words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"

@@ -9,6 +9,7 @@ from cyclosweep.result.calibration_words import (
     HIDDEN_BY_FRICTION,
     calibration_words,
     change_words,
+    follows_temperature,
     is_hidden_by_friction,
     play_words,
 )
@@ -347,10 +348,11 @@ def _others(explanations: Sequence[Explanation]) -> str:
 def _calibration(answer: Answer) -> str:
     """What the calibration found; the compliance as a range where the drive changed."""
     if answer.change is None:
-        read = play_words(answer.play_and_stiffness)
+        warms = follows_temperature(answer)
+        read = play_words(answer.play_and_stiffness, warms=warms)
         if is_hidden_by_friction(answer.findings, "play"):
             return f"{read}{HIDDEN_BY_FRICTION}"
-        return f"{read}{calibration_words(answer.repaired.parameters)}"
+        return f"{read}{calibration_words(answer.repaired.parameters, warms=warms)}"
     return change_words(answer.change, answer.repaired.parameters)
 
 
