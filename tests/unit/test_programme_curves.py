@@ -36,7 +36,7 @@ def sine() -> tuple[Floats, Floats]:
 def found(time: Floats, torque: Floats, piece: Ints, seed: int) -> Floats:
     read = torque + NOISE * np.random.default_rng(seed).normal(size=len(torque))
     run = np.zeros(len(time), np.int64)
-    return programme_curves(read, read, time, piece, run, NOISE)[0]
+    return np.asarray(programme_curves(read, read, time, piece, run, NOISE)[0])
 
 
 def pieces(torque: Floats, off: int = 0) -> Ints:

@@ -113,7 +113,8 @@ def _of_run(run: int, torque: Floats, angle: Floats) -> LoopLines | None:
     rising = np.gradient(smooth) > 0
     edges = np.linspace(angle.min(), angle.max(), min(ANGLE_BINS, len(torque) // 4) + 1)
     place = np.clip(np.searchsorted(edges, angle, side="right") - 1, 0, len(edges) - 2)
-    torques, angles = [], []
+    torques: list[Floats] = []
+    angles: list[Floats] = []
     for part in (rising, ~rising):
         count = np.bincount(place[part], minlength=len(edges) - 1)
         for mean, values in ((torques, torque), (angles, angle)):
