@@ -342,6 +342,7 @@ def _slopes(history: History, angle_deg: Floats, group: list[Sweep]) -> Floats:
     """
     side = group[0].state[0]
     load = side * history.applied_nm
+    middle = _middles_of_runs(history)
     lower, upper = (share * min(sweep.limit_nm for sweep in group) for share in WINDOW)
     found = []
     for sweep in group:
@@ -352,5 +353,26 @@ def _slopes(history: History, angle_deg: Floats, group: list[Sweep]) -> Floats:
         lever = float(torque @ torque)
         slope = float(torque @ angle_deg[rows]) / lever if lever > 0 else 0.0
         if slope > 0:
-            found.append((float(rows.mean()) / len(history), np.log(slope), lever * slope**2))
+            place = float(rows.mean()) if middle is None else middle[int(history.run[rows[0]])]
+            found.append((place / len(history), np.log(slope), lever * slope**2))
     return np.array(found).reshape(-1, 3).T
+
+
+def _middles_of_runs(history: History) -> dict[int, float] | None:
+    """Row in the middle of each run, by its number; None of a single run.
+
+    A drive that changes between runs is told by them: along the rows within them it would seem to
+    have changed before the first and after the last sweep, too.
+
+    Parameters
+    ----------
+    history : History
+
+    Returns
+    -------
+    dict of int to float, or None
+    """
+    runs = np.unique(history.run)
+    if len(runs) == 1:
+        return None
+    return {int(run): float(np.flatnonzero(history.run == run).mean()) for run in runs}
