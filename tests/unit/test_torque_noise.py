@@ -19,6 +19,11 @@ def programme(rows: int = 60, runs: int = 8) -> tuple[Floats, Ints, Floats]:
     return torque, piece, np.arange(len(torque), dtype=np.float64)
 
 
+def off_lines(read: Floats, twist: Floats, mismatch: float = 0.1) -> Floats:
+    """What a line leaves of the twist, and a mismatch beside it."""
+    return twist - COMPLIANCE * read + mismatch
+
+
 def noisy(seed: int, torque: Floats, size: float) -> tuple[Floats, Floats]:
     rng = np.random.default_rng(seed)
     return torque + size * rng.normal(size=len(torque)), 0.1 * rng.normal(size=len(torque))
@@ -28,9 +33,8 @@ def noisy(seed: int, torque: Floats, size: float) -> tuple[Floats, Floats]:
 def test_noise_that_the_twist_does_not_follow_is_smoothed(size: float) -> None:
     torque, piece, time = programme()
     read, scatter = noisy(1, torque, size)
-    found = torque_without_noise(
-        read, COMPLIANCE * torque + scatter, piece, COMPLIANCE, np.full(len(torque), 0.1), time
-    )
+    left = off_lines(read, COMPLIANCE * torque + scatter)
+    found = torque_without_noise(read, piece, COMPLIANCE, left, time)
     assert found.noise_nm == pytest.approx(size, rel=0.1)
     assert np.std(found.torque_nm - torque) < 0.5 * size
 
@@ -38,9 +42,8 @@ def test_noise_that_the_twist_does_not_follow_is_smoothed(size: float) -> None:
 def test_torque_that_the_twist_follows_is_left_as_it_was_read() -> None:
     torque, piece, time = programme()
     real, scatter = noisy(2, torque, 0.1)
-    found = torque_without_noise(
-        real, COMPLIANCE * real + scatter, piece, COMPLIANCE, np.full(len(torque), 0.1), time
-    )
+    left = off_lines(real, COMPLIANCE * real + scatter)
+    found = torque_without_noise(real, piece, COMPLIANCE, left, time)
     assert found.noise_nm == 0.0
     assert found.torque_nm is real
 
@@ -49,7 +52,7 @@ def test_a_clean_torque_is_left_as_it_was_read() -> None:
     torque, piece, time = programme()
     read = np.round(torque, 6)
     twist = COMPLIANCE * torque + noisy(3, torque, 0.0)[1]
-    found = torque_without_noise(read, twist, piece, COMPLIANCE, np.full(len(torque), 0.1), time)
+    found = torque_without_noise(read, piece, COMPLIANCE, off_lines(read, twist), time)
     assert found.noise_nm == 0.0
     assert found.torque_nm is read
 
@@ -57,11 +60,9 @@ def test_a_clean_torque_is_left_as_it_was_read() -> None:
 def test_noise_far_below_the_mismatch_is_left() -> None:
     torque, piece, time = programme()
     read, scatter = noisy(1, torque, 0.03)
-    twist, ones = COMPLIANCE * torque + scatter, np.ones(len(torque))
-    assert torque_without_noise(read, twist, piece, COMPLIANCE, 5.0 * ones, time).torque_nm is read
-    assert (
-        torque_without_noise(read, twist, piece, COMPLIANCE, 3.0 * ones, time).torque_nm is not read
-    )
+    far, near = (off_lines(read, COMPLIANCE * torque + scatter, size) for size in (5.0, 3.0))
+    assert torque_without_noise(read, piece, COMPLIANCE, far, time).torque_nm is read
+    assert torque_without_noise(read, piece, COMPLIANCE, near, time).torque_nm is not read
 
 
 def test_steps_of_a_staircase_of_weights_stay() -> None:
@@ -69,7 +70,8 @@ def test_steps_of_a_staircase_of_weights_stay() -> None:
     torque = np.repeat(np.r_[1.0:11.0], 6)
     read = torque + 0.03 * rng.normal(size=len(torque))
     twist = COMPLIANCE * torque + 0.02 * rng.normal(size=len(torque))
-    found = torque_without_noise(read, twist, np.zeros(60, np.int64), COMPLIANCE, np.full(60, 0.1))
+    piece = np.zeros(len(torque), np.int64)
+    found = torque_without_noise(read, piece, COMPLIANCE, off_lines(read, twist))
     assert np.abs(found.torque_nm - torque).max() < 0.15
 
 
@@ -98,6 +100,6 @@ def test_steps_of_two_readings_each_are_no_noise() -> None:
     """Lines through such a staircase differ from it as from noise; the twist follows the steps."""
     steps = np.r_[np.arange(70.0, 950.0, 290.0), np.arange(880.0, -950.0, -290.0)]
     torque = np.tile(np.repeat(steps, 2), 4)
-    twist = 0.00036 * torque + 0.002 * np.random.default_rng(6).normal(size=len(torque))
-    piece, off = np.zeros(len(torque), np.int64), np.full(len(torque), 0.02)
-    assert torque_without_noise(torque, twist, piece, 0.00036, off).torque_nm is torque
+    left = 0.02 + 0.002 * np.random.default_rng(6).normal(size=len(torque))
+    piece = np.zeros(len(torque), np.int64)
+    assert torque_without_noise(torque, piece, 0.00036, left).torque_nm is torque

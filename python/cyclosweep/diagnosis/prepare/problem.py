@@ -207,9 +207,7 @@ def prepare(
     flanks = find_flanks(torque, angle, line, scored, step, run)
     piece = find_pieces(recording, at_zero=False).of_sample[first]
     off_lines = _off_lines(flanks, torque, angle, run)
-    smooth = torque_without_noise(
-        torque, angle, piece, flanks.compliance_deg_per_nm, off_lines, time, run
-    )
+    smooth = torque_without_noise(torque, piece, flanks.compliance_deg_per_nm, off_lines, time, run)
     torque, angle = smooth.torque_nm, angle - smooth.twist_deg
     side, contact = flanks.at(torque, angle, scored, run)
     # Of a load within its noise nobody can say that it holds the shaft against a flank.

@@ -12,7 +12,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.prepare.programme_curves import programme_curves
 from cyclosweep.recording.robust import robust_sigma
-from cyclosweep.simulation.effects.history import Floats, Ints
+from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 
 REACHES = (2, 3, 5, 8, 12, 18, 27)
 """Rows on each side to which a parabola is fitted; a row takes the farthest that agrees with all
@@ -30,8 +30,10 @@ CLEARLY = 2.0
 """Standard deviations of that share by which it has to lie above: where the readings cannot tell,
 what is smoothed away is lost in the noise of the twist, and what is left in looks like drag."""
 SEEN = 1.0
-"""Noise of the torque, as twist over what scatters there and summed over all rows, from which any
-test could see it."""
+"""Compliance, over the standard error with which it is seen in what the torque does from row to
+row, from which any test could see that."""
+ALIKE = 1.4
+"""Standard error of a slope between second differences over that of independent rows."""
 SMALL = 0.02
 """Noise of the torque, as twist over what a straight line leaves, up to which the errors of laws
 hide what it does; the torque as read is then also what a repaired model is given."""
@@ -70,7 +72,6 @@ class SmoothTorque:
 
 def torque_without_noise(
     torque_nm: Floats,
-    angle_deg: Floats,
     piece: Ints,
     compliance_deg_per_nm: float,
     off_lines_deg: Floats,
@@ -81,8 +82,8 @@ def torque_without_noise(
 
     Parameters
     ----------
-    torque_nm, angle_deg : ndarray, shape (n,)
-        Read torque [N m] and twist [deg].
+    torque_nm : ndarray, shape (n,)
+        Torque as it was read [N m].
     piece : ndarray of int, shape (n,)
         Label of the piece of each row; equal ones are consecutive, and the programme has no turning
         point within one.
@@ -103,7 +104,9 @@ def torque_without_noise(
     """
     as_read = SmoothTorque(torque_nm, 0.0, np.zeros(len(torque_nm)))
     place = np.arange(len(torque_nm), dtype=np.float64) if time_s is None else time_s
-    both = np.vstack([torque_nm, angle_deg])
+    # Without the play, whose crossings are no noise.
+    twist = off_lines_deg + compliance_deg_per_nm * torque_nm
+    both = np.vstack([torque_nm, twist])
     (nearest, _), share = _parabolas(both, place, piece, REACHES[0])
     left = np.sqrt(np.maximum(1.0 - share, 0.0))
     beyond = np.divide(torque_nm - nearest, left, out=np.zeros_like(left), where=left > 0.0)
@@ -127,15 +130,12 @@ def torque_without_noise(
     run = np.zeros(len(piece), dtype=np.int64) if run is None else run
     clipped = np.clip(beyond[left > 0.0], -CORNER * noise, CORNER * noise)
     spread = float(np.sqrt(np.mean(clipped**2)))
-    curves = programme_curves(torque_nm, angle_deg, place, piece, run, spread)
+    curves = programme_curves(torque_nm, twist, place, piece, run, spread)
     smooth = np.where(np.isfinite(curves), curves, smooth)
-    ripple, jitter = (both - smooth)[:, steady]
-    size = robust_sigma(jitter)
-    power = float(ripple @ ripple)
-    if compliance_deg_per_nm * np.sqrt(power) <= SEEN * size:
+    follows = _Following.of(both - smooth, steady & touching, piece)
+    if compliance_deg_per_nm <= SEEN * follows.std_error:
         return as_read
-    followed = float(ripple @ np.clip(jitter, -CORNER * size, CORNER * size)) / power
-    if followed > FOLLOWS * compliance_deg_per_nm + CLEARLY * size / np.sqrt(power):
+    if follows.slope > FOLLOWS * compliance_deg_per_nm + CLEARLY * follows.std_error:
         return as_read
     error = torque_nm - smooth[0]
     slow = compliance_deg_per_nm * _slow_size(error, run)
@@ -143,6 +143,47 @@ def torque_without_noise(
     if slow > LARGE * of_twist:
         return SmoothTorque(smooth[0], noise, compliance_deg_per_nm * error)
     return SmoothTorque(smooth[0], noise, np.zeros(len(error)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Following:
+    """How the twist follows what the torque does from row to row.
+
+    Attributes
+    ----------
+    slope : float
+        Twist over torque [deg/(N m)].
+    std_error : float
+        Its standard error; infinite where the torque does nothing.
+    """
+
+    slope: float
+    std_error: float
+
+    @classmethod
+    def of(cls, left: Floats, usable: Flags, piece: Ints) -> "_Following":
+        """By second differences, which hold nothing of slow errors of the curves and of effects.
+
+        Parameters
+        ----------
+        left : ndarray, shape (2, n)
+            Torque [N m] and twist [deg] beyond smooth curves.
+        usable : ndarray of bool, shape (n,)
+        piece : ndarray of int, shape (n,)
+            Label of the piece of each row.
+
+        Returns
+        -------
+        _Following
+        """
+        inner = usable[:-2] & usable[1:-1] & usable[2:] & (piece[:-2] == piece[2:])
+        ripple, jitter = np.diff(left, 2, axis=1)[:, inner]
+        power = float(ripple @ ripple)
+        if power <= 0.0:
+            return cls(0.0, np.inf)
+        size = robust_sigma(jitter)
+        slope = float(ripple @ np.clip(jitter, -CORNER * size, CORNER * size)) / power
+        return cls(slope, ALIKE * size / np.sqrt(power))
 
 
 def _slow_size(error: Floats, run: Ints) -> float:
