@@ -211,7 +211,7 @@ def prepare(
     torque, angle = smooth.torque_nm, angle - smooth.twist_deg
     side, contact = flanks.at(torque, angle, scored, run)
     # Of a load within its noise nobody can say that it holds the shaft against a flank.
-    contact &= (np.abs(torque) > smooth.noise_nm) | (flanks.free_play_deg <= flanks.scatter_deg)
+    contact &= (np.abs(torque) >= smooth.noise_nm) | (flanks.free_play_deg <= flanks.scatter_deg)
     datum, compliance = flanks.datum_deg, flanks.compliance_deg_per_nm
     play = flanks.free_play_deg
     if rows.on_one_flank is not None:

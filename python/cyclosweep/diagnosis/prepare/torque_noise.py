@@ -34,6 +34,8 @@ SEEN = 1.0
 row, from which any test could see that."""
 ALIKE = 1.4
 """Standard error of a slope between second differences over that of independent rows."""
+MOST = 0.03
+"""Noise over the largest torque beyond which the programme has steps: no sensor is so bad."""
 SMALL = 0.02
 """Noise of the torque, as twist over what a straight line leaves, up to which the errors of laws
 hide what it does; the torque as read is then also what a repaired model is given."""
@@ -116,7 +118,8 @@ def torque_without_noise(
     steady = (left > 0.0) & (np.abs(beyond) <= CORNER * noise)
     touching = off_lines_deg != 0.0
     mismatch = float(np.sqrt(np.mean(off_lines_deg[touching] ** 2))) if np.any(touching) else 0.0
-    if compliance_deg_per_nm * noise <= SMALL * mismatch:
+    steps = noise > MOST * float(np.abs(torque_nm).max())
+    if steps or compliance_deg_per_nm * noise <= SMALL * mismatch:
         return as_read
     smooth = both.copy()
     low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
@@ -135,7 +138,7 @@ def torque_without_noise(
     follows = _Following.of(both - smooth, steady & touching, piece)
     if compliance_deg_per_nm <= SEEN * follows.std_error:
         return as_read
-    if follows.slope > FOLLOWS * compliance_deg_per_nm + CLEARLY * follows.std_error:
+    if abs(follows.slope) > FOLLOWS * compliance_deg_per_nm + CLEARLY * follows.std_error:
         return as_read
     error = torque_nm - smooth[0]
     slow = compliance_deg_per_nm * _slow_size(error, run)
