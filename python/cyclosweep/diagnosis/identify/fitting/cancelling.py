@@ -28,12 +28,14 @@ def cancel(fitted: FittedStructure, baseline: FittedStructure) -> bool:
     """
     if len(fitted.terms) < 2:
         return False
-    line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)
     most = MOST_TIMES * float(np.linalg.norm(baseline.residual))
     for index, term in enumerate(fitted.terms):
         if term.slips:
             continue
         law = fitted.whitened_contribution(index, baseline.noise)
+        if float(np.linalg.norm(law)) <= most:
+            continue
+        line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)
         if float(np.linalg.norm(law - line @ (line.T @ law))) > most:
             return True
     return False
