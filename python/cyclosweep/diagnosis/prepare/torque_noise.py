@@ -121,15 +121,7 @@ def torque_without_noise(
     steps = noise > MOST * float(np.abs(torque_nm).max())
     if steps or compliance_deg_per_nm * noise <= SMALL * mismatch:
         return as_read
-    smooth = both.copy()
-    low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
-    agrees = steady
-    for reach in REACHES:
-        fitted, share = _parabolas(both, place, piece, reach)
-        room = AGREES * noise * np.sqrt(share)
-        low, high = np.maximum(low, fitted[0] - room), np.minimum(high, fitted[0] + room)
-        agrees = agrees & (low <= high)
-        smooth[:, agrees] = fitted[:, agrees]
+    smooth = _locally_smooth(both, place, piece, steady, noise)
     run = np.zeros(len(piece), dtype=np.int64) if run is None else run
     clipped = np.clip(beyond[left > 0.0], -CORNER * noise, CORNER * noise)
     spread = float(np.sqrt(np.mean(clipped**2)))
@@ -146,6 +138,39 @@ def torque_without_noise(
     if slow > LARGE * of_twist:
         return SmoothTorque(smooth[0], noise, compliance_deg_per_nm * error)
     return SmoothTorque(smooth[0], noise, np.zeros(len(error)))
+
+
+def _locally_smooth(
+    values: Floats, place: Floats, piece: Ints, steady: Flags, noise_nm: float
+) -> Floats:
+    """Parabolas through as many neighbours of each row as agree with one another.
+
+    Parameters
+    ----------
+    values : ndarray, shape (2, n)
+        Torque [N m], which decides, and twist [deg].
+    place : ndarray, shape (n,)
+        Where.
+    piece : ndarray of int, shape (n,)
+    steady : ndarray of bool, shape (n,)
+        Rows at no corner of the programme; the others are left as they were read.
+    noise_nm : float
+        Standard deviation of the noise of the torque [N m].
+
+    Returns
+    -------
+    ndarray, shape (2, n)
+    """
+    smooth = values.copy()
+    low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
+    agrees = steady
+    for reach in REACHES:
+        fitted, share = _parabolas(values, place, piece, reach)
+        room = AGREES * noise_nm * np.sqrt(share)
+        low, high = np.maximum(low, fitted[0] - room), np.minimum(high, fitted[0] + room)
+        agrees = agrees & (low <= high)
+        smooth[:, agrees] = fitted[:, agrees]
+    return smooth
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
-from cyclosweep.diagnosis.prepare.noise import orthonormal
+from cyclosweep.diagnosis.identify.fitting.line_basis import line_basis
 
 MOST_TIMES = 5.0
 """Size of an effect over that of all there is to be explained, above which others cancel it."""
@@ -35,7 +35,7 @@ def cancel(fitted: FittedStructure, baseline: FittedStructure) -> bool:
         law = fitted.whitened_contribution(index, baseline.noise)
         if float(np.linalg.norm(law)) <= most:
             continue
-        line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)
+        line = line_basis(fitted)
         if float(np.linalg.norm(law - line @ (line.T @ law))) > most:
             return True
     return False

@@ -16,6 +16,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     WAYS_APART,
 )
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.line_basis import line_basis
 from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns, ClassEvidence
 from cyclosweep.diagnosis.identify.laws.law_in_class import (
     BOTH_CURVES,
@@ -26,7 +27,6 @@ from cyclosweep.diagnosis.identify.laws.law_in_class import (
 )
 from cyclosweep.diagnosis.identify.laws.loop_check import is_without_loop
 from cyclosweep.diagnosis.identify.structures.candidate import FURTHER
-from cyclosweep.diagnosis.prepare.noise import orthonormal
 from cyclosweep.simulation.effects.history import Floats
 
 LEAST_EVIDENCE = 0.5
@@ -258,7 +258,7 @@ class ClassComparison:
     def _cancel(self) -> bool:
         """Whether the laws mostly cancel each other, as any curve is a difference of two."""
         fitted = self.fitted
-        line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)
+        line = line_basis(fitted)
         laws = [fitted.whitened_contribution(index, fitted.noise) for index in self.indices]
         seen = [law - line @ (line.T @ law) for law in laws]
         largest = max(float(np.linalg.norm(each)) for each in seen)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.line_basis import line_basis
 from cyclosweep.diagnosis.identify.laws.class_check import (
     ShownClass,
     check_laws,
@@ -21,7 +22,6 @@ from cyclosweep.diagnosis.identify.structures.candidate import Candidate
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.identify.structures.testability import of_any_size
 from cyclosweep.diagnosis.identify.structures.worth import INDISPENSABLE, worth
-from cyclosweep.diagnosis.prepare.noise import orthonormal
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +193,7 @@ def _without_lesser_laws(
         return tuple(checks)
     unnamed = fitted.chi2 - best.chi2
     place = {term.name: index for index, term in enumerate(fitted.terms)}
-    line = orthonormal(fitted.sensitivity[:, : fitted.problem.line_columns], 1e-8)
+    line = line_basis(fitted)
 
     def explains_less(name: str) -> bool:
         law = fitted.whitened_contribution(place[name], fitted.noise)
