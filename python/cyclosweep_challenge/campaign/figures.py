@@ -53,6 +53,7 @@ def new_figures(results: Sequence[Result]) -> list[Criterion]:
         *_foreign(results),
         *_unknown(results),
         *_correlated(results),
+        *_noisy_torque(results),
         *_few(results),
     ]
 
@@ -250,6 +251,25 @@ def _correlated(results: Sequence[Result]) -> list[Criterion]:
                 f"d = 20, autocorrelation {rho:g}: named right", _share(there, lambda r: r.right)
             )
         )
+    return rows
+
+
+def _noisy_torque(results: Sequence[Result]) -> list[Criterion]:
+    """Recordings whose torque reading is noisy, too."""
+    single = _of(results, "torque-noise")
+    rows = [
+        criterion(
+            "nothing missing, noise of the torque reading: false alarms",
+            _share(_of(results, "torque-noise-null"), lambda r: r.outcome.alarm),
+        )
+    ]
+    for d in (20.0, 60.0):
+        there = [r for r in single if r.dominant and abs(r.dominant.d / d - 1.0) < 0.05]
+        start = f"foreign laws, d = {d:g}, noise of the torque reading"
+        rows += [
+            criterion(f"{start}: named right", _share(there, lambda r: r.right)),
+            criterion(f"{start}: a false name", _share(there, lambda r: r.false_name)),
+        ]
     return rows
 
 

@@ -29,6 +29,8 @@ class Foreign:
         Take rich programmes alone.
     weight : int
         Recordings of this kind in one turn of the part.
+    torque_noise : float
+        Noise of the torque reading over that of the angle reading, as elastic twist [-].
     """
 
     tier: str
@@ -36,6 +38,7 @@ class Foreign:
     d: float = 0.0
     rich: bool = False
     weight: int = 1
+    torque_noise: float = 0.0
 
     def number(self, turn: int) -> int:
         """Number of the case, by which effects, laws and programmes take turns."""

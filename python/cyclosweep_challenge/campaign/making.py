@@ -51,6 +51,9 @@ def _foreign(item: Item, kind: Foreign) -> ForeignCase:
         if kind.autocorrelation >= 0.0:
             sensor = replace(recipe.sensor, autocorrelation=kind.autocorrelation)
             recipe = replace(recipe, sensor=sensor)
+        if kind.torque_noise:
+            noise = kind.torque_noise * recipe.sensor.sigma_deg
+            recipe = replace(recipe, sensor=replace(recipe.sensor, torque_noise_deg=noise))
         if kind.d:
             recipe = replace(recipe, d=tuple(kind.d for _ in recipe.d))
         try:

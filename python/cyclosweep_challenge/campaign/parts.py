@@ -16,6 +16,8 @@ CORRELATED = ("ar0.9", "ar0.95", "ar0.97", "ar0.99")
 """Noise so correlated that error of the model looks like it."""
 FOREIGN_CORRELATED = (0.9, 0.95, 0.97, 0.99)
 """The same for the second generator [-]."""
+TORQUE_NOISE = (1.0, 3.0)
+"""Noise of the torque reading over that of the angle reading, as elastic twist [-]."""
 LOUD_FRICTION = (
     (300.0,),
     (1000.0,),
@@ -171,6 +173,33 @@ def _second() -> list[Part]:
             80,
             17,
             tuple(Foreign("single", rho, 20.0, rich=True) for rho in FOREIGN_CORRELATED),
+        ),
+        Part(
+            "torque-noise-null",
+            "nothing missing, the torque reading as noisy as that of the angle or three times so, "
+            "noise of the angle white or of autocorrelation 0.9",
+            "no alarm in 80 bounds the share below 4.6 %",
+            80,
+            18,
+            tuple(
+                Foreign("nothing", rho, torque_noise=noise)
+                for rho in (0.0, 0.9)
+                for noise in TORQUE_NOISE
+            ),
+            predicted=False,
+        ),
+        Part(
+            "torque-noise",
+            "single effects of foreign laws at d = 20 and 60, the torque reading as noisy as that "
+            "of the angle or three times so, rich programme",
+            "a share of 0.9 to about 0.15 at each d",
+            60,
+            19,
+            tuple(
+                Foreign("single", d=d, rich=True, torque_noise=noise)
+                for d in (20.0, 60.0)
+                for noise in TORQUE_NOISE
+            ),
         ),
     ]
 

@@ -92,13 +92,14 @@ def _frame(
     seen: NDArray[np.bool_],
     columns: frozenset[str],
     angle_deg: Array | None,
+    torque_error: Array | float = 0.0,
 ) -> pl.DataFrame:
-    """Canonical table of the rows that are seen."""
+    """Canonical table of the rows that are seen; the error of the torque is in rated torques."""
     path = made.bench.path
     table: dict[str, Any] = {}
     if "clock" in columns:
         table["time_s"] = path.time_s[seen].round(3)
-    table["torque_nm"] = (path.load[seen] * made.bench.specimen.rated_nm).round(6)
+    table["torque_nm"] = ((path.load[seen] + torque_error) * made.bench.specimen.rated_nm).round(6)
     if angle_deg is not None:
         table["angle_deg"] = angle_deg.round(7)
     table["run"] = path.run[seen]
@@ -153,16 +154,19 @@ def make_case(recipe: Recipe, seed: tuple[int, ...]) -> Case:
     kept = made.seen | recipe.play_readings
     clean = made.answer.angle_deg[kept]
     read = sensor.read(clean + sensor.errors(first_rows(path.run[kept]), streams[4]))
+    torque_deg = sensor.torque_errors(len(clean), streams[4])
     later_clean = unseen.answer.angle_deg[unseen.seen]
     later_read = sensor.read(later_clean + sensor.errors(unseen.starts(), streams[5]))
     truth = truth_of(recipe, specimen, causes, sensor, made, sizes)
-    add_oracle(truth["causes"], made, sensor, read[made.seen[kept]])
-    truth |= forecast(causes, sensor, made, unseen, read[made.seen[kept]])
+    # At the torque that is read, the true angle is another one.
+    against_torque = read - torque_deg
+    add_oracle(truth["causes"], made, sensor, against_torque[made.seen[kept]])
+    truth |= forecast(causes, sensor, made, unseen, against_torque[made.seen[kept]])
     truth["seed"] = list(seed)
-    truth["noise_rms_deg"] = float(np.sqrt(np.mean((read - clean) ** 2)))
+    truth["noise_rms_deg"] = float(np.sqrt(np.mean((against_torque - clean) ** 2)))
     truth["held_out_noise_rms_deg"] = float(np.sqrt(np.mean((later_read - later_clean) ** 2)))
     return Case(
-        recording=_frame(made, kept, recipe.columns, read),
+        recording=_frame(made, kept, recipe.columns, read, torque_deg / specimen.twist_deg),
         program=_frame(unseen, unseen.seen, recipe.columns, None),
         clean_deg=clean,
         held_out_clean_deg=later_clean,

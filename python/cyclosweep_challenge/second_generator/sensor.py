@@ -1,4 +1,4 @@
-"""Sensors: noise that is correlated or heavy-tailed, a dial's division, and a slow drift."""
+"""Sensors: noise that is correlated or heavy-tailed, a dial's division, a drift, a noisy torque."""
 
 from __future__ import annotations
 
@@ -27,6 +27,9 @@ class Sensor:
         Division of the dial [deg]; zero for a continuous reading.
     drift_deg : float
         Drift of the sensor from the first to the last reading [deg].
+    torque_noise_deg : float
+        Standard deviation of the noise of the torque reading, white, as the elastic twist under
+        such a torque [deg].
     """
 
     sigma_deg: float
@@ -34,11 +37,13 @@ class Sensor:
     tails: float = 0.0
     resolution_deg: float = 0.0
     drift_deg: float = 0.0
+    torque_noise_deg: float = 0.0
 
     @property
     def spread_deg(self) -> float:
-        """Standard deviation of noise and rounding together [deg]."""
-        return float(np.hypot(self.sigma_deg, self.resolution_deg / np.sqrt(12.0)))
+        """Standard deviation of noise, rounding and noise of the torque together [deg]."""
+        parts = (self.sigma_deg, self.resolution_deg / np.sqrt(12.0), self.torque_noise_deg)
+        return float(np.linalg.norm(parts))
 
     def scaled(self, factor: float) -> Sensor:
         """The same sensor with all its angles scaled."""
@@ -47,6 +52,7 @@ class Sensor:
             sigma_deg=self.sigma_deg * factor,
             resolution_deg=self.resolution_deg * factor,
             drift_deg=self.drift_deg * factor,
+            torque_noise_deg=self.torque_noise_deg * factor,
         )
 
     def errors(self, starts: NDArray[np.bool_], rng: np.random.Generator) -> Array:
@@ -64,6 +70,10 @@ class Sensor:
         drift = self.drift_deg * (np.linspace(0.0, 1.0, count) - 0.5)
         return self.sigma_deg * noise + drift
 
+    def torque_errors(self, count: int, rng: np.random.Generator) -> Array:
+        """Draw errors of the torque reading, as elastic twist, shape (count,) [deg]."""
+        return np.asarray(self.torque_noise_deg * rng.standard_normal(count))
+
     def read(self, angle_deg: Array) -> Array:
         """Round to the divisions of the dial [deg]."""
         if self.resolution_deg <= 0.0:
@@ -73,7 +83,8 @@ class Sensor:
     def whitened(self, columns: Array, starts: NDArray[np.bool_]) -> Array:
         """Columns in units of independent noise of unit variance, shape (N, K).
 
-        Rounding is added to the noise as variance; heavy tails count by their variance.
+        Rounding and noise of the torque are added to the noise as variance; heavy tails count by
+        their variance.
         """
         rho = self.autocorrelation
         before = np.vstack([np.zeros((1, columns.shape[1])), columns[:-1]])

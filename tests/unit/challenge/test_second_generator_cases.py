@@ -8,6 +8,8 @@ import polars as pl
 import pytest
 
 import cyclosweep as cs
+from cyclosweep_challenge.campaign.item import Foreign, Item
+from cyclosweep_challenge.campaign.making import make_item
 from cyclosweep_challenge.scoring.outcome import HeldOut, make_outcome
 from cyclosweep_challenge.second_generator.case import Case, make_numbered, show_one
 from cyclosweep_challenge.second_generator.command import write_set
@@ -88,6 +90,26 @@ def test_noise_is_as_correlated_as_stated() -> None:
         if noise["resolution_deg"] == 0.0:
             found = np.corrcoef(error[1:], error[:-1])[0, 1]
             assert found == pytest.approx(noise["autocorrelation"], abs=0.06)
+
+
+@pytest.mark.parametrize(("tier", "d"), [("nothing", 0.0), ("single", 20.0)])
+def test_noise_of_the_torque_is_as_large_as_stated(tier: str, d: float) -> None:
+    """The angle is that of the true torque; the torque that is read differs from it."""
+    quiet, noisy = (
+        make_item(Item("any", 4, Foreign(tier, 0.0, d, rich=True, torque_noise=ratio), 4, 3, 3000))
+        for ratio in (0.0, 3.0)
+    )
+    noise = noisy.truth["noise"]
+    assert noise["torque_noise_deg"] == pytest.approx(3.0 * noise["sigma_deg"])
+    if tier == "nothing":
+        assert isinstance(noisy, Case)
+        difference = (noisy.recording["torque_nm"] - quiet.recording["torque_nm"]).to_numpy()
+        expected = noise["torque_noise_deg"] / noisy.specimen.compliance_deg_per_nm
+        assert np.std(difference) == pytest.approx(expected, rel=0.1)
+        assert noisy.recording["angle_deg"].equals(quiet.recording["angle_deg"])
+    for cause in noisy.truth["causes"]:
+        assert cause["d"] == pytest.approx(d, rel=0.02)
+        assert abs(cause["oracle_z"] - d) < 4.0
 
 
 def test_a_test_that_knows_the_signature_sees_it_as_visible_as_stated() -> None:
