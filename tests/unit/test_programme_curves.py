@@ -36,7 +36,8 @@ def sine() -> tuple[Floats, Floats]:
 def found(time: Floats, torque: Floats, piece: Ints, seed: int) -> Floats:
     read = torque + NOISE * np.random.default_rng(seed).normal(size=len(torque))
     run = np.zeros(len(time), np.int64)
-    return np.asarray(programme_curves(read, read, time, piece, run, NOISE)[0])
+    curves, _ = programme_curves(read, read, time, piece, run, NOISE)
+    return np.asarray(curves[0])
 
 
 def pieces(torque: Floats, off: int = 0) -> Ints:
@@ -63,6 +64,43 @@ def test_steps_and_holds_are_told_apart() -> None:
     held = np.r_[False, np.diff(torque) == 0.0] & np.isfinite(curves)
     still = np.abs(np.diff(curves))[held[1:] & held[:-1]]
     assert np.mean(still == 0.0) > 0.95
+
+
+def short_ramps() -> tuple[Floats, Floats]:
+    """Clock and torque of nested loops with holds, a dozen readings to each of their lines."""
+    levels = [0.0, 900.0, 400.0, 800.0, 200.0, 700.0, 100.0, 600.0, 0.0]
+    places, loads = [0.0], [0.0]
+    for k, level in enumerate(levels[1:]):
+        places += [places[-1] + (6.0, 12.0, 20.0)[k % 3]] * 2
+        places[-1] += 15.0
+        loads += [level, level]
+    time = np.arange(0.3, places[-1])
+    return time, np.interp(time, places, loads)
+
+
+@pytest.mark.parametrize("off", [-3, 0, 2])
+@pytest.mark.parametrize("seed", range(5))
+def test_corners_are_found_where_pieces_end_elsewhere(off: int, seed: int) -> None:
+    """Readings between a corner and the end of a piece were taken for one line with the next."""
+    time, torque = short_ramps()
+    error = found(time, torque, pieces(torque, off), seed) - torque
+    assert np.isfinite(error).mean() > 0.97
+    assert np.nanstd(error) < 0.45 * NOISE
+    assert np.nanmax(np.abs(error)) < 2.2 * NOISE
+
+
+def test_the_share_of_noise_in_a_curve_is_stated() -> None:
+    """Its sum over the readings is the number of parameters of all lines."""
+    time, torque = short_ramps()
+    run = np.zeros(len(time), np.int64)
+    errors, shares = [], []
+    for seed in range(20):
+        read = torque + NOISE * np.random.default_rng(seed).normal(size=len(torque))
+        curves, share = programme_curves(read, read, time, pieces(torque), run, NOISE)
+        there = np.isfinite(curves[0])
+        errors.append(np.mean((curves[0] - torque)[there] ** 2))
+        shares.append(np.mean(share[there]))
+    assert np.mean(shares) * NOISE**2 == pytest.approx(np.mean(errors), rel=0.25)
 
 
 def test_a_sine_of_few_readings_a_cycle_is_found() -> None:

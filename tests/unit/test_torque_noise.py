@@ -96,6 +96,22 @@ def test_the_diagnosis_stays_silent_beside_noise_of_the_torque() -> None:
     assert "0.027 N m" in said or "0.026 N m" in said or "0.028 N m" in said
 
 
+def test_short_ramps_are_compared_with_the_torque_as_read() -> None:
+    """A line through a dozen readings holds a third of their noise, as an error of the ramp."""
+    torque, piece, time = programme(12, 24)
+    read, scatter = noisy(6, torque, 0.03)
+    found = torque_without_noise(
+        read, piece, COMPLIANCE, off_lines(read, COMPLIANCE * torque + scatter, 0.0), time
+    )
+    assert np.allclose(found.twist_deg, COMPLIANCE * (read - found.torque_nm))
+    assert np.any(found.twist_deg)
+    slow = np.repeat(0.4 * scatter[::16], 16)[: len(torque)] * 10.0
+    left = off_lines(read, COMPLIANCE * torque + scatter + slow, 0.0)
+    found = torque_without_noise(read, piece, COMPLIANCE, left, time)
+    assert found.noise_nm > 0.0
+    assert not np.any(found.twist_deg)
+
+
 def test_steps_of_two_readings_each_are_no_noise() -> None:
     """Lines through such a staircase differ from it as from noise; the twist follows the steps."""
     steps = np.r_[np.arange(70.0, 950.0, 290.0), np.arange(880.0, -950.0, -290.0)]

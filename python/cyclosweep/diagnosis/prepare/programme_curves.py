@@ -9,12 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from cyclosweep.diagnosis.prepare.segmentation import LineSums, best_lines
 from cyclosweep.simulation.effects.history import Floats, Ints
 
 STRAIGHT, CURVED = (0, 1), (2, 3, 5, 7, 9)
 """Degrees of the polynomials that are tried, in this order; half a sine takes five to nine."""
-PARAMETERS_A_LINE = 3
-"""Parameters of one of several lines: its level, its slope and where it begins."""
 ROWS_A_TERM = 3
 """Rows that there have to be for each coefficient."""
 FEWEST = 4
@@ -30,6 +29,8 @@ HARMONICS = 5
 """Multiples of its frequency by which a sine may be distorted."""
 FEWEST_CYCLES = 1.5
 """Fewest cycles of a sine."""
+REACH = 4
+"""Readings by which noise may put the corner between two lines too early or too late."""
 WINDOW = 0.15
 """Share of the shorter neighbour by which a turning point is looked for about where it was read."""
 
@@ -41,6 +42,11 @@ class _Stretch:
     start: int
     stop: int
     curve: "_Curve | None"
+
+    @property
+    def is_line(self) -> bool:
+        """Whether the curve is a line or a level."""
+        return self.curve is not None and self.curve.terms <= STRAIGHT[-1] + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +64,15 @@ class _Curve:
         """The curve that comes closest to some values, shape (rows,) or (rows, k) as they are."""
         return np.asarray(self.basis @ np.linalg.lstsq(self.basis, values, rcond=None)[0])
 
+    @property
+    def share(self) -> Floats:
+        """Variance of the curve over that of the noise of a reading, shape (rows,)."""
+        return np.asarray(np.sum(np.linalg.qr(self.basis)[0] ** 2, axis=1))
+
 
 def programme_curves(
     torque_nm: Floats, angle_deg: Floats, place: Floats, piece: Ints, run: Ints, noise_nm: float
-) -> Floats:
+) -> tuple[Floats, Floats]:
     """Replace the torque by lines and curves where it differs from them by noise alone.
 
     Parameters
@@ -82,28 +93,26 @@ def programme_curves(
 
     Returns
     -------
-    ndarray, shape (2, n)
+    curves : ndarray, shape (2, n)
         Torque [N m] and twist [deg]; NaN where no curve was found, and at readings far from it.
+    share : ndarray, shape (n,)
+        Variance of the curve over that of the noise of a reading; one without a curve.
     """
-    found = np.full((2, len(torque_nm)), np.nan)
+    found, share = np.full((2, len(torque_nm)), np.nan), np.ones(len(torque_nm))
     unit = torque_nm / noise_nm
     both = np.column_stack([torque_nm, angle_deg])
-    stretches = [
-        _Stretch(start, stop, _sine(unit[start:stop], place[start:stop]))
-        for start, stop in pairwise(_edges(run))
-    ]
-    known = np.zeros(len(unit), dtype=bool)
-    for sine in stretches:
-        known[sine.start : sine.stop] = sine.curve is not None
-    for start, stop in pairwise(_moved(unit, place, _edges(piece))):
-        if not np.all(known[start:stop]):
-            stretches += _stretches(unit, place, start, stop)
+    edges = _edges(piece)
+    stretches: list[_Stretch] = []
+    for start, stop in pairwise(_edges(run)):
+        inner = edges[(edges >= start) & (edges <= stop)]
+        stretches += _along_a_run(unit, place, inner)
     for each in stretches:
         if each.curve is not None:
             rows = slice(each.start, each.stop)
             found[:, rows] = each.curve.through(both[rows]).T
+            share[rows] = each.curve.share
     corner = np.abs(torque_nm - found[0]) > OUTLIER * noise_nm
-    return np.where(corner, np.nan, found)
+    return np.where(corner, np.nan, found), np.where(corner, 1.0, share)
 
 
 def _edges(label: Ints) -> Ints:
@@ -133,13 +142,114 @@ def _moved(torque: Floats, place: Floats, edges: Ints) -> Ints:
         near = near[(near - low >= FEWEST) & (high - near >= FEWEST)]
         if window < 1 or len(near) == 0 or np.any(np.diff(place[low:high]) <= 0.0):
             continue
-        sums = _LineSums.of(torque[low:high], place[low:high])
+        sums = LineSums.of(torque[low:high], place[low:high])
         losses = sums.losses(0, near - low) + sums.losses(near - low, high - low)
         best = int(near[np.argmin(losses)])
         parts = [slice(low, best), slice(best, high)]
         if all(_polynomial(torque[p], place[p], STRAIGHT) is not None for p in parts):
             moved[k] = best
     return moved
+
+
+def _along_a_run(torque: Floats, place: Floats, edges: Ints) -> list[_Stretch]:
+    """A sine through a run; or curves through its pieces, or lines that know nothing of these.
+
+    Noise ends a piece some readings before or behind the corner of the programme.
+
+    Parameters
+    ----------
+    torque, place : ndarray, shape (n,)
+        Torque over its noise.
+    edges : ndarray of int, shape (pieces + 1,)
+        First row of each piece of the run, and the one after its last.
+
+    Returns
+    -------
+    list of _Stretch
+    """
+    start, stop = int(edges[0]), int(edges[-1])
+    sine = _sine(torque[start:stop], place[start:stop])
+    if sine is not None:
+        return [_Stretch(start, stop, sine)]
+    by_pieces = [
+        stretch
+        for low, high in pairwise(_moved(torque, place, edges))
+        for stretch in _stretches(torque, place, low, high)
+    ]
+    if np.any(np.diff(place[start:stop]) <= 0.0):
+        return by_pieces
+    by_lines = _as_lines(torque, place, start, best_lines(torque[start:stop], place[start:stop])[0])
+    best = min(by_pieces, by_lines, key=lambda found: _criterion(found, torque))
+    return _met_at_corners(best, torque, place)
+
+
+def _met_at_corners(stretches: list[_Stretch], torque: Floats, place: Floats) -> list[_Stretch]:
+    """Let lines end where they meet; noise puts readings beside a corner on the wrong one.
+
+    Parameters
+    ----------
+    stretches : list of _Stretch
+        All of a run, one beside the other.
+    torque, place : ndarray, shape (n,)
+        Torque over its noise.
+
+    Returns
+    -------
+    list of _Stretch
+        Lines between which the torque jumps stay as they were.
+    """
+    found = list(stretches)
+    for k in range(1, len(found)):
+        one, other = found[k - 1], found[k]
+        if not (one.is_line and other.is_line):
+            continue
+        low, edge, high = one.start, other.start, other.stop
+        near = np.arange(max(low + FEWEST, edge - REACH), min(high - FEWEST, edge + REACH) + 1)
+        if len(near) == 0:
+            continue
+        (a, b), (c, d) = (
+            np.polyfit(place[e.start : e.stop], torque[e.start : e.stop], 1) for e in (one, other)
+        )
+        meeting = (d - b) / (a - c) if a != c else np.inf
+        corner = int(np.searchsorted(place[low:high], meeting, side="right")) + low
+        if corner == edge or corner not in near:
+            continue
+        own = slice(min(corner, edge), max(corner, edge))
+        x, y = place[own], torque[own]
+        worse = float(np.sum((y - a * x - b) ** 2 - (y - c * x - d) ** 2))
+        if (worse if corner > edge else -worse) > OUTLIER**2:
+            continue
+        parts = [slice(low, corner), slice(corner, high)]
+        lines = [_polynomial(torque[p], place[p], STRAIGHT) for p in parts]
+        if all(line is not None for line in lines):
+            found[k - 1] = _Stretch(low, corner, lines[0])
+            found[k] = _Stretch(corner, high, lines[1])
+    return found
+
+
+def _criterion(stretches: list[_Stretch], torque: Floats) -> float:
+    """Sum of squares and, for each parameter, the log of the number of rows, of a whole run.
+
+    Parameters
+    ----------
+    stretches : list of _Stretch
+        All of the run, one beside the other.
+    torque : ndarray, shape (n,)
+        Torque over its noise.
+
+    Returns
+    -------
+    float
+    """
+    total, parameters = 0.0, 0
+    for each in stretches:
+        own = torque[each.start : each.stop]
+        if each.curve is None:
+            parameters += len(own)
+            continue
+        total += float(np.sum(np.clip(own - each.curve.through(own), -OUTLIER, OUTLIER) ** 2))
+        parameters += each.curve.terms + 1
+    return total + parameters * float(np.log(stretches[-1].stop - stretches[0].start))
 
 
 def _stretches(torque: Floats, place: Floats, start: int, stop: int) -> list[_Stretch]:
@@ -160,12 +270,31 @@ def _stretches(torque: Floats, place: Floats, start: int, stop: int) -> list[_St
     straight = _polynomial(torque[rows], place[rows], STRAIGHT)
     if straight is not None or stop - start < FEWEST or np.any(np.diff(place[rows]) <= 0.0):
         return [_Stretch(start, stop, straight)]
-    cuts, loss = _lines(torque[rows], place[rows])
+    cuts, loss = best_lines(torque[rows], place[rows])
     curve = _polynomial(torque[rows], place[rows], CURVED)
     if curve is not None:
         charge = curve.terms * np.log(stop - start)
         if float(np.sum((torque[rows] - curve.through(torque[rows])) ** 2)) + charge <= loss:
             return [_Stretch(start, stop, curve)]
+    return _as_lines(torque, place, start, cuts)
+
+
+def _as_lines(torque: Floats, place: Floats, start: int, cuts: Ints) -> list[_Stretch]:
+    """Lines, or levels where these suffice, between cuts.
+
+    Parameters
+    ----------
+    torque, place : ndarray, shape (n,)
+        Torque over its noise.
+    start : int
+        First row.
+    cuts : ndarray of int, shape (lines + 1,)
+        Rows from there at which a line begins, and the number of rows.
+
+    Returns
+    -------
+    list of _Stretch
+    """
     lines = []
     for first, last in pairwise(start + cuts):
         part = slice(first, last)
@@ -259,91 +388,3 @@ def _is_noise(residual: Floats) -> bool:
         if float(means @ means) > count + BEYOND * np.sqrt(2.0 * count) + BEYOND:
             return False
     return True
-
-
-@dataclass(frozen=True, slots=True)
-class _LineSums:
-    """Running sums by which the loss of a line through any rows is known at once.
-
-    Attributes
-    ----------
-    x, y, xx, xy, yy : ndarray, shape (n + 1,)
-        Sums over the rows before each one.
-    """
-
-    x: Floats
-    y: Floats
-    xx: Floats
-    xy: Floats
-    yy: Floats
-
-    @classmethod
-    def of(cls, torque: Floats, place: Floats) -> "_LineSums":
-        """Sums of some rows.
-
-        Parameters
-        ----------
-        torque, place : ndarray, shape (n,)
-
-        Returns
-        -------
-        _LineSums
-        """
-        x = (place - place.mean()) / max(float(np.ptp(place)), 1e-300)
-        y = torque - torque.mean()
-        sums = [np.cumsum(np.r_[0.0, part]) for part in (x, y, x * x, x * y, y * y)]
-        return cls(*sums)
-
-    def losses(self, start: Ints | int, stop: Ints | int) -> Floats:
-        """Sums of squares that lines leave.
-
-        Parameters
-        ----------
-        start, stop : ndarray of int, shape (k,), or int
-            First row of each line, and the one after its last.
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
-        count = np.asarray(stop) - np.asarray(start)
-        x, y = self.x[stop] - self.x[start], self.y[stop] - self.y[start]
-        within_x = self.xx[stop] - self.xx[start] - x * x / count
-        within_y = self.yy[stop] - self.yy[start] - y * y / count
-        both = self.xy[stop] - self.xy[start] - x * y / count
-        sloped = (count > 2) & (within_x > 0.0)
-        explained = np.divide(both**2, within_x, out=np.zeros_like(within_x), where=sloped)
-        return np.where(count > 2, np.maximum(within_y - explained, 0.0), 0.0)
-
-
-def _lines(torque: Floats, place: Floats) -> tuple[Ints, float]:
-    """Lines, one beside the other, that describe the rows with the smallest information criterion.
-
-    Found exactly, places that can begin no best line left out as the search goes on (R. Killick et
-    al., J. Am. Stat. Assoc. 107, 2012).
-
-    Parameters
-    ----------
-    torque, place : ndarray, shape (n,)
-        Torque over its noise.
-
-    Returns
-    -------
-    edges : ndarray of int, shape (lines + 1,)
-    criterion : float
-        Sum of squares and, for each parameter, the log of the number of rows.
-    """
-    count = len(torque)
-    sums = _LineSums.of(torque, place)
-    price = PARAMETERS_A_LINE * np.log(count)
-    best, before = np.zeros(count + 1), np.zeros(count + 1, dtype=np.int64)
-    starts = np.zeros(1, dtype=np.int64)
-    for stop in range(1, count + 1):
-        costs = best[starts] + sums.losses(starts, stop)
-        place_of_best = int(np.argmin(costs))
-        best[stop], before[stop] = costs[place_of_best] + price, starts[place_of_best]
-        starts = np.r_[starts[costs <= best[stop]], stop]
-    edges = [count]
-    while edges[-1] > 0:
-        edges.append(int(before[edges[-1]]))
-    return np.asarray(edges[::-1], dtype=np.int64), float(best[count])

@@ -125,7 +125,7 @@ def torque_without_noise(
     run = np.zeros(len(piece), dtype=np.int64) if run is None else run
     clipped = np.clip(beyond[left > 0.0], -CORNER * noise, CORNER * noise)
     spread = float(np.sqrt(np.mean(clipped**2)))
-    curves = programme_curves(torque_nm, twist, place, piece, run, spread)
+    curves, share = programme_curves(torque_nm, twist, place, piece, run, spread)
     smooth = np.where(np.isfinite(curves), curves, smooth)
     follows = _Following.of(both - smooth, steady & touching, piece)
     if compliance_deg_per_nm <= SEEN * follows.std_error:
@@ -133,7 +133,9 @@ def torque_without_noise(
     if abs(follows.slope) > FOLLOWS * compliance_deg_per_nm + CLEARLY * follows.std_error:
         return as_read
     error = torque_nm - smooth[0]
-    slow = compliance_deg_per_nm * _slow_size(error, run)
+    # The curves take up a part of the noise, which is then in them.
+    taken_up = noise * float(np.sqrt(np.mean(np.minimum(AVERAGED * share, 1.0))))
+    slow = compliance_deg_per_nm * np.hypot(_slow_size(error, run), taken_up)
     of_twist = np.sqrt(max(_slow_size(off_lines_deg, run) ** 2 - slow**2, 0.0))
     if slow > LARGE * of_twist:
         return SmoothTorque(smooth[0], noise, compliance_deg_per_nm * error)
