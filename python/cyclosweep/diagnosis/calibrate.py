@@ -103,18 +103,20 @@ def noise_left(problem: Problem, flexible: Floats, *, all_noise: bool = False) -
     gap, weight = problem.gap[use], problem.weight[use]
     row_gap = gaps(use, problem.history.run, None)[use]
     kept = ~event_rows(angle, flexible, run)
+    step, white = problem.resolution_deg, problem.white_noise_deg
     if kept.all():
         return estimate_noise(
-            angle, flexible, gap, problem.resolution_deg, weight, row_gap, all_noise=all_noise
+            angle, flexible, gap, step, weight, row_gap, white_deg=white, all_noise=all_noise
         )
     beyond = np.r_[False, ~kept[:-1]]
     noise = estimate_noise(
         angle[kept],
         orthonormal(flexible[kept]),
         np.where(beyond, 0.0, gap)[kept],
-        problem.resolution_deg,
+        step,
         weight[kept],
         np.where(beyond, 0.0, row_gap)[kept],
+        white_deg=white,
         all_noise=all_noise,
     )
     return replace(noise, gap=row_gap if noise.by_rows else gap)

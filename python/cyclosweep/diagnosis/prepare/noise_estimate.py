@@ -8,8 +8,8 @@ from scipy.stats import t as student_t
 
 from cyclosweep.diagnosis.prepare.autocorrelation import autocorrelation
 from cyclosweep.diagnosis.prepare.noise import COARSE_STEP, Noise, orthonormal
-from cyclosweep.diagnosis.prepare.rounding import MUCH_LIKELIER, noise_with_rounding
 from cyclosweep.diagnosis.prepare.row_score import bin_score, interval_score, student_score
+from cyclosweep.diagnosis.prepare.white_part import MUCH_LIKELIER, noise_with_white_part
 from cyclosweep.recording.robust import robust_sigma, rounding_sigma, sigma_by_second_differences
 from cyclosweep.simulation.effects.history import Floats
 
@@ -42,6 +42,7 @@ def estimate_noise(
     weight: Floats,
     row_gap: Floats | None = None,
     *,
+    white_deg: float = 0.0,
     all_noise: bool = False,
 ) -> Noise:
     """Noise from what a flexible basis leaves, by restricted maximum likelihood.
@@ -60,6 +61,8 @@ def estimate_noise(
         Samples averaged in each row.
     row_gap : ndarray, shape (n,), optional
         The same as ``gap``, counted in rows where that goes by the clock; the likelier one is used.
+    white_deg : float
+        Standard deviation of what is known to be new in every row, beside rounding [deg].
     all_noise : bool
         Take what is left for noise even where it looks like error of the model.
 
@@ -83,8 +86,11 @@ def estimate_noise(
             rough = Noise(1.0, its_upper, other, np.inf, 0.0, freedom, row_gap, by_rows=True)
             best = other
     averaged = float(np.median(weight)) > 1.5
-    if resolution > 0 and not averaged:
-        rough = noise_with_rounding(clean, basis, rough, resolution) or rough
+    white_part = float(np.hypot(white_deg, 0.0 if averaged else rounding_sigma(resolution)))
+    if white_part > 0.0:
+        # Rounding has to show itself; noise of the torque is known to be there.
+        least = 0.0 if white_deg > 0.0 else MUCH_LIKELIER
+        rough = noise_with_white_part(clean, basis, rough, white_part, least) or rough
         best = rough.best_correlation
     sigma, tail, moments, gain = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
@@ -98,8 +104,8 @@ def estimate_noise(
     if all_noise:
         return found
     white = rough.whiten(left)
-    rounded = rough.white_share > 0.0
-    unsteady = best > SLOW_AS_MODEL_ERROR and unsteadiness(white, loud_only=rounded) > UNSTEADY
+    mixed = rough.white_share > 0.0
+    unsteady = best > SLOW_AS_MODEL_ERROR and unsteadiness(white, loud_only=mixed) > UNSTEADY
     if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
         return as_model_error(rough, left, resolution, float(np.ptp(angle)))
     return found

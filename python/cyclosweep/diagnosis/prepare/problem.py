@@ -50,6 +50,8 @@ class Problem:
         Step of the angle reading [deg].
     torque_noise_nm : float
         Noise of the torque reading that was smoothed [N m]; zero: none that matters.
+    white_noise_deg : float
+        Noise of the torque that is in the twist, as that is compared with the torque as read [deg].
     nominal_compliance_deg_per_nm, nominal_free_play_deg : float
         Line of the published model, without calibration [deg/(N m)], [deg].
     one_history : bool
@@ -70,6 +72,7 @@ class Problem:
     loop_width_deg: float
     resolution_deg: float
     torque_noise_nm: float
+    white_noise_deg: float
     nominal_compliance_deg_per_nm: float
     nominal_free_play_deg: float
     one_history: bool = False
@@ -221,8 +224,8 @@ def prepare(
     turned = flanks.turned is not None
     predicted = counts & (contact if turned else _since_first_contact(contact, restart))
     kept = np.isin(run_label, list(recording.holdout_runs))
-    held = kept & contact & counts
-    fitted = contact & counts & ~kept
+    known = contact & counts if smooth.uncertain is None else contact & counts & ~smooth.uncertain
+    held, fitted = known & kept, known & ~kept
     history = History(
         applied_nm=torque,
         elastic_nm=torque,
@@ -260,6 +263,7 @@ def prepare(
         loop_width_deg=flanks.loop_width_deg,
         resolution_deg=recording.angle_resolution_deg,
         torque_noise_nm=smooth.noise_nm,
+        white_noise_deg=smooth.noise_of_twist_deg,
         nominal_compliance_deg_per_nm=line.compliance_deg_per_nm,
         nominal_free_play_deg=line.free_play_deg,
     )

@@ -39,11 +39,19 @@ MOST = 0.03
 SMALL = 0.02
 """Noise of the torque, as twist over what a straight line leaves, up to which the errors of laws
 hide what it does; the torque as read is then also what a repaired model is given."""
-LARGE = 0.5
+LARGE = 0.3
 """Slow noise of the torque, as twist over what else is slow in it, from which errors of the curves
 are seen there."""
 AVERAGED = 16
 """Rows over which noise of the torque is averaged to see how much of it is slow."""
+MOST_SHARE = 0.5
+"""Share of the noise in a curve up to which what it leaves says how large the noise is; the curve
+of a short stretch has more."""
+UNCERTAIN = 2.0
+"""Error of the torque, as twist over what is new in the twist from row to row, from which a row of
+a short stretch of the programme tells nothing."""
+MOST_UNCERTAIN = 0.2
+"""Share of such rows beyond which none is left out."""
 SINGULAR = 1e10
 """Condition number from which rows at too few places fix no parabola."""
 
@@ -65,11 +73,17 @@ class SmoothTorque:
     twist_deg : ndarray, shape (n,)
         Twist by the noise, to be taken off the twist that was read [deg]; zero where its error does
         not matter.
+    noise_of_twist_deg : float
+        Standard deviation of that noise [deg]; zero where it is not taken off.
+    uncertain : ndarray of bool, shape (n,), or None
+        Rows at which the torque is known so badly that their twist tells nothing; None: no row.
     """
 
     torque_nm: Floats
     noise_nm: float
     twist_deg: Floats
+    noise_of_twist_deg: float = 0.0
+    uncertain: Flags | None = None
 
 
 def torque_without_noise(
@@ -121,11 +135,12 @@ def torque_without_noise(
     steps = noise > MOST * float(np.abs(torque_nm).max())
     if steps or compliance_deg_per_nm * noise <= SMALL * mismatch:
         return as_read
-    smooth = _locally_smooth(both, place, piece, steady, noise)
+    smooth, local_share = _locally_smooth(both, place, piece, steady, noise)
     run = np.zeros(len(piece), dtype=np.int64) if run is None else run
     clipped = np.clip(beyond[left > 0.0], -CORNER * noise, CORNER * noise)
     spread = float(np.sqrt(np.mean(clipped**2)))
     curves, share = programme_curves(torque_nm, twist, place, piece, run, spread)
+    share = np.where(np.isfinite(curves[0]), share, local_share)
     smooth = np.where(np.isfinite(curves), curves, smooth)
     follows = _Following.of(both - smooth, steady & touching, piece)
     if compliance_deg_per_nm <= SEEN * follows.std_error:
@@ -133,18 +148,26 @@ def torque_without_noise(
     if abs(follows.slope) > FOLLOWS * compliance_deg_per_nm + CLEARLY * follows.std_error:
         return as_read
     error = torque_nm - smooth[0]
+    known = np.isfinite(curves[0]) & (share < MOST_SHARE)
+    if np.any(known):
+        noise = robust_sigma(error[known] / np.sqrt(1.0 - share[known]))
     # The curves take up a part of the noise, which is then in them.
     taken_up = noise * float(np.sqrt(np.mean(np.minimum(AVERAGED * share, 1.0))))
     slow = compliance_deg_per_nm * np.hypot(_slow_size(error, run), taken_up)
     of_twist = np.sqrt(max(_slow_size(off_lines_deg, run) ** 2 - slow**2, 0.0))
-    if slow > LARGE * of_twist:
-        return SmoothTorque(smooth[0], noise, compliance_deg_per_nm * error)
-    return SmoothTorque(smooth[0], noise, np.zeros(len(error)))
+    if compliance_deg_per_nm * taken_up > LARGE * of_twist:
+        as_twist = compliance_deg_per_nm * error
+        return SmoothTorque(smooth[0], noise, as_twist, compliance_deg_per_nm * noise)
+    uncertain = compliance_deg_per_nm * noise * np.sqrt(share) > UNCERTAIN * follows.jitter_deg
+    uncertain &= share > MOST_SHARE
+    if np.mean(uncertain) > MOST_UNCERTAIN:
+        uncertain[:] = False
+    return SmoothTorque(smooth[0], noise, np.zeros(len(error)), uncertain=uncertain)
 
 
 def _locally_smooth(
     values: Floats, place: Floats, piece: Ints, steady: Flags, noise_nm: float
-) -> Floats:
+) -> tuple[Floats, Floats]:
     """Parabolas through as many neighbours of each row as agree with one another.
 
     Parameters
@@ -161,9 +184,11 @@ def _locally_smooth(
 
     Returns
     -------
-    ndarray, shape (2, n)
+    smooth : ndarray, shape (2, n)
+    share : ndarray, shape (n,)
+        Variance of a row's torque over that of the noise.
     """
-    smooth = values.copy()
+    smooth, taken_up = values.copy(), np.ones(len(place))
     low, high = np.full(len(place), -np.inf), np.full(len(place), np.inf)
     agrees = steady
     for reach in REACHES:
@@ -171,8 +196,8 @@ def _locally_smooth(
         room = AGREES * noise_nm * np.sqrt(share)
         low, high = np.maximum(low, fitted[0] - room), np.minimum(high, fitted[0] + room)
         agrees = agrees & (low <= high)
-        smooth[:, agrees] = fitted[:, agrees]
-    return smooth
+        smooth[:, agrees], taken_up[agrees] = fitted[:, agrees], share[agrees]
+    return smooth, taken_up
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,10 +210,13 @@ class _Following:
         Twist over torque [deg/(N m)].
     std_error : float
         Its standard error; infinite where the torque does nothing.
+    jitter_deg : float
+        What is new in the twist from row to row [deg].
     """
 
     slope: float
     std_error: float
+    jitter_deg: float
 
     @classmethod
     def of(cls, left: Floats, usable: Flags, piece: Ints) -> "_Following":
@@ -210,10 +238,10 @@ class _Following:
         ripple, jitter = np.diff(left, 2, axis=1)[:, inner]
         power = float(ripple @ ripple)
         if power <= 0.0:
-            return cls(0.0, np.inf)
+            return cls(0.0, np.inf, 0.0)
         size = robust_sigma(jitter)
         slope = float(ripple @ np.clip(jitter, -CORNER * size, CORNER * size)) / power
-        return cls(slope, ALIKE * size / np.sqrt(power))
+        return cls(slope, ALIKE * size / np.sqrt(power), size / np.sqrt(6.0))
 
 
 def _slow_size(error: Floats, run: Ints) -> float:

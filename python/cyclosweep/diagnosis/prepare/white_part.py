@@ -1,4 +1,4 @@
-"""Autocorrelated noise behind a dial: its correlated part and the rounding, estimated together."""
+"""Autocorrelated noise beside a white part of known size, as the rounding of a dial has."""
 
 from dataclasses import replace
 
@@ -11,19 +11,23 @@ from cyclosweep.simulation.effects.history import Floats
 LARGEST = 0.998
 """Largest autocorrelation that is tried."""
 MUCH_LIKELIER = 3.0
-"""Log likelihood by which rounding beside correlated noise must be ahead of none [nat]."""
+"""Log likelihood by which rounding beside correlated noise must be ahead of none [nat]; rounding is
+white nearly, and not always."""
 LEAST_ROWS = 100
 """Rows below which two parts of the noise are not told apart."""
 MOST_TIMES = 300.0
-"""Largest variance that is tried, in variances of the rounding."""
+"""Largest variance that is tried, in variances of the white part."""
 
 
-def noise_with_rounding(left: Floats, basis: Floats, rough: Noise, step_deg: float) -> Noise | None:
-    """Noise whose rounding is white beside a correlated part; None where that is no likelier.
+def noise_with_white_part(
+    left: Floats, basis: Floats, rough: Noise, white_deg: float, least_gain: float = MUCH_LIKELIER
+) -> Noise | None:
+    """Noise of a known white part beside a correlated one; None where that is no likelier.
 
-    Rounding is new in every row. Taken as part of a first-order autoregression it lowers the
-    estimated autocorrelation of all, and slow noise then looks like an effect. Its variance is
-    known, a twelfth of the squared step, so that nothing else can be taken for it.
+    Rounding of a dial and noise of the torque are new in every row. Taken as part of a first-order
+    autoregression they lower the estimated autocorrelation of all, and slow noise then looks like
+    an effect. Their variance is known (that of rounding is a twelfth of the squared step), so that
+    nothing else can be taken for them.
 
     Parameters
     ----------
@@ -33,22 +37,24 @@ def noise_with_rounding(left: Floats, basis: Floats, rough: Noise, step_deg: flo
         Orthonormal columns of the model.
     rough : Noise
         Estimate without a white part.
-    step_deg : float
-        Step of the angle reading [deg].
+    white_deg : float
+        Standard deviation of the white part [deg].
+    least_gain : float
+        Log likelihood by which it must be ahead of none [nat].
 
     Returns
     -------
     Noise or None
-        ``rough`` with the share of the rounding and the autocorrelation of the rest.
+        ``rough`` with the share of the white part and the autocorrelation of the rest.
     """
     if len(left) < LEAST_ROWS or not np.any(rough.gap > 0):
         return None
     rows = np.column_stack([basis, left])
-    rounding = step_deg**2 / 12.0
+    white = white_deg**2
     found: dict[float, tuple[float, float]] = {}
 
     def value(correlation: float) -> float:
-        found[correlation] = _best_variance(rows, rough, correlation, rounding)
+        found[correlation] = _best_variance(rows, rough, correlation, white)
         return found[correlation][0]
 
     peak = minimize_scalar(
@@ -59,7 +65,7 @@ def noise_with_rounding(left: Floats, basis: Floats, rough: Noise, step_deg: flo
     )
     best = float(np.tanh(peak.x))
     plain = replace(rough, correlation=rough.best_correlation)
-    if value(best) < _restricted(rows, plain)[0] + MUCH_LIKELIER:
+    if value(best) < _restricted(rows, plain)[0] + least_gain:
         return None
     # The higher it is, the dearer an underestimate.
     allowed = value(best) - (1.0 + 2.0 * best**2)
@@ -67,12 +73,12 @@ def noise_with_rounding(left: Floats, basis: Floats, rough: Noise, step_deg: flo
     if value(LARGEST) < allowed:
         upper = float(brentq(lambda rho: value(float(rho)) - allowed, best, LARGEST, xtol=5e-4))
         value(upper)
-    share = rounding / found[upper][1]
+    share = white / found[upper][1]
     return replace(rough, correlation=upper, best_correlation=best, white_share=share)
 
 
 def _best_variance(
-    rows: Floats, rough: Noise, correlation: float, rounding: float
+    rows: Floats, rough: Noise, correlation: float, white: float
 ) -> tuple[float, float]:
     """Largest restricted log likelihood [nat] at an autocorrelation, and the variance there.
 
@@ -83,9 +89,9 @@ def _best_variance(
     rough : Noise
         Says how steps from row to row count.
     correlation : float
-        Of the part that is no rounding.
-    rounding : float
-        Variance of the rounding [deg^2].
+        Of the part that is not white.
+    white : float
+        Variance of the white part [deg^2].
 
     Returns
     -------
@@ -96,12 +102,12 @@ def _best_variance(
     def loss(log_times: float) -> float:
         times = float(np.exp(log_times))
         noise = replace(rough, correlation=correlation, white_share=1.0 / times)
-        return -_restricted(rows, noise, rounding * times)[0]
+        return -_restricted(rows, noise, white * times)[0]
 
     least = minimize_scalar(
         loss, bounds=(0.02, np.log(MOST_TIMES)), method="bounded", options={"xatol": 0.02}
     )
-    return -float(least.fun), rounding * float(np.exp(least.x))
+    return -float(least.fun), white * float(np.exp(least.x))
 
 
 def _restricted(rows: Floats, noise: Noise, variance: float | None = None) -> tuple[float, float]:
