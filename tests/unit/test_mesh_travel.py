@@ -14,10 +14,12 @@ from cyclosweep.diagnosis.whole_loop.forecast import Forecast
 from cyclosweep.diagnosis.whole_loop.staircase_found import named_staircase
 from cyclosweep.simulation.effects import find
 from cyclosweep.simulation.effects.mesh_range import (
+    LEAST_PHASE_DEG,
     LEAST_TRAVEL_DEG,
     mesh_positions,
     position_count,
 )
+from cyclosweep.simulation.effects.order_names import orders_of
 from cyclosweep.simulation.effects.orders import (
     CYCLE_STEP,
     HIGHEST_LOW_ORDER,
@@ -108,7 +110,7 @@ def test_position_is_where_it_was_locked_and_the_travel_since() -> None:
 
 def test_orders_go_with_the_locking_position_and_with_the_travel_where_it_is_far() -> None:
     effect = find("transmission_error")
-    stayed = history(angle_deg=np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610))
+    stayed = history(angle_deg=np.linspace(0.0, 0.9 * LEAST_PHASE_DEG / HIGHEST_LOW_ORDER, 610))
     locked = effect.shapes(stayed)
     assert all("travel_ratio" not in shape for shape in locked)
     travelled = effect.shapes(history())
@@ -116,6 +118,14 @@ def test_orders_go_with_the_locking_position_and_with_the_travel_where_it_is_far
     assert [list(shape.values()) for shape in travelled[len(locked) :]] == [
         [1.0, *shape.values()] for shape in locked if max(shape.values()) <= HIGHEST_LOW_ORDER
     ]
+
+
+def test_a_high_order_goes_through_more_of_its_cycle_on_the_same_way() -> None:
+    """Left out, its travel looked like a compliance that pulsates with the position."""
+    short = history(angle_deg=np.linspace(0.0, 0.8 * LEAST_PHASE_DEG, 610))
+    shapes = find("transmission_error").shapes(short)
+    highest = {max(orders_of(shape)) for shape in shapes if "travel_ratio" in shape}
+    assert highest == {2.0, 3.0}
 
 
 def test_a_law_of_several_positions_is_described_whatever_the_number_of_loads() -> None:
@@ -136,7 +146,7 @@ def test_a_law_of_several_positions_is_described_whatever_the_number_of_loads() 
 @pytest.mark.parametrize(
     "hidden",
     [
-        {"angle_deg": np.linspace(0.0, LEAST_TRAVEL_DEG - 1.0, 610)},
+        {"angle_deg": np.linspace(0.0, 0.9 * LEAST_PHASE_DEG / HIGHEST_LOW_ORDER, 610)},
         {"crank_deg": np.tile([0.0, 0.5, 59.0, 359.5], 153)[:610]},
         {"applied_nm": np.tile([-20.0, -10.0, 10.0, 15.0, 20.0], 122)},
     ],

@@ -8,6 +8,9 @@ from cyclosweep.simulation.effects.history import Floats, History
 LEAST_TRAVEL_DEG = 60.0
 """Travel of the mesh under load from which orders are looked for: a sixth of a turn. Below it even
 three cycles within the travel are of order 18 and more, beyond most pins of a drive."""
+LEAST_PHASE_DEG = 20.0
+"""Phase through which an order of the position has to go while the mesh travels, from which it is
+looked for along the travel from several recorded positions."""
 LOADED = 0.05
 """Load over the largest one from which a flank counts as loaded."""
 LEAST_POSITIONS = 3
@@ -134,10 +137,22 @@ def loaded_travel_deg(history: History) -> float:
     return max(whole_travel_deg(history) - history.mesh_ratio * crossed, 0.0)
 
 
-def travels_far_from_positions(history: History) -> bool:
-    """Whether low orders may go with the travel of the mesh from several recorded positions."""
+def travels_far_from_positions(history: History, order: float) -> bool:
+    """Whether an order may go with the travel of the mesh from several recorded positions.
+
+    Parameters
+    ----------
+    history : History
+        Load history with the position of the mesh zone at each sample.
+    order : float
+        Cycles a turn of the mesh zone.
+
+    Returns
+    -------
+    bool
+    """
     return (
-        whole_travel_deg(history) >= LEAST_TRAVEL_DEG
+        order * whole_travel_deg(history) >= LEAST_PHASE_DEG
         and _positions_span_deg(history) >= LEAST_SPREAD_DEG
         and load_count(history) >= LEAST_LOADS
     )

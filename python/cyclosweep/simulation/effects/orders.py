@@ -126,22 +126,26 @@ def harmonics(history: History, shape: Shape) -> Floats:
     )
 
 
-def _travelling(locked: Sequence[Shape], ratio: float) -> list[Shape]:
+def _travelling(locked: Sequence[Shape], history: History) -> list[Shape]:
     """Shapes of low orders of a locking position, as they are where the mesh travels from it.
 
     Parameters
     ----------
     locked : sequence of mapping
         Shapes of the locking position.
-    ratio : float
-        Turns of the mesh zone a turn of the measured shaft.
+    history : History
+        Load history with the position of the mesh zone at each sample.
 
     Returns
     -------
     list of mapping
+        Those whose highest order goes through enough of a cycle on the way.
     """
+    highest = [max(orders_of(shape)) for shape in locked]
     return [
-        {RATIO: ratio, **shape} for shape in locked if max(orders_of(shape)) <= HIGHEST_LOW_ORDER
+        {RATIO: history.mesh_ratio, **shape}
+        for shape, order in zip(locked, highest, strict=True)
+        if order <= HIGHEST_LOW_ORDER and travels_far_from_positions(history, order)
     ]
 
 
@@ -194,9 +198,7 @@ class MeshPeriodic(Effect):
         if position_count(history) < LEAST_POSITIONS:
             return travel_shapes(history)
         locked = self.locked_shapes(history)
-        if not travels_far_from_positions(history):
-            return locked
-        return [*locked, *_travelling(locked, history.mesh_ratio)]
+        return [*locked, *_travelling(locked, history)]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Orders that are looked for; see `Effect.shape_bounds` for what is no order.
