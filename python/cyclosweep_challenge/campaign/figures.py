@@ -173,7 +173,11 @@ def _unknown(results: Sequence[Result]) -> list[Criterion]:
             "cause deleted from the library: false name",
             _share(deleted, lambda r: r.false_name),
             at_most=0.10,
-        )
+        ),
+        criterion(
+            "cause deleted from the library: a name of another class of behaviour",
+            _share(deleted, lambda r: r.false_class),
+        ),
     ]
     for words, there in (
         ("first generator, faint", [r for r in faint if r.part == "concealed"]),

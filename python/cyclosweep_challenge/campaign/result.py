@@ -13,6 +13,22 @@ from cyclosweep_challenge.rig.specimen import VOCABULARY
 from cyclosweep_challenge.runner.stages import held_out_ratio
 from cyclosweep_challenge.scoring.outcome import HeldOut, Outcome, make_outcome
 
+BEHAVIOUR = {
+    "friction_hysteresis": "loop",
+    "load_dependent_friction": "loop that opens with the load",
+    "viscous_drag": "loop that opens with the rate",
+    "contact_stiffening": "odd curve",
+    "clearance_takeup": "odd curve",
+    "overload_softening": "odd curve",
+    "load_asymmetry": "even curve",
+    "dial_eccentricity": "curve of the reading",
+    "creep": "relaxation",
+    "transmission_error": "periodic in the position",
+    "phase_dependent_compliance": "periodic in the position",
+    "datum_drift": "moving zero",
+    "thermal_drift": "follows the temperature",
+}
+"""Class of behaviour that each name of the vocabulary stands for."""
 NAMING = frozenset({"IDENTIFIED", "MOSTLY_EXPLAINED"})
 """Verdicts that say which effects are at work."""
 HUNDREDTH = 0.01
@@ -81,6 +97,12 @@ class Result:
     def false_name(self) -> bool:
         """Whether a name of the vocabulary was accepted that is not at work."""
         return bool(self.names & set(VOCABULARY) - {cause.name for cause in self.causes})
+
+    @property
+    def false_class(self) -> bool:
+        """Whether a name was accepted that stands for another class than all that is at work."""
+        at_work = {BEHAVIOUR.get(cause.name) for cause in self.causes}
+        return any(BEHAVIOUR[name] not in at_work for name in self.names & set(VOCABULARY))
 
     @property
     def dominant(self) -> Cause | None:

@@ -282,6 +282,28 @@ def test_a_deleted_cause_with_a_false_name_counts_by_generator_and_loudness() ->
     assert found["cause deleted from the library: false name"].estimate.value == 0.25
     assert found["deleted, second generator, loud: false name"].estimate.value == 1.0
     assert found["deleted, second generator, faint: recognised"].estimate.count == 3
+    other = "cause deleted from the library: a name of another class of behaviour"
+    assert found[other].estimate.value == 0.25
+    taken_up = [small("contact_stiffening", 500.0, 1.0)]
+    alike = result(said("IDENTIFIED", "clearance_takeup"), "deleted", causes=taken_up)
+    assert (alike.false_name, alike.false_class) == (True, False)
+    assert figures([*there, alike])[other].estimate.value == 0.2
+
+
+def test_noise_of_the_torque_is_counted_by_itself() -> None:
+    quiet: dict[str, list[Any]] = {"causes": [], "effects": []}
+    there = [
+        result(said("NOTHING_MISSING"), "torque-noise-null", **quiet),
+        result(said("IDENTIFIED", "creep"), "torque-noise-null", **quiet),
+        result(said("IDENTIFIED", "creep"), "torque-noise", causes=[small("creep", 20.0, 1.0)]),
+        result(said("IDENTIFIED", "creep"), "torque-noise", causes=[small("creep", 60.0, 1.0)]),
+        result(said("IDENTIFIED", "creep"), "foreign", causes=[small("creep", 20.0, 1.0)]),
+    ]
+    found = figures(there)
+    alarms = found["nothing missing, noise of the torque reading: false alarms"]
+    assert alarms.estimate.value == 0.5
+    named = found["foreign laws, d = 20, noise of the torque reading: named right"]
+    assert (named.estimate.value, named.estimate.count) == (1.0, 1)
 
 
 def test_rivals_stand_beside_the_diagnosis_on_the_same_files() -> None:
