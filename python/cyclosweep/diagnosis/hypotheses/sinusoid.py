@@ -12,7 +12,7 @@ from scipy.stats import gumbel_r
 
 from cyclosweep.diagnosis.hypotheses.shape_columns import clock_of
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
-from cyclosweep.simulation.effects.history import Flags, Floats, History
+from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints
 
 IN_TIME = "hum"
 ALONG_TWIST = "ripple along the twist"
@@ -22,6 +22,8 @@ FAMILIES = (IN_TIME, ALONG_TWIST, WITH_TORQUE)
 CYCLES = 1.5
 """A sinusoid in time makes at least this many cycles within the usual run, one along the twist
 within its range. Slower ones are left to other shapes."""
+FEW_CYCLES = 3.0
+"""Cycles within a run up to which a wave that is sampled once a cycle looks like a slow change."""
 FINEST = 250
 """Most cycles within the range of twist that are looked for."""
 APART = 2.0
@@ -93,14 +95,17 @@ def _in_time(
     if cell[-1] > 60 * count:
         cell = np.arange(count, dtype=np.float64)
         step = float((clock[-1] - clock[0]) / max(count - 1, 1))
+    cell = cell.astype(np.int64)
+    run = history.run[fitted]
     runs = max(int(np.count_nonzero(history.restart & fitted)), 1)
     samples = count / runs * float(np.median(positive)) / step
     unit = "Hz" if history.time_s is not None else "cycles a row"
     return _strongest(
-        cell.astype(np.int64),
+        cell,
         residual,
         lowest=CYCLES / samples,
         highest=0.5,
+        hidden=lambda frequency: _looks_slow(frequency, cell, run),
         unit=step,
         family=WITH_TORQUE if with_torque else IN_TIME,
         place="at {:.4g} " + unit + ", all along",
@@ -108,6 +113,33 @@ def _in_time(
         factor=(lambda h: h.applied_nm / h.largest_torque_nm) if with_torque else None,
         scale=history.applied_nm[fitted] if with_torque else None,
     )
+
+
+def _looks_slow(frequency: Floats, cell: Ints, run: Ints) -> Flags:
+    """Frequencies that most rows see as something slow: whole multiples of their sampling rate.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (k,)
+        In cycles a cell.
+    cell : ndarray of int, shape (fitted,)
+        Place of each row along the clock.
+    run : ndarray of int, shape (fitted,)
+        Run of each row.
+
+    Returns
+    -------
+    ndarray of bool, shape (k,)
+    """
+    rows = np.zeros(len(frequency))
+    for label in np.unique(run):
+        here = cell[run == label]
+        between = np.median(np.diff(here)) if len(here) > 1 else 1.0
+        seen = frequency * between
+        whole = np.rint(seen)
+        slow = (whole > 0.0) & (np.abs(seen - whole) * len(here) < FEW_CYCLES)
+        rows += np.where(slow, len(here), 0)
+    return np.asarray(rows > 0.5 * len(cell))
 
 
 def _along_twist(
@@ -163,6 +195,7 @@ def _strongest(
     factor: Callable[[History], Floats] | None = None,
     scale: Floats | None = None,
     rounding: float = 0.0,
+    hidden: Callable[[Floats], Flags] | None = None,
 ) -> tuple[float, UnnamedShape | None]:
     """Strongest frequency of a residual between two limits.
 
@@ -186,6 +219,8 @@ def _strongest(
         The same factor on the fitted rows, in any unit.
     rounding : float
         Period of which a whole number of cycles counts for nothing [cells].
+    hidden : callable, optional
+        From frequencies [cycles a cell] to which of them count for nothing, too.
 
     Returns
     -------
@@ -202,6 +237,8 @@ def _strongest(
     cycles = rounding * frequency
     rounded = np.abs(cycles - np.rint(cycles)) * (cell.max() + 1) < APART * rounding
     usable = (frequency > lowest) & (frequency < highest) & ~(rounded & (cycles > 0.5))
+    if hidden is not None:
+        usable[usable] = ~hidden(frequency[usable])
     if np.count_nonzero(usable) < 8:
         return 0.0, None
     power = power / np.maximum(_floor(power), 1.0)
