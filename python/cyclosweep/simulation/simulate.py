@@ -17,6 +17,7 @@ from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
 from cyclosweep.simulation.effects.twist_law import ElasticLaw
+from cyclosweep.simulation.effects.viscous_drag import holds_friction
 from cyclosweep.simulation.elastic_law import elastic_law
 from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, check_line, linear_twist
@@ -237,6 +238,7 @@ def settle(
     sliding = [value for value in model.effects if value.effect.slips]
     others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
+    turning = _moving_the_held_part(others)
     law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     history = history.with_state(measured_deg=None, elastic_law=law)
     if moving:
@@ -244,7 +246,7 @@ def settle(
         history = on_the_mesh(moving, history, history.angle_deg)
     for _ in range(rounds):
         history = under_drag_of(model, history)
-        added, beyond_deg = twist_with_and_without(moving, others, history)
+        added, beyond_deg = twist_with_and_without(turning, others, history)
         before = history.angle_deg
         if sliding:
             history = history.with_state(beyond_deg=beyond_deg)
@@ -313,6 +315,15 @@ def _slide(
     return history.with_state(side=side, **state)
 
 
+def _moving_the_held_part(others: Sequence[EffectValue]) -> list[EffectValue]:
+    """Effects without a law of their own elasticity that turn the part that friction holds.
+
+    Along the travel of the mesh that part turns, and what drag holds back it does not turn.
+    """
+    drags = (value for value in others if value.effect.is_drag and holds_friction(value.shape))
+    return [*travelling(others), *drags]
+
+
 def _friction(sliding: Sequence[EffectValue]) -> Friction:
     """Friction of all effects that slip."""
     return Friction.of((v.effect, v.shape, v.amplitudes[0]) for v in sliding)
@@ -351,7 +362,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         if not (value.effect.elastic if held_back is None else value.elastic)
     ]
     behind = held_back is not None and lies_behind_play(held_back.shape)
-    moving = travelling(others)
+    turning = _moving_the_held_part(others)
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     least, stalled = np.inf, 0
@@ -362,7 +373,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
             applied_nm=applied, elastic_nm=elastic, angle_deg=angle, side=side
         )
         history = under_drag_of(model, history)
-        added, beyond_deg = twist_with_and_without(moving, others, history)
+        added, beyond_deg = twist_with_and_without(turning, others, history)
         twist = angle - model.datum_deg - added
         held = np.sign(twist) * np.maximum(np.abs(twist) - model.free_play_deg, 0.0)
         settled = held / model.compliance_deg_per_nm

@@ -26,6 +26,12 @@ makes a difference whether the rate is that between the readings or that from re
 THINNED, THINNING, APPROACH = "thinned_power", "thinning_deg_per_s", "approach_s"
 """Names in the shape: power of the rate above that of thinning, that rate, and the time in which
 the torque rose to the first reading of a run."""
+BEYOND_FRICTION = "beyond_friction"
+"""Name in the shape of a drag: 1 where friction holds a part that does not lag, as where drag and
+friction act at different places of the drive."""
+WITHOUT_LAG = "without_lag"
+"""Name in the shape of a drag: 1 where the rate is that of the torque, by which it never lags."""
+OPTIONAL = (BY_READING, APPROACH, WITHOUT_LAG, BEYOND_FRICTION)
 LEAST_THINNING, MOST_THINNING = 0.01, 10.0
 """Rates at which thinning may begin, over the usual rate of the recording."""
 FAR_BELOW = 0.2
@@ -54,6 +60,13 @@ class ViscousDrag(Effect):
     take one implicit step a reading. The two differ where the lag is not much shorter than the time
     between readings.
 
+    With `without_lag` 1 the rate is that of the torque times the compliance, as in simulations that
+    do not solve for the twist: the loop then has its full width right behind a reversal.
+
+    Beside friction it is the part that friction holds that lags, as where both act on one joint:
+    friction turns when that part turns, later than the torque. With `beyond_friction` 1 that part
+    follows the torque, and the lag lies between it and the shaft that is measured.
+
     A run is reached from zero torque at the rate of its first readings, or in the time
     `approach_s`; where that is long, its first reading does not lag. It belongs to the recorded
     programme: leave it out for another one.
@@ -80,8 +93,8 @@ class ViscousDrag(Effect):
         Parameter(APPROACH, "s", "time from zero torque to the first reading", 0.0, np.inf, True),
     )
     forms = (
-        ShapeForm(("power", "lag_s"), (BY_READING, APPROACH)),
-        ShapeForm((THINNED, THINNING, "lag_s"), (BY_READING, APPROACH)),
+        ShapeForm(("power", "lag_s"), OPTIONAL),
+        ShapeForm((THINNED, THINNING, "lag_s"), OPTIONAL),
     )
 
     def shapes(self, history: History) -> Sequence[Shape]:
@@ -106,17 +119,20 @@ class ViscousDrag(Effect):
         return both if _is_coarse(history) else both[:1]
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """The other rates, another approach to the runs, and drag that thins above some rate."""
+        """Other rates, another approach, no lag, and drag that thins above some rate."""
         found = [otherwise_read(shape)] if _is_coarse(history) else []
         if APPROACH in shape:
             found.append({k: v for k, v in shape.items() if k != APPROACH})
         else:
             found.append({**shape, APPROACH: 10.0 * history.usual_step_s})
+        found.append(lagging_otherwise(shape, history))
         found.append(_thinning_otherwise(shape, _usual_rate(history)))
         return found
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
+        if WITHOUT_LAG in shape:
+            return shape
         usual = _usual_rate(history)
         drag = max(float(amplitudes[0]), 0.0) * _resistance(shape, usual) / usual
         shortest = SHORTEST_LAG * history.rate_step_s
@@ -176,11 +192,43 @@ class ViscousDrag(Effect):
         if not 0.0 < power <= 1.0:
             raise InputError(f"power of the rate: found {power:g}, expected above 0 and up to 1")
         check_flag(known, BY_READING)
+        check_flag(known, WITHOUT_LAG)
+        check_flag(known, BEYOND_FRICTION)
         return known
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
         """Drag torque at a rate of 1 deg/s."""
         return (Parameter("drag_nm", "N m", "drag torque at 1 deg/s", 0.0),)
+
+
+def holds_friction(shape: Shape) -> bool:
+    """Whether the part that friction holds lags with a drag of this shape."""
+    return not shape.get(BEYOND_FRICTION, 0.0)
+
+
+def placed_otherwise(shape: Shape) -> Shape:
+    """Drag of the part that friction holds, or beyond it, whichever it is not."""
+    rest = {name: value for name, value in shape.items() if name != BEYOND_FRICTION}
+    return {**rest, BEYOND_FRICTION: 1.0} if holds_friction(shape) else rest
+
+
+def lagging_otherwise(shape: Shape, history: History) -> Shape:
+    """Drag by the rate of the torque instead of that of the twist, or the other way about.
+
+    Parameters
+    ----------
+    shape : mapping
+        Of a drag.
+    history : History
+        Of the recording.
+
+    Returns
+    -------
+    mapping
+    """
+    if WITHOUT_LAG in shape:
+        return {name: value for name, value in shape.items() if name != WITHOUT_LAG}
+    return {**shape, "lag_s": SHORTEST_LAG * history.rate_step_s, WITHOUT_LAG: 1.0}
 
 
 def _thinning_otherwise(shape: Shape, usual_rate: float) -> Shape:

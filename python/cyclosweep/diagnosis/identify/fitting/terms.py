@@ -10,6 +10,7 @@ from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.order_names import travels
 from cyclosweep.simulation.effects.slip import friction_limit_nm
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
+from cyclosweep.simulation.effects.viscous_drag import holds_friction
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +73,12 @@ class Term:
     def lies_beyond_friction(self) -> bool:
         """Whether it turns the measured shaft without turning the part that friction holds.
 
-        What is elastic twists that part; along the travel of the mesh the part itself turns.
+        What is elastic twists that part; along the travel of the mesh the part itself turns, and
+        what drag holds back it does not turn either.
         """
-        return not self.elastic and not travels(self.shape)
+        is_drag = self.effect is not None and self.effect.is_drag
+        lags = is_drag and holds_friction(self.shape)
+        return not (self.elastic or lags or travels(self.shape))
 
     @property
     def place_in_words(self) -> tuple[str, ...]:

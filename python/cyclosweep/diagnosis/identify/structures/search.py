@@ -18,6 +18,7 @@ from cyclosweep.diagnosis.identify.structures.candidate import (
     added_evidence,
     prior_penalty,
 )
+from cyclosweep.diagnosis.identify.structures.drag_and_friction import begun_together
 from cyclosweep.diagnosis.identify.structures.enrichment import richer_structures
 from cyclosweep.diagnosis.identify.structures.freer_part import freer_part
 from cyclosweep.diagnosis.identify.structures.placement import best_placed
@@ -215,6 +216,8 @@ class Search:
             joint: FittedStructure | None = with_right_signs(fitted)
             if joint is not None and term.slips:
                 joint = best_placed(joint)
+            if joint is not None:
+                joint = begun_together(joint, parent.fit)
             # One more term fits no worse, unless the fit has ended in a bad optimum.
             if joint is None or joint.loss > parent.fit.loss or cancel(joint, self.baseline.fit):
                 continue
