@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import polars as pl
@@ -83,6 +84,38 @@ def test_a_refused_variant_has_null() -> None:
         cs.Drive.reference_87().replace(load_inertia_kg_m2=5.0), eccentricity_mm=[0.6, 0.9]
     )
     assert cs.sweep(space)["natural_frequency_1_hz"].is_null().to_list() == [False, True]
+
+
+@pytest.mark.parametrize("model", ["published", "components"])
+@pytest.mark.parametrize(
+    ("name", "value", "status"),
+    [
+        ("load_inertia_kg_m2", 0.0, "non_positive_dimension"),
+        ("load_inertia_kg_m2", -1.0, "non_positive_dimension"),
+        ("load_inertia_kg_m2", math.inf, "non_finite_input"),
+        ("load_inertia_kg_m2", math.nan, "ok"),
+        ("flange_inertia_kg_m2", -1.0, "non_positive_dimension"),
+        ("coupling_stiffness_nm_per_rad", 0.0, "non_positive_dimension"),
+        ("eccentric_inertia_kg_m2", 0.0, "ok"),
+        ("eccentric_inertia_kg_m2", -1e-4, "negative_dimension"),
+    ],
+)
+def test_a_train_that_cannot_be_is_refused(
+    model: Literal["published", "components"], name: str, value: float, status: str
+) -> None:
+    drive = cs.Drive.reference_87().replace(**PARTS, **COUPLING, load_inertia_kg_m2=5.0)
+    space = cs.Space.grid(drive, **{name: [getattr(drive, name) or 1e-4, value]})
+    study = cs.Study.of(space, model=model)
+    table = cs.sweep(study)
+    assert table["status"].to_list() == ["ok", status]
+    assert table["natural_frequency_1_hz"].is_null().to_list() == [False, status != "ok"]
+    reason = study.core.explain(1)
+    assert reason is None if status == "ok" else reason is not None and name in reason
+    # What is left out of a train is not there: without a load the output is locked.
+    if math.isnan(value):
+        locked = cs.sweep(cs.Space.grid(drive.replace(**{name: None}), ratio=[87]), model=model)
+        column = "natural_frequency_1_hz"
+        assert table[column][1] == pytest.approx(locked[column][0], rel=1e-12)
 
 
 def test_a_limit_on_a_train_column() -> None:

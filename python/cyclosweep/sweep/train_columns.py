@@ -66,7 +66,7 @@ def train_columns(
     Returns
     -------
     dict of str to ndarray
-        NaN where an inertia or the stiffness is missing or not above zero.
+        NaN where an inertia or the stiffness is missing; of no meaning in rows that are refused.
     """
     ratio = np.asarray(values["ratio"], dtype=np.float64)
     at_input = np.nan_to_num(values["eccentric_inertia_kg_m2"]) + values["input_inertia_kg_m2"]
@@ -101,11 +101,13 @@ def _frequencies(
     k2 (b + c)`` and ``P = k1 k2 (a b + b c + c a)``.
     """
     square = ratio**2
-    inverse_load = np.nan_to_num(square / np.asarray(values["load_inertia_kg_m2"]), nan=0.0)
-    inverse_input = 1.0 / at_input
+    load = np.asarray(values["load_inertia_kg_m2"], dtype=np.float64)
     flange = np.asarray(values["flange_inertia_kg_m2"], dtype=np.float64)
     coupling = np.asarray(values["coupling_stiffness_nm_per_rad"], dtype=np.float64) / square
-    with np.errstate(invalid="ignore", divide="ignore"):
+    # Rows that are refused may have any number.
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        inverse_load = np.nan_to_num(square / load, nan=0.0)
+        inverse_input = 1.0 / at_input
         alone = np.sqrt(stiffness * (inverse_input + inverse_load))
         inverse_flange = square / flange
         total = stiffness * (inverse_input + inverse_flange) + coupling * (

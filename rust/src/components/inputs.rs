@@ -64,6 +64,14 @@ pub enum Substitute {
     Absent,
 }
 
+impl Substitute {
+    /// Whether a number is assumed for what is left out. A variant of a study then has to give one.
+    #[must_use]
+    pub const fn is_assumed(self) -> bool {
+        matches!(self, Self::Number(_) | Self::Same(_) | Self::Widths(_))
+    }
+}
+
 impl PartInput {
     /// Every input, in order.
     pub const ALL: [PartInput; PART_INPUTS] = [
@@ -131,6 +139,12 @@ impl PartInput {
             Self::FlangeInertia => ("flange_inertia_kg_m2", 1.0, Absent),
             Self::CouplingStiffness => ("coupling_stiffness_nm_per_rad", 1.0, Absent),
         }
+    }
+
+    /// Whether it is one of the torsional train's parts, without which nothing is missing.
+    #[must_use]
+    pub const fn is_of_train(self) -> bool {
+        matches!(self.row().2, Substitute::Absent)
     }
 
     /// Name as in a drive file.

@@ -359,6 +359,7 @@ impl Wide for TaskWork<'_> {
             let status = &mut self.task.status[from..to];
             self.stages
                 .evaluate(rows, fill, self.wanted, self.scratch, status);
+            self.study.train_block(rows, status);
             if !self.study.limits.is_empty() {
                 self.study.limit_block(self.scratch, rows, status);
             }

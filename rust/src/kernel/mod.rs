@@ -11,6 +11,7 @@ mod packed;
 mod shaft_plan;
 mod stages;
 mod study;
+mod train;
 
 pub use columns::{Source, Target};
 pub use evaluate::Columns;

@@ -238,7 +238,7 @@ impl Study {
             self.space.fill(number, Rows::At(&[variant]), &mut value);
             inputs.set(axis.input, value[0] * factor(axis.input));
         }
-        explained(&inputs, &self.kinds)
+        explained(&inputs, &self.kinds).or_else(|| self.explain_train(variant))
     }
 }
 
