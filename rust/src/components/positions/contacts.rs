@@ -307,6 +307,12 @@ impl Pins {
             .map(move |((x, y), gap)| ([Vector::new(simd, *x), Vector::new(simd, *y)], *gap))
     }
 
+    /// The gap of every hole; none where they differ.
+    pub(crate) fn even_gap(&self) -> Option<f64> {
+        let first = *self.gap.first()?;
+        self.gap.iter().all(|gap| *gap == first).then_some(first)
+    }
+
     /// Sums over the contacts under a disc's motion against the flange: rotation times R_OP, x and
     /// y (m).
     #[inline(always)]

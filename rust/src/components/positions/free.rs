@@ -12,7 +12,7 @@ use crate::components::positions::vector::Vector;
 const HALVINGS: usize = 50;
 
 /// Turn of the flange (m at R_OP) between the first contacts of a disc in either sense, without
-/// load: the least one of the discs. The eccentric's bearing is in its middle, or where ring pins
+/// load: the least one of the discs. The eccentric's bearing is in its middle, or where contacts
 /// that interfere push it to.
 #[inline(always)]
 pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
@@ -23,8 +23,10 @@ pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
     let mut ends = [never; 2];
     for disc in 0..mechanism.discs {
         let ring = &loaded.rings[disc];
+        let pushed = pushed_by_interference(loaded, disc);
+        let is_pushed = pushed.above(zero).or((-pushed).above(zero)).any();
         let mut turn = [never; 2];
-        if ring.is_uniform() {
+        if ring.is_uniform() && !is_pushed {
             let mut fastest = [zero; 2];
             for ([_, y], _) in ring.rows(simd) {
                 fastest = [fastest[0].max(-y), fastest[1].max(y)];
@@ -32,18 +34,17 @@ pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
             let gap = Vector::splat(simd, mechanism.ring_gap.max(0.0));
             turn = [gap / (fastest[0] * lever), gap / (fastest[1] * lever)];
         } else {
-            for ([_, y], gap) in ring.rows(simd) {
-                let there = gap.max(zero) / (y.abs() * lever);
-                let ahead = y.above(zero);
-                turn[0] = ahead.select(turn[0], turn[0].min(there));
+            for ([x, y], gap) in ring.rows(simd) {
+                let there = (gap + x * pushed).max(zero) / (y.abs() * lever);
+                let (ahead, behind) = (y.above(zero), (-y).above(zero));
+                turn[0] = behind.select(turn[0].min(there), turn[0]);
                 turn[1] = ahead.select(turn[1].min(there), turn[1]);
             }
         }
         let mut ahead = [never; 2];
-        let pushed = pushed_by_the_ring(loaded, disc);
         for ([x, _], gap) in loaded.pins[disc].rows(simd) {
             // |(e + p, 0) + s t| = e + c in both senses of s, with the disc pushed by p.
-            let gap = Vector::splat(simd, gap.max(0.0));
+            let gap = Vector::splat(simd, gap);
             let along = x * (pushed + e);
             let left = (gap - pushed).max(zero) * (gap + pushed + 2.0 * e);
             let root = (along * along + left).sqrt();
@@ -56,32 +57,41 @@ pub(crate) fn backlash<S: Simd>(loaded: &Loaded<'_, S>) -> Vector<S> {
     ends[0] + ends[1]
 }
 
-/// Shift (m) of a disc along its eccentricity at which the bearing holds ring pins that interfere;
-/// zero where none does.
+/// Shift (m) of a disc along its eccentricity at which ring, holes and bearing balance without
+/// load; zero where nothing interferes. Where gaps of holes differ, a hole that interferes is
+/// relieved by the disc's turn instead and does not push.
 #[inline(always)]
-fn pushed_by_the_ring<S: Simd>(loaded: &Loaded<'_, S>, disc: usize) -> Vector<S> {
+fn pushed_by_interference<S: Simd>(loaded: &Loaded<'_, S>, disc: usize) -> Vector<S> {
     let (simd, mechanism) = (loaded.simd, loaded.mechanism);
     let zero = Vector::zero(simd);
     let ring = &loaded.rings[disc];
-    if ring.is_uniform() && mechanism.ring_gap >= 0.0 {
-        return zero;
-    }
-    let mut deepest = zero;
-    for (_, gap) in ring.rows(simd) {
-        deepest = deepest.max(-gap);
+    let holes = &loaded.pins[disc];
+    let even_gap = holes.even_gap();
+    let mut deepest = Vector::splat(simd, (-even_gap.unwrap_or(0.0)).max(0.0));
+    if !ring.is_uniform() || mechanism.ring_gap < 0.0 {
+        for (_, gap) in ring.rows(simd) {
+            deepest = deepest.max(-gap);
+        }
     }
     if !deepest.above(zero).any() {
         return zero;
     }
     let mut laws = Power::<S, 3>::new(simd, PowerLaws::of(mechanism));
-    // The farther it is pushed, the more the bearing holds and the less the ring pushes.
+    // The farther it is pushed, the more the bearing and the holes hold and the less the ring does.
     let mut high = deepest * 4.0 + mechanism.bearing_clearance;
     let mut low = -high;
     for _ in 0..HALVINGS {
         let middle = (low + high) * 0.5;
         let of_ring = ring.sums(simd, &mut laws, disc, [middle, zero], &mut Nobody);
         let ([of_bearing, _], _) = bearing(simd, mechanism, [middle, zero]);
-        let beyond = (of_ring.gradient[0] + of_bearing).above(zero);
+        let mut pull = of_ring.gradient[0] + of_bearing;
+        if even_gap.is_some() {
+            let motion = [zero, middle, zero];
+            let e = mechanism.eccentricity;
+            let of_holes = holes.sums(simd, &mut laws, disc, e, motion, &mut Nobody);
+            pull += of_holes.gradient[1];
+        }
+        let beyond = pull.above(zero);
         high = beyond.select(middle, high);
         low = beyond.select(low, middle);
     }
