@@ -38,9 +38,10 @@ WHOLE = frozenset(name for name, whole, _ in _core.input_table() if whole)
 """Inputs that take whole numbers only."""
 
 OPTIONAL = frozenset(
-    [name for name, _, optional in _core.input_table() if optional] + list(PART_DEFAULTS)
+    [name for name, _, optional in _core.input_table() if optional]
+    + [name for name, (kind, *_) in PART_DEFAULTS.items() if kind in ("required", "absent")]
 )
-"""Inputs that may be left out."""
+"""Inputs that a variant may leave out; no number is assumed instead of them."""
 
 # Counts have at most three digits: a longer range is not one of whole numbers.
 _LONGEST_COUNT = 2**16

@@ -53,6 +53,12 @@ pub enum PartError {
         /// Its name.
         name: &'static str,
     },
+    /// A variant leaves out an input for which a drive has an assumed number.
+    #[error("{name} is not a finite number")]
+    NoNumber {
+        /// Its name.
+        name: &'static str,
+    },
     /// An input is outside what its part can have.
     #[error("{name} is {value}, expected {expected}")]
     OutOfRange {
@@ -102,7 +108,8 @@ pub enum PartError {
 }
 
 impl PartError {
-    /// The words under which a sweep files these reasons, in the order of [`PartError::code`].
+    /// The words under which a sweep files these reasons, in the order of [`PartError::code`]. What is
+    /// no number has the published model's word.
     pub const LABELS: [&'static str; 6] = [
         "component_input_missing",
         "component_input_out_of_range",
@@ -112,16 +119,17 @@ impl PartError {
         "holes_break_profile",
     ];
 
-    /// Place of its word.
+    /// Place of its word; none where the published model has one.
     #[must_use]
-    pub const fn code(&self) -> usize {
+    pub const fn code(&self) -> Option<usize> {
         match self {
-            Self::Missing { .. } => 0,
-            Self::OutOfRange { .. } => 1,
-            Self::RingPinsOverlap { .. } => 2,
-            Self::Undercut { .. } => 3,
-            Self::Length { .. } => 4,
-            Self::HolesBreakProfile { .. } => 5,
+            Self::NoNumber { .. } => None,
+            Self::Missing { .. } => Some(0),
+            Self::OutOfRange { .. } => Some(1),
+            Self::RingPinsOverlap { .. } => Some(2),
+            Self::Undercut { .. } => Some(3),
+            Self::Length { .. } => Some(4),
+            Self::HolesBreakProfile { .. } => Some(5),
         }
     }
 }

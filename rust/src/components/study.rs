@@ -164,7 +164,10 @@ impl PartStudy {
     ) -> u8 {
         let parts = match self.parts(inputs, row) {
             Ok(parts) => parts,
-            Err(error) => return (PART_STATUS + error.code()) as u8,
+            Err(error) => {
+                let of_parts = |code| (PART_STATUS + code) as u8;
+                return error.code().map_or(Status::NonFiniteInput as u8, of_parts);
+            }
         };
         *found = Turn {
             parts: &parts,
@@ -187,13 +190,23 @@ impl PartStudy {
         let (mut scalars, mut values) = (inputs.base, self.values);
         for (input, column) in &inputs.varying {
             if let Some(part) = input.checked_sub(PARTS_AT) {
+                let (name, _, default) = PartInput::ALL[part].row();
+                if column[row].is_nan() && default.is_assumed() {
+                    return Err(PartError::NoNumber { name });
+                }
                 values[part] = column[row];
             } else if *input < SCALARS {
                 scalars[*input] = column[row];
             }
         }
+        // A stiffness that is given stands for the whole drive; without segments there is no shaft.
+        let is_given = !scalars[Input::OutputStiffness as usize].is_nan();
         let shaft = inputs.shaft[row];
-        let shaft = if shaft.is_nan() { 0.0 } else { shaft };
+        let shaft = if is_given || shaft.is_nan() {
+            0.0
+        } else {
+            shaft
+        };
         Parts::of(&scalars, &values, &self.fixed, shaft)
     }
 
