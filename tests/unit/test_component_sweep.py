@@ -14,11 +14,11 @@ from cyclosweep.design.part_units import PART_INPUTS, PART_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS
 from cyclosweep.sweep.size import estimate
 
-
 ASSUMED = [
     name for name, (kind, *_) in PART_DEFAULTS.items() if kind in ("number", "same", "widths")
 ]
 """Inputs of the component model for which a drive file that leaves them out has a number."""
+
 
 @pytest.fixture(scope="module")
 def drive() -> cs.Drive:

@@ -180,3 +180,19 @@ def test_a_percentile_beyond_100_is_named_as_it_was_given(
     options = ["--maximise", "hole_web_mm", "--tolerances", TOLERANCES, "--percentile", "120"]
     assert run(monkeypatch, "robust", "reference-87", *options) == 2
     assert "percentile: found 120, expected 0 to 100" in capsys.readouterr().err
+
+
+def test_a_result_that_no_variant_has_says_nothing_of_the_draws(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("SALib")
+    cs.Drive.reference_87().replace(input_inertia_kg_m2=None).to_toml(folder / "drive.toml")
+    asked = ["--results", "natural_frequency_hz,hole_web_mm", "--most-draws", "64"]
+    for highest, is_said in ((0.7, False), (1.0, True)):
+        study = f'drive = "drive.toml"\n{STUDY}'.replace("to = 1.0", f"to = {highest}")
+        Path("study.toml").write_text(study)
+        assert run(monkeypatch, "sensitivity", "study.toml", *asked) == 0
+        out = " ".join(capsys.readouterr().out.split())
+        assert "natural_frequency_hz no variant has it" in out
+        assert ("of the draws a variant cannot be built or has no hole_web_mm" in out) is is_said
+        assert "100%" not in out

@@ -95,13 +95,23 @@ def _totals(table: pl.DataFrame) -> pl.DataFrame:
 
     named = pl.format("{} {}", "input", pl.col("total").round(2))
     matters = pl.col("total") >= LEAST_SHOWN
+    driven_by = (
+        pl.when(pl.col("named") != "")
+        .then("named")
+        .when(pl.col("share_used") == 0.0)
+        .then(pl.lit("no variant has it"))
+        .otherwise(pl.lit("does not vary"))
+    )
     return (
         table.sort("total", descending=True, maintain_order=True)
         .group_by("result", maintain_order=True)
-        .agg(named.filter(matters).str.join(", ").alias("driven by"), pl.col("draws").first())
+        .agg(
+            named.filter(matters).str.join(", ").alias("named"),
+            pl.col("draws", "share_used").first(),
+        )
         .join(table.select("result").unique(maintain_order=True).with_row_index(), on="result")
         .sort("index")
-        .select("result", pl.col("driven by").replace("", "does not vary"), "draws")
+        .select("result", driven_by.alias("driven by"), "draws")
     )
 
 
@@ -129,11 +139,12 @@ def _say_what_is_open(table: pl.DataFrame, half_width: float) -> None:
             f"half-width above {half_width:g} after the most draws: {', '.join(wide)}; "
             "--most-draws allows more"
         )
-    used = table["share_used"].min()
-    assert isinstance(used, float)
-    if used < FEW_USED:
-        print(
-            f"in {1 - used:.0%} of the draws a variant cannot be built; these are left out, and "
-            "the indices are those of what is left, where the inputs are not independent: "
-            "narrower ranges say more"
-        )
+    # A result that no variant has is said to be absent in the table.
+    there = table.filter(pl.col("share_used") > 0.0).sort("share_used", maintain_order=True)
+    for name, used in there.select("result", "share_used").head(1).iter_rows():
+        if used < FEW_USED:
+            print(
+                f"in {1 - used:.0%} of the draws a variant cannot be built or has no {name}; these "
+                "are left out, and the indices are those of what is left, where the inputs are "
+                "not independent: narrower ranges say more"
+            )
