@@ -357,7 +357,7 @@ def test_one_clear_line_for_what_is_wrong(
     ("content", "words"),
     [
         ("eccentricity\n0.5\n", ("variants.csv", "eccentricity", "did you mean")),
-        ("eccentricity_mm\nhalf\n", ("variants.csv", "eccentricity_mm", "numbers")),
+        ("eccentricity_mm\nhalf\n", ("variants.csv", "row 2, eccentricity_mm", "a number")),
         ("", ("variants.csv",)),
         ("criterion\ninner\n", ("variants.csv", "criterion", "'inner'")),
     ],

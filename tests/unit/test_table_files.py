@@ -57,6 +57,7 @@ def test_semicolons_decimal_commas_and_the_encoding_of_windows(tmp_path: Path) -
     [
         ("a.csv", b"", "empty"),
         ("a.csv", b"a,b\n1,2\n1,2,3\n", "row 3: found 3 cells, expected 2"),
+        ("a.csv", b"a,b\n1,2\n\n1\n", "row 4: found 1 cells, expected 2"),
         ("a.csv", b"a,a\n1,2\n", "the column a twice"),
         ("a.csv.gz", b"\x1f\x8b broken", "damaged"),
         ("a.xlsx", b"a,b\n", "not a workbook"),
@@ -88,3 +89,25 @@ def test_what_cannot_be_written_is_refused_and_leaves_the_file(tmp_path: Path) -
     with pytest.raises(cs.InputError, match="at most 1,048,575 for Excel"):
         write_table(pl.select(x=pl.int_range(0, 2**20)), path)
     assert path.read_text() == "before"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "eccentricity_mm,output_pin_count\n0.5,8\n\n0.6,x\n",
+            "row 4, output_pin_count: found 'x'",
+        ),
+        ("eccentricity_mm,criterion\n0.5,insid\n", "row 2, criterion: found 'insid', expected one"),
+        ("eccentricity_mm,output_pin_count\n0.5,8\n0.6\n", "row 3: found 1 cells, expected 2"),
+        ("eccentricity_mm,output_pin_count\n", "no rows below the header"),
+    ],
+)
+def test_a_study_names_the_row_of_its_table(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "variants.csv").write_text(text)
+    study = tmp_path / "study.toml"
+    study.write_text('[sample]\nmethod = "table"\nfile = "variants.csv"\n')
+    with pytest.raises(cs.InputError) as caught:
+        cs.Study.from_toml(study)
+    assert f"{tmp_path / 'variants.csv'}" in str(caught.value)
+    assert message in str(caught.value)

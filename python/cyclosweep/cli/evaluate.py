@@ -40,7 +40,7 @@ def evaluate(
 
     from cyclosweep.design.drive import Drive
     from cyclosweep.sweep.design_table import evaluate_table
-    from cyclosweep.sweep.table_files import read_table, row_in_file, write_table
+    from cyclosweep.sweep.table_files import read_filled_rows, write_table
 
     check_out(out, designs)
     loads_tn = None if loads is None else _loads(loads)
@@ -51,19 +51,16 @@ def evaluate(
             names = [name for name, value in one.values().items() if value == value]
             row = {name: [getattr(one, name)] for name in names if not name.startswith("shaft_")}
             base, table = one, pl.DataFrame({"name": [one.name], **row})
-            rows = list(range(1))
+            rows = ["row 2"]
         else:
             base = Drive.load(drive)
-            table = read_table(designs, keep_blank_rows=True)
-            filled = ~table.select(pl.all_horizontal(pl.all().is_null())).to_series()
-            rows = [k for k, is_filled in enumerate(filled) if is_filled]
-            table = table.filter(filled)
+            table, rows = read_filled_rows(designs)
         found = evaluate_table(
             base,
             table,
             model=model,
             loads_tn=loads_tn,
-            row_name=lambda index: f"row {row_in_file(designs, rows[index])}",
+            row_name=lambda index: rows[index],
         )
     except InputError as error:
         text = str(error)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +27,7 @@ __all__ = [
     "Axis",
     "Linspace",
     "criterion_codes",
+    "input_column",
     "is_count",
     "known_input",
     "linspace",
@@ -218,6 +219,50 @@ def criterion_codes(values: Iterable[object]) -> list[float]:
     for value in values:
         codes.append(float(CRITERIA.index(one_of("criterion", str(value), CRITERIA))))
     return codes
+
+
+def input_column(
+    column: pl.Series, row_name: Callable[[int], str] = lambda index: f"row {index}"
+) -> pl.Series:
+    """Return the values of an input, a row each.
+
+    Parameters
+    ----------
+    column : polars.Series
+        Cells, named as the input: numbers, texts that are numbers, or names of criteria.
+    row_name : callable
+        What a message calls a row, counted from 0.
+
+    Returns
+    -------
+    polars.Series
+        Numbers, null where a cell is empty; names of criteria as they were.
+
+    Raises
+    ------
+    InputError
+        For the first cell that is none.
+    """
+    words = CRITERIA if column.name == "criterion" else None
+    if words is None and column.dtype.is_numeric():
+        return column
+    for index, cell in enumerate(column):
+        is_right = cell in words if words is not None else _is_number(cell)
+        if not is_right:
+            expected = f"one of {', '.join(words)}" if words is not None else "a number"
+            raise InputError(
+                f"{row_name(index)}, {column.name}: found {cell!r}, expected {expected}"
+            )
+    return column if words is not None else column.cast(pl.Float64)
+
+
+def _is_number(cell: object) -> bool:
+    if cell is None or (isinstance(cell, (int, float)) and not isinstance(cell, bool)):
+        return True
+    try:
+        return isinstance(cell, str) and math.isfinite(float(cell))
+    except ValueError:
+        return False
 
 
 def listed_axis(drive: Drive, name: str, values: object) -> Axis:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import difflib
 import logging
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
-from cyclosweep.design.active_pins import CRITERIA
 from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError, instance_of
 from cyclosweep.sweep.any_table import as_frame
+from cyclosweep.sweep.axes import input_column
 from cyclosweep.sweep.rows import frame
 from cyclosweep.sweep.space import Space
 from cyclosweep.sweep.study import Limits, Study, StudyModel
@@ -80,7 +79,7 @@ def evaluate_table(
     inputs = _inputs(drive, rows)
     if not inputs:
         raise InputError("table: no column is an input of a drive, expected at least one")
-    designs = pl.DataFrame([_numbers(rows[name], row_name) for name in inputs])
+    designs = pl.DataFrame([input_column(rows[name], row_name) for name in inputs])
     study = Study.of(
         Space.table(drive, designs),
         loads_tn=loads_tn,
@@ -122,30 +121,6 @@ def _inputs(drive: Drive, rows: pl.DataFrame) -> list[str]:
         else:
             logger.warning("%s: no input of a drive, passed through as a label", name)
     return found
-
-
-def _numbers(column: pl.Series, row_name: Callable[[int], str]) -> pl.Series:
-    """Values of an input; InputError for the first cell that is none."""
-    words = CRITERIA if column.name == "criterion" else None
-    if words is None and column.dtype.is_numeric():
-        return column
-    for index, cell in enumerate(column):
-        is_right = cell in words if words is not None else _is_number(cell)
-        if not is_right:
-            expected = f"one of {', '.join(words)}" if words is not None else "a number"
-            raise InputError(
-                f"{row_name(index)}, {column.name}: found {cell!r}, expected {expected}"
-            )
-    return column if words is not None else column.cast(pl.Float64)
-
-
-def _is_number(cell: object) -> bool:
-    if cell is None or (isinstance(cell, (int, float)) and not isinstance(cell, bool)):
-        return True
-    try:
-        return isinstance(cell, str) and math.isfinite(float(cell))
-    except ValueError:
-        return False
 
 
 def _reasons(study: Study, statuses: pl.Series) -> pl.Series:

@@ -5,19 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
+import polars as pl
 from pydantic import Field, ValidationError
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.toml_files import TomlTable, one_line, read_as, read_toml
 from cyclosweep.errors import InputError
 from cyclosweep.plugins import Column
-from cyclosweep.sweep.axes import Linspace, is_count
+from cyclosweep.sweep.axes import Linspace, input_column, is_count, known_input
 from cyclosweep.sweep.derived import check_new_name
 from cyclosweep.sweep.distributions import distribution_from
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.space import Method, Space
 from cyclosweep.sweep.study_checks import check_parts
-from cyclosweep.sweep.table_files import read_table
+from cyclosweep.sweep.table_files import read_filled_rows
 
 __all__ = ["StudyFile", "read_study_file"]
 
@@ -148,9 +149,15 @@ class StudyFile(TomlTable):
         if self.axes:
             raise InputError("axes: not with method table, whose columns are the axes")
         path = folder / self.sample.file
-        frame = read_table(path)
+        frame, rows = read_filled_rows(path)
+        if not rows:
+            raise InputError(f"{path}: no rows below the header, expected at least one")
         try:
-            return Space.table(drive, frame)
+            columns = [
+                input_column(column.alias(known_input(drive, column.name)), lambda k: rows[k])
+                for column in frame.get_columns()
+            ]
+            return Space.table(drive, pl.DataFrame(columns))
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
 

@@ -17,6 +17,7 @@ from cyclosweep.errors import InputError
 __all__ = [
     "MOST_EXCEL_ROWS",
     "is_table_name",
+    "read_filled_rows",
     "read_table",
     "row_in_file",
     "writable",
@@ -76,6 +77,32 @@ def read_table(path: str | Path, *, keep_blank_rows: bool = False) -> pl.DataFra
     if not keep_blank_rows:
         text = text.filter(~pl.all_horizontal(pl.all().is_null()))
     return text.select(_typed(column) for column in text.get_columns())
+
+
+def read_filled_rows(path: str | Path) -> tuple[pl.DataFrame, list[str]]:
+    """Read a table, and what a message calls each of its rows.
+
+    Parameters
+    ----------
+    path : str or Path
+        As for :func:`read_table`.
+
+    Returns
+    -------
+    polars.DataFrame
+        Without rows that have no filled cell.
+    list of str
+        Its rows as they count in the file.
+
+    Raises
+    ------
+    InputError
+        As for :func:`read_table`.
+    """
+    table = read_table(path, keep_blank_rows=True)
+    filled = ~table.select(pl.all_horizontal(pl.all().is_null())).to_series()
+    rows = [f"row {row_in_file(path, k)}" for k, is_filled in enumerate(filled) if is_filled]
+    return table.filter(filled), rows
 
 
 def write_table(frame: pl.DataFrame, path: str | Path) -> None:
@@ -205,7 +232,7 @@ def _text(path: Path) -> pl.DataFrame:
     names = next(row for row in rows if row)
     _refuse_repeated(path, names)
     for row in rows:
-        if len(row) > len(names):
+        if len(row) != len(names) and "".join(row).strip():
             raise InputError(
                 f"{path}, row {rows.line_num}: found {len(row)} cells, expected {len(names)}"
             )
