@@ -89,3 +89,24 @@ def test_what_is_no_study_is_refused(tmp_path: Path, space: cs.Space) -> None:
     path.write_text('{"drive": {}}', encoding="utf-8")
     with pytest.raises(cs.InputError, match="manifest is damaged"):
         cs.open_study(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [(None, "missing"), ("{", "holds no JSON object"), ("[1]", "holds no JSON object")],
+)
+def test_a_study_without_its_manifest_names_the_file(
+    tmp_path: Path, content: str | None, found: str
+) -> None:
+    space = cs.Space.grid(cs.Drive.reference_87(), output_pin_count=[6, 8])
+    cs.sink(space, tmp_path)
+    manifest = tmp_path / "_manifest.json"
+    manifest.unlink()
+    if content is not None:
+        manifest.write_text(content)
+    with pytest.raises(cs.InputError) as caught:
+        cs.open_study(tmp_path)
+    assert str(caught.value).startswith(f"{manifest}: {found}, expected")
+    assert "\n" not in str(caught.value)
+    cs.sink(space, tmp_path)
+    assert cs.open_study(tmp_path).rows == 2

@@ -19,7 +19,7 @@ from cyclosweep.design.inputs import DriveInputs
 from cyclosweep.design.numbers import whole_number
 from cyclosweep.design.parts import Engine
 from cyclosweep.errors import InputError, path_of
-from cyclosweep.sweep.dataset_files import parts_of, read_footer, read_manifest
+from cyclosweep.sweep.dataset_files import MANIFEST, parts_of, read_footer, read_manifest
 from cyclosweep.sweep.objective import Objective
 from cyclosweep.sweep.study import StudyModel
 from cyclosweep.sweep.summary import PartSummary, Summary, merge
@@ -224,9 +224,15 @@ def open_study(folder: str | Path) -> StoredStudy:
         found = "is a file" if folder.exists() else "no such folder"
         raise InputError(f"{folder}: {found}, expected the folder of a study")
     manifest = read_manifest(folder)
+    parts = parts_of(folder)
+    if manifest is None and (parts or (folder / MANIFEST).exists()):
+        found = "holds no JSON object" if (folder / MANIFEST).exists() else "missing"
+        raise InputError(
+            f"{folder / MANIFEST}: {found}, expected a study's manifest; sweeping the study again "
+            "into this folder writes it and keeps its parts"
+        )
     if manifest is None:
         raise InputError(f"{folder}: no study there, expected a folder that a sweep was written to")
-    parts = parts_of(folder)
     if not parts:
         raise InputError(f"{folder}: no part of the study is there yet, expected at least one")
     try:
