@@ -132,6 +132,13 @@ def test_an_infeasible_variant_is_written_with_its_status_said(made: Path, tmp_p
     assert row["status"] in result.stderr
 
 
+def test_a_variant_below_zero_is_no_unknown_option(made: Path, tmp_path: Path) -> None:
+    refused = run("pick", "studie ü", "-12", "--out", str(tmp_path / "x.toml"), cwd=made)
+    assert refused.returncode == 2
+    assert "found -12, expected a number that is not below zero" in refused.stderr
+    assert refused.stderr.count("\n") == 1
+
+
 @pytest.mark.parametrize("kind", ["drive", "study", "recording", "event"])
 def test_templates_run_as_they_are(kind: str, tmp_path: Path) -> None:
     made = run("new", kind, "--out", f"{kind}.toml", cwd=tmp_path)

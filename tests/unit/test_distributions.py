@@ -256,3 +256,13 @@ def test_a_larger_sample_for_sobol_indices_keeps_the_smaller_one() -> None:
     first = cs.sweep(small).head(4)
     assert first["eccentricity_mm"].to_list()[1] == first["eccentricity_mm"].to_list()[3]
     assert isinstance(cs.scan(large).collect(), pl.DataFrame)
+
+
+def test_tolerances_of_no_input_are_refused_where_they_are_made() -> None:
+    for name in ("eccentricty_mm", "shaft_1_height_mm"):
+        with pytest.raises(cs.InputError, match=rf"tolerances\.{name}: no such input of a drive"):
+            cs.Tolerances({name: 0.01})
+        with pytest.raises(cs.InputError, match=rf"tolerances\.{name}: no such input of a drive"):
+            cs.Tolerances({}, {name: 0.01})
+    for name in ("eccentricity_mm", "hole_clearance_mm", "shaft_12_diameter_mm"):
+        assert cs.Tolerances({name: 0.01}).names == (name,)

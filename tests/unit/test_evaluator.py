@@ -88,3 +88,11 @@ def test_several_designs_are_no_drive() -> None:
     web = cs.Evaluator(DRIVE, ["eccentricity_mm"], "hole_web_mm")
     with pytest.raises(cs.InputError, match="2 designs, expected one"):
         web.drive_at([[0.6], [0.7]])
+
+
+def test_no_designs_are_said_to_be_none() -> None:
+    web = cs.Evaluator(cs.Drive.reference_87(), ["eccentricity_mm"], "hole_web_mm")
+    with pytest.raises(
+        cs.InputError, match=r"x: found no designs, shape \(0, 1\), expected at least"
+    ):
+        web(np.empty((0, 1)))

@@ -117,6 +117,30 @@ def test_a_sweep_has_the_column_and_the_constraint(washers: Path) -> None:
     assert cs.scan(space).filter(pl.col("output_pin_mass_kg") > 1).collect().height == 0
 
 
+@pytest.mark.usefixtures("washers")
+def test_a_misspelt_need_is_refused_and_one_of_other_studies_leaves_the_column_out() -> None:
+    space = cs.Space.grid(cs.Drive.reference_87(), output_pin_count=[6, 12])
+
+    def zero(rows: pl.DataFrame) -> pl.Series:
+        return pl.Series([0.0] * rows.height)
+
+    for needs in (
+        ["twist_9tn_deg"],
+        ["loaded_twist_arcmin"],
+        ["rim_of_mine"],
+        ["shaft_9_length_mm"],
+    ):
+        plugins.COLUMNS["own"] = plugins.Column(zero, needs=needs)
+        assert "own" not in cs.sweep(space).columns
+    plugins.COLUMNS["own"] = plugins.Column(zero, needs=["output_pin_cout"])
+    with pytest.raises(cs.InputError) as caught:
+        cs.sweep(space)
+    assert str(caught.value) == (
+        "--plugin: column own needs output_pin_cout, which is no input or result, did you mean "
+        "output_pin_count?"
+    )
+
+
 @pytest.mark.parametrize("module", ["nowhere.py", "no_such_module_of_mine"])
 def test_a_plugin_that_is_not_there_is_one_line(module: str, tmp_path: Path) -> None:
     done = run("simulate", "reference-87", "a.csv", "--plugin", module, "--out", "b.csv",

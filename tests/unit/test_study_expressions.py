@@ -71,6 +71,8 @@ def test_a_derived_value_that_is_none_is_a_status() -> None:
         ({"disc_outer_radius_mm": "70 - ring_pin_radius_mm"}, "has no ring_pin_radius_mm"),
         ({"disc_outer_radius_mm": "hole_web_mm"}, "no column hole_web_mm"),
         ({"criterion": "inside"}, "derived.criterion"),
+        ({"bush_wall_mm": "true"}, "bush_wall_mm: found 'true', which is no number"),
+        ({"bush_wall_mm": "eccentricity_mm > 0.4"}, "which is no number, expected one"),
         ({"disc_outer_radius_mm": "criterion"}, "is no number"),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import sys
 from typing import Annotated, NoReturn, cast
 
@@ -143,6 +144,15 @@ def _end_without_reader() -> NoReturn:
     sys.exit(READER_ENDED)
 
 
+def _usage_message(error: Exception) -> str:
+    """What is wrong with the arguments; a number below zero is no unknown option."""
+    option = str(getattr(error, "option_name", ""))
+    if re.fullmatch(r"-\d", option):
+        given = next(each for each in sys.argv[1:] if each.startswith(option))
+        return f"found {given}, expected a number that is not below zero"
+    return str(getattr(error, "format_message", error.__str__)())
+
+
 def main() -> None:
     """Run the command line; every error is one line and an exit status."""
     survive_encoding()
@@ -152,7 +162,7 @@ def main() -> None:
         status = app(args=arguments or ["--help"], standalone_mode=False)
         sys.stdout.flush()
     except _UsageError as error:
-        message = getattr(error, "format_message", error.__str__)()
+        message = _usage_message(error)
         fail(f"{' '.join(message.split()).rstrip('.')}; see --help", 2)
     except typer.Abort:
         fail("interrupted", INTERRUPTED)

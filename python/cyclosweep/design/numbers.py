@@ -9,7 +9,11 @@ import numpy as np
 
 from cyclosweep.errors import InputError
 
-__all__ = ["checked_loads", "finite_number", "plain", "real_numbers", "whole_number"]
+__all__ = ["LOADS_TN", "checked_loads", "finite_number", "plain", "real_numbers", "whole_number"]
+
+
+LOADS_TN = (1e-6, 1e6)
+"""Least and greatest load [nominal torques] of a twist."""
 
 
 def plain(value: object) -> object:
@@ -154,7 +158,7 @@ def checked_loads(values: object, *, allow_zero: bool = False) -> tuple[float, .
     Raises
     ------
     InputError
-        For what is no number, NaN, an infinite load or, without `allow_zero`, zero.
+        For what is no number, NaN, a load beyond :data:`LOADS_TN` or, without `allow_zero`, zero.
 
     Examples
     --------
@@ -169,5 +173,10 @@ def checked_loads(values: object, *, allow_zero: bool = False) -> tuple[float, .
             raise InputError(
                 f"loads_tn: found {load:g}, expected loads above zero, or below zero for the "
                 "other direction"
+            )
+        if load != 0 and not LOADS_TN[0] <= abs(load) <= LOADS_TN[1]:
+            raise InputError(
+                f"loads_tn: found {load:g}, expected nominal torques from {LOADS_TN[0]:g} to "
+                f"{LOADS_TN[1]:g}"
             )
     return tuple(load + 0.0 for load in numbers)  # -0.0 and 0.0 are one load

@@ -13,7 +13,7 @@ from cyclosweep.design.part_units import (
     Quantity,
 )
 
-__all__ = ["INPUTS", "OUTPUTS", "Quantity", "quantity", "twist_column"]
+__all__ = ["INPUTS", "OUTPUTS", "Quantity", "is_input", "is_quantity", "quantity", "twist_column"]
 
 
 INPUTS: dict[str, Quantity] = {
@@ -184,3 +184,18 @@ def quantity(name: str) -> Quantity:
         "variant": Quantity("", "1", "number of the variant within its study"),
         "status": Quantity("", "1", "ok, or why the variant cannot be built"),
     }[name]
+
+
+def is_quantity(name: str) -> bool:
+    """Whether a name is that of an input or result of any drive."""
+    try:
+        quantity(name)
+    except KeyError:
+        return False
+    return True
+
+
+def is_input(name: str) -> bool:
+    """Whether a name is that of an input of any drive, however many segments its shaft has."""
+    is_of_shaft = name.startswith("shaft_") and name not in OUTPUTS
+    return name in INPUTS or name in PART_INPUTS or (is_of_shaft and is_quantity(name))

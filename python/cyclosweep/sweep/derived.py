@@ -90,7 +90,8 @@ def derivations(
         for other in names_in(texts[name]):
             if other in drive.every_input() and other not in known:
                 raise InputError(f"{where}: the drive has no {other}, expected it or an axis")
-        number(texts[name], known, where=where)
+        is_input = name in drive.every_input()
+        number(texts[name], known, where=where, allow_truth=not is_input)
         known[name] = pl.Float64()
     return tuple(Derived(name, texts[name]) for name in order)
 

@@ -179,7 +179,9 @@ class Evaluator:
             raise InputError(f"x: found {x!r}, expected numbers") from None
         single = given.ndim == 1
         designs = given[None, :] if single else given
-        if designs.ndim != 2 or not len(designs) or designs.shape[1] != len(self.inputs):
+        if designs.ndim == 2 and not len(designs):
+            raise InputError(f"x: found no designs, shape {given.shape}, expected at least one")
+        if designs.ndim != 2 or designs.shape[1] != len(self.inputs):
             raise InputError(
                 f"x: found shape {given.shape}, expected ({len(self.inputs)},) or "
                 f"(designs, {len(self.inputs)}): {', '.join(self.inputs)}"

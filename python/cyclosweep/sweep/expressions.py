@@ -94,27 +94,35 @@ def expression(
     return found
 
 
-def number(text: str, columns: Mapping[str, pl.DataType], *, where: str = "expression") -> pl.Expr:
+def number(
+    text: str,
+    columns: Mapping[str, pl.DataType],
+    *,
+    where: str = "expression",
+    allow_truth: bool = True,
+) -> pl.Expr:
     """Read an expression whose value is a number; see :func:`expression`.
 
     Parameters
     ----------
     text, columns, where
         As for :func:`expression`.
+    allow_truth : bool
+        Take true and false for 1 and 0.
 
     Returns
     -------
     polars.Expr
-        Of type Float64; 1 and 0 for true and false.
+        Of type Float64.
 
     Raises
     ------
     InputError
-        As there, and where its value is a text.
+        As there, and where its value is a text or, unless allowed, true or false.
     """
     found = expression(text, columns, where=where)
     dtype = _dtype(found, columns)
-    if not (dtype.is_numeric() or dtype == pl.Boolean()):
+    if not (dtype.is_numeric() or (allow_truth and dtype == pl.Boolean())):
         raise InputError(f"{where}: found {text!r}, which is no number, expected one")
     return found.cast(pl.Float64)
 

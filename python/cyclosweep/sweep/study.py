@@ -19,7 +19,7 @@ from cyclosweep.design.parts import PART_DEFAULTS, TRAIN_INPUTS, Engine
 from cyclosweep.design.units import quantity
 from cyclosweep.errors import InputError, instance_of, naming, one_of
 from cyclosweep.notebook import html_table
-from cyclosweep.plugins import COLUMNS, CONSTRAINTS, Column
+from cyclosweep.plugins import CONSTRAINTS, Column
 from cyclosweep.sweep.derived import check_new_name, fixed_inputs
 from cyclosweep.sweep.expressions import names_in
 from cyclosweep.sweep.extras import Extras, extras_of
@@ -33,6 +33,7 @@ from cyclosweep.sweep.study_checks import (
     checked_bounds,
     checked_objectives,
     checked_solver,
+    registered_columns,
 )
 from cyclosweep.sweep.study_definition import own_definition, part_definition, train_definition
 from cyclosweep.sweep.study_file import read_study_file
@@ -169,7 +170,7 @@ class Study:
             for name, value in {**CONSTRAINTS, **(constraints or {})}.items()
         }
         plain = cls(space, loads, tuple(bounds), aims, kind, engine)
-        own = {**_registered(plain.known, own), **own}
+        own = {**registered_columns(plain.known, own), **own}
         kept = None if keep is None else tuple(dict.fromkeys(keep))
         study = replace(plain, constraints=tests, columns=own, keep=kept, only_ok=only_ok)
         check_limits(limits or {}, {**study.known, **own}, space.varying)
@@ -385,12 +386,6 @@ class Study:
         """SHA-256 of the definition: datasets with the same hash hold the same numbers."""
         text = json.dumps(self.definition(), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _registered(known: Mapping[str, pl.DataType], own: Mapping[str, Column]) -> dict[str, Column]:
-    """Columns of plugins that have in a study what they need."""
-    there = {*known, *COLUMNS, *own}
-    return {name: each for name, each in COLUMNS.items() if there.issuperset(each.needs or ())}
 
 
 _PART_KINDS = dict(_core.part_output_table())

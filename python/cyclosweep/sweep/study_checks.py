@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Container, Iterable, Mapping
 from typing import cast, get_args
@@ -10,8 +11,11 @@ import polars as pl
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import real_numbers
+from cyclosweep.design.part_units import PART_INPUTS, PART_OUTPUTS, TRAIN_OUTPUTS
 from cyclosweep.design.parts import PART_DEFAULTS, Engine
+from cyclosweep.design.units import INPUTS, OUTPUTS, is_quantity
 from cyclosweep.errors import InputError, did_you_mean, instance_of, one_of
+from cyclosweep.plugins import COLUMNS, Column
 from cyclosweep.sweep.expressions import number
 from cyclosweep.sweep.objective import Objective
 
@@ -23,6 +27,7 @@ __all__ = [
     "checked_bounds",
     "checked_objectives",
     "checked_solver",
+    "registered_columns",
 ]
 
 
@@ -113,6 +118,42 @@ def checked_solver(given: object, model: str) -> Engine:
             'model = "components" beside it'
         )
     return cast(Engine, engine)
+
+
+def registered_columns(known: Mapping[str, object], own: Mapping[str, Column]) -> dict[str, Column]:
+    """Columns of plugins that have in a study what they need.
+
+    Parameters
+    ----------
+    known : mapping of str to object
+        Columns of the study and inputs of its drive, by name.
+    own : mapping of str to Column
+        Columns of the study's own.
+
+    Returns
+    -------
+    dict of str to Column
+
+    Raises
+    ------
+    InputError
+        For a need that no study has and whose name is nearly that of an input or result.
+    """
+    there = {*known, *COLUMNS, *own}
+    every = {*there, *INPUTS, *PART_INPUTS, *OUTPUTS, *PART_OUTPUTS, *TRAIN_OUTPUTS}
+    for name, each in COLUMNS.items():
+        unknown = [need for need in each.needs or () if need not in there and not is_quantity(need)]
+        for need in unknown:
+            if meant := difflib.get_close_matches(need, every, n=1, cutoff=_LIKELY):
+                raise InputError(
+                    f"--plugin: column {name} needs {need}, which is no input or result, did you "
+                    f"mean {meant[0]}?"
+                )
+    return {name: each for name, each in COLUMNS.items() if there.issuperset(each.needs or ())}
+
+
+_LIKELY = 0.8
+"""Likeness from which an unknown name is taken for a misspelt one."""
 
 
 def check_parts(drive: Drive, varying: Container[str]) -> None:

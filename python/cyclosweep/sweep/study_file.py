@@ -188,7 +188,11 @@ class StudyFile(TomlTable):
             return distribution_from(f"axes.{name}", spec)
         try:
             if "values" in spec:
-                return list(_Values.model_validate(spec).values)
+                values = _Values.model_validate(spec).values
+                for value in values if is_count(name) else ():
+                    if isinstance(value, float) and not value.is_integer():
+                        raise InputError(f"axes.{name}: found {value:g}, expected whole numbers")
+                return list(values)
             parsed = _Range.model_validate(spec)
         except ValidationError as error:
             raise InputError(f"axes.{name}.{one_line(error, _Range, _Values)}") from None

@@ -15,7 +15,9 @@ import polars as pl
 import cyclosweep._core as _core
 from cyclosweep.design.drive import Drive
 from cyclosweep.design.numbers import whole_number
+from cyclosweep.design.part_units import PART_INPUTS
 from cyclosweep.design.toml_files import read_toml, refuse_other_kind
+from cyclosweep.design.units import INPUTS, is_input
 from cyclosweep.errors import InputError, did_you_mean, naming
 from cyclosweep.sweep.axes import is_count, known_input
 from cyclosweep.sweep.distributions import Distribution, distribution_from, uniform
@@ -56,6 +58,10 @@ class Tolerances:
     def __post_init__(self) -> None:
         inputs = {name: _deviation(name, given) for name, given in self.inputs.items()}
         batches = {name: _deviation(name, given) for name, given in self.batches.items()}
+        for name in (*self.inputs, *self.batches):
+            if not is_input(str(name)):
+                hint = did_you_mean(name, [*INPUTS, *PART_INPUTS])
+                raise InputError(f"tolerances.{name}: no such input of a drive{hint}")
         whole_number("batch_size", self.batch_size, least=1)
         if not inputs and not batches:
             raise InputError("tolerances: none, expected at least one input and its deviation")
