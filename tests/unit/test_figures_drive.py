@@ -207,8 +207,17 @@ def test_nothing_is_cut_whatever_the_drive(
         *random_drives(52, 1, ratio=300, output_pin_count=64, disc_count=2),
         *random_drives(53, 1, disc_count=4, criterion="inside"),
     ]
-    for drive in [reference, *odd]:
+    long = reference.replace(name="catalogue 29:1 with wider pins, third revision of it, batch 12")
+    for drive in [reference, *odd, long]:
         assert cut(draw(drive)) == [], drive
+
+
+def test_a_title_is_broken_only_where_it_would_leave_the_page(reference: cs.Drive) -> None:
+    assert map_figure(reference).axes[0].get_title("left").count("\n") == 0
+    long = reference.replace(name="catalogue 29:1 with wider pins, third revision, batch 12")
+    title = map_figure(long).axes[0].get_title("left")
+    assert title.count("\n") == 1
+    assert title.replace("\n", " ") == f"{long.name}: active pins by {long.criterion}"
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])

@@ -137,7 +137,8 @@ def test_nothing_is_cut(draw: Callable[[cs.Drive], Figure], loaded: cs.Drive) ->
     few = cs.Drive.from_toml(EXAMPLES / "catalogue-29.toml").replace(
         output_pin_count=3, disc_count=1, output_pin_diameter_mm=8.0
     )
-    for drive in (loaded, few):
+    long = loaded.replace(name="catalogue 29:1 with wider pins, third revision of it, batch 12")
+    for drive in (loaded, few, long):
         assert cut(draw(drive)) == [], drive.name
 
 

@@ -129,15 +129,58 @@ def styled(draw: Callable[P, R]) -> Callable[P, R]:
     Returns
     -------
     callable
-        The same; it raises InputError where matplotlib is missing.
+        The same; it raises InputError where matplotlib is missing. Titles and entries of legends
+        that would end beyond the page are broken into lines.
     """
 
     @functools.wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> R:
         with _house():
-            return draw(*args, **kwargs)
+            figure = draw(*args, **kwargs)
+            _keep_on_page(figure)
+            return figure
 
     return drawn
+
+
+def _keep_on_page(figure: Any) -> None:
+    """Break titles and entries of legends into lines where they end beyond the page."""
+    width = figure.bbox.width
+    titles = [title for panel in figure.axes for title in (panel.title, panel._left_title)]
+    titles += [figure._suptitle] if figure._suptitle is not None else []
+    legends = [legend for panel in figure.axes if (legend := panel.get_legend()) is not None]
+    entries = [entry for legend in legends for entry in legend.get_texts()]
+    texts = [(each, each.get_text()) for each in (*titles, *entries)]
+    wide = [item for item in texts if item[0].get_window_extent().width > 0.3 * width]
+    # Panels give way to a legend, down to nothing: what is far too wide is broken beforehand.
+    for text, whole in wide:
+        if text in entries:
+            _break(text, whole, 0.6 * width)
+    # Lines take height, and a panel that keeps its shape then stands elsewhere.
+    for _ in range(_MOST_LAYOUTS if wide else 0):
+        figure.draw_without_rendering()
+        beyond = [item for item in wide if item[0].get_window_extent().x1 > width]
+        if not beyond:
+            return
+        for text, whole in beyond:
+            _break(text, whole, 0.97 * width - text.get_window_extent().x0)
+
+
+_MOST_LAYOUTS = 4
+"""Times that a picture is laid out anew to keep its texts on the page."""
+
+
+def _break(text: Any, whole: str, room: float) -> None:
+    """Break a text into lines no wider than the room [pixels] where there is a blank."""
+    lines: list[str] = []
+    for word in whole.split(" "):
+        longer = f"{lines[-1]} {word}" if lines else word
+        text.set_text(longer)
+        if lines and text.get_window_extent().width > room:
+            lines.append(word)
+        else:
+            lines[-1:] = [longer]
+    text.set_text("\n".join(lines))
 
 
 def _house() -> Any:
