@@ -75,9 +75,14 @@ OUTPUTS: dict[str, Quantity] = {
         "than two discs, where statics do not apply",
     ),
     "statics_applicable": Quantity("", "1", "whether statics hold: at most two discs"),
-    "hole_diameter_mm": Quantity("", "mm", "hole in the disc: pin + 2 bush walls + 2 e"),
+    "hole_diameter_mm": Quantity(
+        "", "mm", "hole in the disc without clearance: pin + 2 bush walls + 2 e"
+    ),
     "hole_web_mm": Quantity(
-        "", "mm", "least material between holes, to the rim at disc_outer_radius_mm and to the bore"
+        "",
+        "mm",
+        "least material between holes without clearance, to the rim at disc_outer_radius_mm and "
+        "to the bore",
     ),
     "short_width_coefficient": Quantity("K1", "1", "e (i + 1) / R, below 1"),
     "nominal_torque_nm": Quantity("T_N", "N m", "nominal input torque P / omega"),
