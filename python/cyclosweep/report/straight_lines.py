@@ -33,7 +33,8 @@ class LoopLines:
     compliance_deg_per_nm : float
         Mean slope of both lines [deg/(N m)].
     friction_nm : float
-        Half the width of the loop in torque at equal angle, on the flanks and between [N m].
+        Half the width of the loop in torque at equal angle, on the same parts of both flanks
+        [N m]. Below them friction still builds up in the first loading from zero.
     """
 
     run: int
@@ -137,8 +138,7 @@ def _of_run(run: int, torque: Floats, angle: Floats) -> LoopLines | None:
         slopes.append(float(slope))
         flanks |= on
         half[on] -= apart[on] / slope
-    between = np.isfinite(half) & (np.abs(middle) < high)
-    friction = float(np.mean(half[between]))
+    friction = float(np.mean(half[flanks]))
     if abs(friction) < ROUNDING * largest:
         friction = 0.0
     return LoopLines(run, ends[1] - ends[0], float(np.mean(slopes)), friction)
