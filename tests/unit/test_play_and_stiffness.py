@@ -19,6 +19,7 @@ from cyclosweep.result import (
     Size,
 )
 from cyclosweep.result.calibration_words import play_words
+from tests.support.dry_friction import twist_with_friction
 
 FITTED = {
     "free_play_deg": CalibratedParameter(nominal=1.0, estimate=1.4, std_error=0.05, unit="deg"),
@@ -74,6 +75,26 @@ def test_readings_by_hand_take_the_fitted_lines() -> None:
     assert read.free_play_deg is not None
     assert read.free_play_deg.estimate == pytest.approx(2.8)
     assert read.free_play_deg.ci95 == pytest.approx((2.604, 2.996))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_readings_by_hand_with_friction_take_the_repaired_lines(seed: int) -> None:
+    """Without the friction the line is too stiff, by five to ten of its standard errors."""
+    torque = np.r_[0:6.1, 5:-6.1:-1, -5:6.1, 5:-6.1:-1, -5:0.1]
+    noise = 0.2 * np.random.default_rng(seed).standard_normal(len(torque))
+    angle = np.round(twist_with_friction(torque, 0.4, 2.726) + noise, 1)
+    recording = cs.Recording.from_arrays(torque, angle, side="input")
+    answer = cs.diagnose(recording, cs.Drive.reference_87(), full=False).answer
+    assert [effect.name for effect in answer.effects] == ["friction_hysteresis"]
+    read = answer.play_and_stiffness
+    assert read is not None
+    assert read.runs == 0
+    assert "what was found to be missing" in read.definition
+    for value, true in ((read.compliance_deg_per_nm, 2.726), (read.free_play_deg, 56.0)):
+        assert value is not None
+        assert value.ci95 is not None
+        half = 0.5 * (value.ci95[1] - value.ci95[0])
+        assert abs(value.estimate - true) < 1.5 * half  # 1.0 at 95 %, 1.5 at 99.7 %
 
 
 def test_one_run_has_no_interval_and_a_missing_value_has_a_reason() -> None:

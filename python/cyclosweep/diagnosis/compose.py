@@ -82,7 +82,7 @@ def compose(
     remarks = doubts(
         answer.baseline.parameters, answer.repaired.parameters, recording, float(drive.ratio)
     )
-    answer = finished(replace(answer, plausibility=remarks), drive, concluded, repaired, verified)
+    answer = finished(replace(answer, plausibility=remarks), drive, concluded, verified)
     hidden = tuple(row.name for row in answer.not_testable)
     return Diagnosis(
         recording=recording,

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.conclude import Conclusion
-from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
 from cyclosweep.report.summary import do_now, summary_of
@@ -23,7 +22,6 @@ def finished(
     answer: Answer,
     drive: Drive,
     concluded: Conclusion,
-    repaired: RepairedModel,
     verified: Verification,
 ) -> Answer:
     """Add play and stiffness, statement and summary, and say what in the answer cannot both hold.
@@ -36,8 +34,6 @@ def finished(
         The drive that was diagnosed.
     concluded : Conclusion
         Verdict and accepted structure.
-    repaired : RepairedModel
-        The model before and after the repair.
     verified : Verification
         Whether the loops drift.
 
@@ -45,7 +41,7 @@ def finished(
     -------
     Answer
     """
-    read = _play_and_stiffness(drive, concluded, repaired, verified)
+    read = _play_and_stiffness(answer, drive, concluded, verified)
     plan = answer.next_experiment
     if answer.plausibility and plan is not None:
         plan = _after_check(plan)
@@ -65,18 +61,19 @@ def _after_check(plan: NextExperiment) -> NextExperiment:
 
 
 def _play_and_stiffness(
-    drive: Drive, concluded: Conclusion, repaired: RepairedModel, verified: Verification
+    answer: Answer, drive: Drive, concluded: Conclusion, verified: Verification
 ) -> PlayAndStiffness:
     """Read the free play and the stiffness from the loop, where friction does not hide them.
 
     Parameters
     ----------
+    answer : Answer
+        Its calibrated parameters stand in where no lines can be laid: those beside the effects
+        where there are any.
     drive : Drive
         The drive that was diagnosed.
     concluded : Conclusion
         Verdict and accepted structure.
-    repaired : RepairedModel
-        The model before the repair stands in where no lines can be laid.
     verified : Verification
         Whether the loops drift.
 
@@ -84,10 +81,13 @@ def _play_and_stiffness(
     -------
     PlayAndStiffness
     """
+    repaired = bool(concluded.accepted.fit.terms)
+    model = answer.repaired if repaired else answer.baseline
     return play_and_stiffness(
         concluded.search.problem.recording,
-        repaired.before.parameters,
+        model.parameters,
         float(drive.ratio),
+        repaired=repaired,
         hidden=concluded.accepted.fit.hidden_play,
         unsteady=verified.drift is not None,
     )

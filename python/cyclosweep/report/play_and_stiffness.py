@@ -24,6 +24,11 @@ BY_MODEL = (
     "the published model fitted to all readings, a straight line on each flank: free play is the "
     "distance of the lines at zero torque, compliance their slope"
 )
+BY_REPAIRED_MODEL = (
+    "the published model with what was found to be missing, fitted to all readings: free play is "
+    "that of the model, compliance the slope of its elastic law, between half and full torque "
+    "where effects bend it"
+)
 BY_ALL_RUNS = "; friction half the width of the loop in torque at equal angle, all runs together"
 FEW_FOR_FRICTION = (
     "friction takes rising and falling branches on both flanks, of more readings than there are"
@@ -36,22 +41,27 @@ def play_and_stiffness(
     calibrated: Mapping[str, CalibratedParameter],
     ratio: float,
     *,
+    repaired: bool = False,
     hidden: str | None = None,
     unsteady: bool = False,
 ) -> PlayAndStiffness:
     """Read free play, stiffness and friction by one definition, with intervals over the runs.
 
     Where the recording is too coarse for lines through the branches, as one read by hand, the
-    published model fitted to all readings takes their place: its lines have the same meaning.
+    calibrated model takes their place, with the effects that were found: the lines without them
+    are bent by these, friction above all, by many times their standard errors.
 
     Parameters
     ----------
     recording : Recording
         The measured loop.
     calibrated : mapping of str to CalibratedParameter
-        Parameters of the published model, calibrated.
+        Calibrated parameters: of the repaired model where effects were found, else of the
+        published one.
     ratio : float
         Ratio of the drive.
+    repaired : bool
+        Whether they are those of the repaired model.
     hidden : str or None
         Why friction hides the play; then neither play nor stiffness is given.
     unsteady : bool
@@ -63,9 +73,9 @@ def play_and_stiffness(
     """
     lines = straight_lines(recording)
     friction = _reading([line.friction_nm for line in lines])
-    by_model = BY_MODEL
+    by_model = BY_REPAIRED_MODEL if repaired else BY_MODEL
     if not lines and (width := friction_of_all(recording)) is not None:
-        friction, by_model = Reading(estimate=width), BY_MODEL + BY_ALL_RUNS
+        friction, by_model = Reading(estimate=width), by_model + BY_ALL_RUNS
     reasons = [] if friction is not None else [FEW_FOR_FRICTION]
     if hidden is not None:
         reasons.append(f"friction hides play and stiffness: {hidden}")
@@ -80,7 +90,7 @@ def play_and_stiffness(
         compliance = _reading([line.compliance_deg_per_nm for line in lines])
     else:
         play = _fitted(calibrated.get("free_play_deg"), 2.0)
-        compliance = _fitted(calibrated.get("compliance_deg_per_nm"), 1.0)
+        compliance = _whole_compliance(calibrated)
     if play is None:
         reasons.append("only one flank was loaded, so that no play can be read")
     if unsteady:
@@ -146,6 +156,14 @@ def _fitted(value: CalibratedParameter | None, factor: float) -> Reading | None:
     half = NORMAL_95 * value.std_error
     ends = (factor * (value.estimate - half), factor * (value.estimate + half))
     return Reading(estimate=factor * value.estimate, ci95=ends)
+
+
+def _whole_compliance(calibrated: Mapping[str, CalibratedParameter]) -> Reading | None:
+    """Compliance with what bends the line; its line alone is only what the effects leave of it."""
+    scale, line = calibrated.get("compliance_scale"), calibrated.get("compliance_deg_per_nm")
+    if scale is None or line is None or line.nominal is None:
+        return _fitted(line, 1.0)
+    return _fitted(scale, line.nominal)
 
 
 def _times(reading: Reading | None, factor: float) -> Reading | None:

@@ -89,9 +89,9 @@ def _not_read(rows: Sequence[Row]) -> str:
         if row.get("not_read")
     ]
     items += [
-        f"{row['recording']}: play and compliance are those of the published model fitted to all "
-        "readings, as these are too few or too coarse for lines through the branches, and for a "
-        "friction"
+        f"{row['recording']}: play and compliance are those of the calibrated model, with the "
+        "effects that were found, as the readings are too few or too coarse for lines through the "
+        "branches, and for a friction"
         for row in rows
         if row.get("read_by") == "published model"
     ]
