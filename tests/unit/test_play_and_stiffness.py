@@ -12,6 +12,7 @@ from cyclosweep.report.tables import play_table
 from cyclosweep.result import (
     Answer,
     CalibratedParameter,
+    EffectParameter,
     Explanation,
     FoundEffect,
     PlayAndStiffness,
@@ -179,18 +180,50 @@ def test_a_loop_without_friction_is_said_to_have_none() -> None:
         assert shown(found)[label] == words
 
 
-def test_the_width_of_a_loop_that_only_creep_opens_is_not_called_friction() -> None:
+def test_the_width_of_a_loop_is_said_to_be_of_all_that_opens_it() -> None:
     read = PlayAndStiffness(runs=2, friction_nm=Reading(estimate=0.9, ci95=(0.8, 1.0)))
     friction = "friction at the input, half the loop's width"
-    of_creep = "half the loop's width at the input, of creep, not of friction"
+    width = "half the loop's width at the input, of"
     for named, possible, label in (
         ((), (), friction),
-        (("creep",), (), of_creep),
-        (("creep", "load_dependent_friction"), (), friction),
-        (("creep",), ("creep", "friction_hysteresis"), friction),
+        (("creep",), (), f"{width} creep, not of friction"),
+        (("creep", "load_dependent_friction"), (), f"{width} friction and creep"),
+        (
+            ("viscous_drag", "creep", "friction_hysteresis"),
+            (),
+            f"{width} friction, creep and viscous drag",
+        ),
+        (
+            ("creep",),
+            ("creep", "friction_hysteresis"),
+            f"{width} creep, perhaps with friction",
+        ),
         (("contact_stiffening",), (), friction),
+        (("friction_hysteresis",), (), friction),
     ):
         assert list(shown(read, named, possible)) == [label]
+
+
+def test_the_fitted_friction_torque_stands_below_the_width_of_the_loop() -> None:
+    """A loop of 54 N m, half creep, was the only friction that a terminal showed; it was 30."""
+    torque = EffectParameter(
+        estimate=30.05, std_error=0.15, unit="N m", meaning="Coulomb friction torque"
+    )
+    distance = EffectParameter(estimate=0.3, std_error=0.1, unit="deg")
+    effect = FoundEffect(
+        name="friction_hysteresis",
+        parameters={"friction_torque_nm": torque, "slip_deg": distance},
+        size_deg=Size(estimate=1.0, ci95=(0.9, 1.1)),
+    )
+    read = PlayAndStiffness(runs=2, friction_nm=Reading(estimate=54.0, ci95=(53.0, 55.0)))
+    answer = Answer(verdict="IDENTIFIED", effects=(effect,), play_and_stiffness=read)
+    table = play_table(ReportData(recording=loop(), result=answer))
+    assert table is not None
+    assert table.rows[-1] == (
+        "Coulomb friction torque at the output, fitted",
+        "30.1 N m",
+        "29.8 … 30.3",
+    )
 
 
 def test_an_interval_has_the_digits_that_tell_its_ends_apart() -> None:

@@ -263,9 +263,11 @@ def test_plus_minus_is_the_interval_of_95_percent_everywhere(whole: ReportData) 
     assert "behind ± stands the half width of the 95 % interval" in text
 
 
-def test_an_effect_is_worth_the_torque_that_the_answer_says(whole: ReportData) -> None:
-    assert page(whole).count("; worth 0.31 N m") == 1
-    assert page(whole).count("; worth ") == 1  # the other effect has no torque
+def test_the_size_of_an_effect_is_compared_with_a_load_as_the_answer_says(
+    whole: ReportData,
+) -> None:
+    assert page(whole).count("; the twist of 0.31 N m of load") == 1
+    assert page(whole).count("; the twist of ") == 1  # the other effect has no torque
 
 
 def test_loads_of_the_next_experiment_beyond_the_rated_torque_are_said(whole: ReportData) -> None:

@@ -60,7 +60,7 @@ def look_at(data: ReportData) -> list[str]:
 
 
 def _size(effect: FoundEffect, tolerance_deg: float | None) -> str:
-    """Size of an effect with its interval, the torque that it is worth, and whether it matters.
+    """Size of an effect with its interval, the load of the same twist, and whether it matters.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def _size(effect: FoundEffect, tolerance_deg: float | None) -> str:
     digits = telling_digits(size.estimate, size.ci95)
     text = f"{angle(size.estimate, digits)}, 95 % interval {interval(size.ci95, digits)} deg"
     if effect.size_nm is not None:
-        text += f"; worth {number(effect.size_nm)} N m"
+        text += f"; the twist of {number(effect.size_nm)} N m of load"
     below = below_tolerance(effect, tolerance_deg)
     return f"{text}; {below}" if below else text
 

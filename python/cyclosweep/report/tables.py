@@ -6,6 +6,7 @@ import numpy as np
 
 from cyclosweep.page import Table
 from cyclosweep.report.data import ReportData
+from cyclosweep.report.loop_width import fitted_frictions, width_label
 from cyclosweep.report.loops import LoopFigures, loop_figures
 from cyclosweep.report.sentences import runs_backwards
 from cyclosweep.report.wording import (
@@ -20,11 +21,7 @@ from cyclosweep.report.wording import (
 )
 from cyclosweep.result import CalibratedParameter, Reading
 from cyclosweep.result.calibration_words import AT_REFERENCE, follows_temperature
-from cyclosweep.result.words import listed, readable, telling_digits
-
-FRICTIONS = {"friction_hysteresis", "load_dependent_friction"}
-OPEN_THE_LOOP = ("creep", "viscous_drag", "thermal_drift", "datum_drift")
-"""Effects by which a loop is open without friction."""
+from cyclosweep.result.words import readable, telling_digits
 
 
 def loop_table(data: ReportData) -> Table | None:
@@ -301,7 +298,8 @@ def play_table(data: ReportData) -> Table | None:
     rows = [
         (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, angle)),
         ("stiffness at the output", *_read(read.stiffness_at_output_nm_per_arcmin, _stiffnesses)),
-        (_width_label(data), *friction),
+        (width_label(data), *friction),
+        *((label, *_read(torque, _torques)) for label, torque in fitted_frictions(data)),
     ]
     if side == "input":
         rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, angle)))
@@ -327,17 +325,6 @@ def _read(reading: Reading | None, write: Callable[[float, int], str]) -> tuple[
         return NOTHING, NOTHING
     digits = telling_digits(reading.estimate, reading.ci95)
     return write(reading.estimate, digits), interval(reading.ci95, digits)
-
-
-def _width_label(data: ReportData) -> str:
-    """What half the width of the loop is: friction, unless only something else opens it."""
-    answer, side = data.result, data.recording.side
-    named = {effect.name for effect in answer.effects}
-    possible = named.union(*(rival.effects for rival in answer.explanation_set))
-    others = [name for name in OPEN_THE_LOOP if name in named]
-    if possible & FRICTIONS or not others:
-        return f"friction at the {side}, half the loop's width"
-    return f"half the loop's width at the {side}, of {listed(others)}, not of friction"
 
 
 def _friction(reading: Reading | None, backwards: bool) -> tuple[str, str]:

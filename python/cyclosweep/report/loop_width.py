@@ -1,0 +1,56 @@
+"""What the width of a loop is of, and the friction torque beside what else opens it."""
+
+from cyclosweep.report.data import ReportData
+from cyclosweep.result import Reading
+from cyclosweep.result.part import NORMAL_95
+from cyclosweep.result.words import listed
+
+FRICTIONS = ("friction_hysteresis", "load_dependent_friction")
+OPEN_THE_LOOP = ("creep", "viscous_drag", "thermal_drift", "datum_drift")
+"""Effects by which a loop is open without friction."""
+TORQUE = "N m"
+"""Unit of a parameter that is a friction torque."""
+
+
+def width_label(data: ReportData) -> str:
+    """What half the width of the loop is: friction, something else that opens it, or both."""
+    answer, side = data.result, data.recording.side
+    named = {effect.name for effect in answer.effects}
+    possible = named.union(*(rival.effects for rival in answer.explanation_set))
+    others = [name for name in OPEN_THE_LOOP if name in named]
+    if not others:
+        return f"friction at the {side}, half the loop's width"
+    width = f"half the loop's width at the {side}, of"
+    if named.intersection(FRICTIONS):
+        return f"{width} {listed(['friction', *others])}"
+    if possible.intersection(FRICTIONS):
+        return f"{width} {listed(others)}, perhaps with friction"
+    return f"{width} {listed(others)}, not of friction"
+
+
+def fitted_frictions(data: ReportData) -> list[tuple[str, Reading]]:
+    """Friction torques of the repaired model, which hold what friction alone takes.
+
+    Parameters
+    ----------
+    data : ReportData
+        What to report.
+
+    Returns
+    -------
+    list of (str, Reading)
+        What the torque is, and its value with the 95 % interval [N m].
+    """
+    found = []
+    for effect in data.result.effects:
+        if effect.name not in FRICTIONS:
+            continue
+        for value in effect.parameters.values():
+            if value.unit != TORQUE:
+                continue
+            half = None if value.std_error is None else NORMAL_95 * value.std_error
+            ends = None if half is None else (value.estimate - half, value.estimate + half)
+            what = value.meaning or "friction torque"
+            label = f"{what} at the {data.recording.side}, fitted"
+            found.append((label, Reading(estimate=value.estimate, ci95=ends)))
+    return found
