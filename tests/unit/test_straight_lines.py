@@ -31,7 +31,7 @@ def test_a_loop_of_few_readings_is_read_without_bias() -> None:
 
 
 def friction_that_builds_up(torque: np.ndarray, friction_nm: float) -> np.ndarray:
-    """Torque that friction takes: four contacts in parallel that begin to slip one after another."""
+    """Torque that friction takes: four parallel contacts that slip one after another."""
     limits = friction_nm * np.array([0.5, 0.8, 1.2, 1.5])
     taken, carried = np.zeros(len(torque)), np.zeros(4)
     for row in range(1, len(torque)):

@@ -94,6 +94,25 @@ def test_the_diagnosis_stays_silent_beside_noise_of_the_torque() -> None:
     assert found.answer.noise.torque_nm == pytest.approx(0.027, rel=0.15)
     (said,) = [each.text for each in found.answer.findings if each.topic == "torque noise"]
     assert "0.027 N m" in said or "0.026 N m" in said or "0.028 N m" in said
+    assert "average of" not in said
+
+
+def test_noise_of_averaged_rows_is_not_said_to_be_that_of_samples() -> None:
+    """Hum of 2.1 N m in the samples was reported as a scatter of 0.15 N m."""
+    rng = np.random.default_rng(7)
+    leg = np.linspace(0.0, 600.0, 2500)
+    torque = np.tile(np.r_[leg, leg[::-1], -leg, -leg[::-1]], 2)
+    time = 0.005 * np.arange(len(torque))
+    angle = 0.32 * np.sign(torque) + 0.00036 * torque + 0.001 * rng.normal(size=len(torque))
+    read = torque + 3.0 * np.sin(2.0 * np.pi * 49.97 * time) + 0.3 * rng.normal(size=len(torque))
+    recording = cs.Recording.from_arrays(
+        read, angle, run=np.repeat([1, 2], len(torque) // 2), time_s=time, side="output"
+    )
+    found = cs.diagnose(recording, cs.Drive.reference_87(), full=False).answer
+    assert found.thinning is not None
+    (said,) = [each.text for each in found.findings if each.topic == "torque noise"]
+    assert f"each the average of about {found.thinning.averaged} samples" in said
+    assert "single samples may scatter by more" in said
 
 
 def test_short_ramps_are_compared_with_the_torque_as_read() -> None:

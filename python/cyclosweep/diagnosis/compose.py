@@ -341,9 +341,10 @@ def _findings(
     """
     unsteady = verified.drift is not None
     found = list(concluded.accepted.fit.findings(concluded.repetition, unsteady=unsteady))
-    noise = concluded.search.problem.torque_noise_nm
-    if noise > 0.0:
-        found.append(Finding(topic="torque noise", text=smoothed_in_words(noise)))
+    problem = concluded.search.problem
+    if problem.torque_noise_nm > 0.0:
+        said = smoothed_in_words(problem.torque_noise_nm, problem.rows.averaged)
+        found.append(Finding(topic="torque noise", text=said))
     if repaired.learned is not None:
         found.append(Finding(topic="model error", text=learned_in_words(repaired.learned)))
     return tuple(found)

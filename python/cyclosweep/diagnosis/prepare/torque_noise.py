@@ -264,21 +264,25 @@ def _slow_size(error: Floats, run: Ints) -> float:
     return robust_sigma(means) if len(means) else 0.0
 
 
-def smoothed_in_words(noise_nm: float) -> str:
+def smoothed_in_words(noise_nm: float, averaged: int) -> str:
     """Say how large the noise of the torque is, and what was done to it.
 
     Parameters
     ----------
     noise_nm : float
-        Its standard deviation [N m].
+        Its standard deviation from row to row [N m].
+    averaged : int
+        Usual number of samples that are averaged in a row.
 
     Returns
     -------
     str
     """
+    rows = "" if averaged == 1 else f", each the average of about {averaged} samples"
+    single = "" if averaged == 1 else "; single samples may scatter by more"
     return (
-        f"The torque reading scatters by {noise_nm:.2g} N m from row to row (one standard "
-        "deviation), and the twist does not follow it: noise of the torque sensor. It is smoothed "
+        f"The torque reading scatters by {noise_nm:.2g} N m from row to row{rows} (one standard "
+        f"deviation{single}), and the twist does not follow it: noise of the torque sensor. It is smoothed "
         "between the turning points before anything is fitted; left in, it would look like drag "
         "and friction."
     )
