@@ -112,3 +112,46 @@ def test_torques_that_do_not_count_are_not_asked_for_again() -> None:
     angle = 28.0 * np.sign(torque) + 2.7 * torque
     search = search_of_recording(cs.Recording.from_arrays(torque, angle, unscored=beyond))
     assert search.problem.largest_torque_nm == pytest.approx(np.abs(torque[~beyond]).max())
+
+
+def test_a_programme_that_would_hardly_show_the_effect_is_to_be_repeated() -> None:
+    """At 2.2 times the noise an effect is missed more often than found; it was said to show."""
+    search = search_of()
+    strong = next_experiment(search, [], "creep", 10.0 * search.noise.sigma_deg)
+    assert strong.detectability is not None
+    assert strong.minutes is not None
+    size = 10.0 * search.noise.sigma_deg * 2.2 / strong.detectability
+    weak = next_experiment(search, [], "creep", size)
+    assert weak.program == f"{strong.program}; all of it 4 times"  # (3.9 / 2.2)^2 is 3.1
+    assert weak.detectability == pytest.approx(4.4, rel=0.01)
+    assert weak.minutes == pytest.approx(4 * strong.minutes, rel=0.4)
+    weaker = next_experiment(search, [], "creep", 0.8 * size)
+    assert weaker.program == FINER
+
+
+def test_rates_that_were_recorded_are_not_asked_for_again() -> None:
+    leg = np.linspace(0.0, 10.0, 60)
+    torque = np.r_[leg, leg[-2::-1], -leg[1:], -leg[-2::-1]]
+    angle = 28.0 * np.sign(torque) + 2.7 * torque + np.random.default_rng(1).normal(0, 0.1, 237)
+    for rates, more in (((1.0, 5.0, 25.0), True), ((1.0, 1.0, 25.0), False), ((1, 2, 5), False)):
+        time = np.concatenate([k * 1e5 + np.arange(237) / rate for k, rate in enumerate(rates)])
+        recording = cs.Recording.from_arrays(
+            np.tile(torque, 3), np.tile(angle, 3), run=np.repeat([1, 2, 3], 237), time_s=time
+        )
+        search = search_of_recording(recording)
+        plan = next_experiment(search, [], "viscous_drag", 100.0 * search.noise.sigma_deg)
+        assert ("three more rates" in plan.program) == more
+        assert ("at three rates" in plan.program) == (not more)
+
+
+def test_the_loads_of_separate_runs_are_those_that_were_simulated() -> None:
+    """Of a ladder of runs one sequence was given that never came back to zero between them."""
+    (ladder,) = able_to_show(["datum_drift"])
+    torque, run = ladder.make(10.0)[:2]
+    ends = [0.0]
+    for each in np.unique(run):
+        own = torque[run == each]
+        ends += [float(own.max()), float(own.min()), float(own[-1])]
+    assert [10.0 * share for share in ladder.shares] == pytest.approx(ends)
+    assert "each a run of its own" in ladder.words
+    assert "without zeroing the angle" in ladder.words

@@ -265,7 +265,7 @@ def _beyond_rated(largest_nm: float, rated_nm: float | None) -> str:
     """
     if not rated_nm or largest_nm <= 1.01 * rated_nm:
         return ""
-    times = number(largest_nm / rated_nm, 2)
+    times = number(largest_nm / rated_nm)
     return f" The largest is {times} times the rated torque: less, where the drive may not bear it."
 
 

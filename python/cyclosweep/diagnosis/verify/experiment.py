@@ -1,5 +1,6 @@
 """The next experiment: the load programme from a menu that best separates what is left."""
 
+from itertools import pairwise
 from typing import get_args
 
 import numpy as np
@@ -19,6 +20,15 @@ BETTER = 1.05
 """Factor of detectability by which a programme has to be better than one before it on the menu."""
 CAN_DECIDE = 2.0
 """Signal-to-noise ratio from which a programme shows anything."""
+SHOWS = 3.9
+"""Ratio from which an effect is found nine times in ten, beyond what noise does once in a hundred.
+Below it a programme is to be repeated: the ratio grows with the root of the passes."""
+RATES, RATE_RANGE = 3, 10.0
+"""Rates of the loops of the menu, and the largest over the smallest."""
+POSITIONS = 8
+"""Positions of the mesh on the menu."""
+SAME_RATE = 1.2
+"""Rates nearer to each other than this factor are one."""
 FINER = (
     "the same programme once more, read more finely or several times: by no load would it stand "
     "out of the noise of this recording"
@@ -65,15 +75,52 @@ def next_experiment(
     if best is None:
         return NextExperiment(program=FINER)
     value, plan, rows = best
+    passes = int(np.ceil((SHOWS / value) ** 2)) if value < SHOWS else 1
+    words = plan.once_more if _is_recorded(search.problem.history, plan) else plan.words
     top = search.problem.largest_torque_nm
     return NextExperiment(
-        program=plan.words,
+        program=words if passes == 1 else f"{words}; all of it {passes} times",
         separates=tuple(names),
         loads_nm=tuple(float(f"{share * top:.3g}") for share in plan.shares),
         rig_programme=rig_programme(search.problem.recording, plan),
-        detectability=round(float(value), 2),
-        minutes=int(np.ceil(rows * STEP_S / 60.0)) + 5,
+        detectability=round(float(value * np.sqrt(passes)), 2),
+        minutes=int(np.ceil(passes * rows * STEP_S / 60.0)) + 5,
     )
+
+
+def _is_recorded(history: History, plan: Plan) -> bool:
+    """Whether a recording has the rates, or the positions, of a programme already.
+
+    Parameters
+    ----------
+    history : History
+        Of the recording.
+    plan : Plan
+        The programme.
+
+    Returns
+    -------
+    bool
+    """
+    if not plan.once_more:
+        return False
+    runs = [history.run == run for run in np.unique(history.run)]
+    if plan.varies == "positions":
+        crank = history.crank_deg
+        if crank is None:
+            return False
+        return len({round(float(np.median(crank[rows]))) for rows in runs}) >= POSITIONS
+    if history.time_s is None:
+        return False
+    rates = []
+    for rows in runs:
+        lapse = np.diff(history.time_s[rows])
+        rate = np.abs(np.diff(history.applied_nm[rows])[lapse > 0] / lapse[lapse > 0])
+        if np.any(rate > 0):
+            rates.append(float(np.median(rate[rate > 0])))
+    rates.sort()
+    apart = [high > SAME_RATE * low for low, high in pairwise(rates)]
+    return 1 + sum(apart) >= RATES and rates[-1] >= RATE_RANGE * rates[0]
 
 
 RIGS: dict[str, frozenset[Varied]] = {

@@ -28,15 +28,19 @@ class Plan:
     make : callable
         History of a largest torque [N m].
     shares : tuple of float
-        Torques between which one run is ramped, over the largest torque.
+        Torques between which one run is ramped, or all runs where they differ, over the largest
+        torque.
     varies : str
         What it changes.
+    once_more : str
+        What to do where a recording shows this programme already; empty where that is not asked.
     """
 
     words: str
     make: Callable[[float], Load]
     shares: tuple[float, ...]
     varies: Varied = "loads"
+    once_more: str = ""
 
 
 def _line(points: Sequence[float], seconds: float) -> Floats:
@@ -140,14 +144,26 @@ def _wide(top: float) -> Load:
 
 MENU: tuple[Plan, ...] = (
     Plan("nested and biased loops to the largest torque, twice", _nested, NESTED),
-    Plan("the same loop at three rates, one to ten", _rates, LOOP, "rates"),
+    Plan(
+        "the same loop at three rates, one to ten",
+        _rates,
+        LOOP,
+        "rates",
+        "the same loop at three more rates, between those recorded and beyond them",
+    ),
     Plan(
         "holds of five minutes at full load and without load, both directions",
         _holds,
         (0.0, 1.0, 0.0, -1.0, 0.0),
         "dwells",
     ),
-    Plan("the same loop at eight positions of the mesh zone", _places, LOOP, "positions"),
+    Plan(
+        "the same loop at eight positions of the mesh zone",
+        _places,
+        LOOP,
+        "positions",
+        "the same loop at eight more positions of the mesh zone, between those recorded",
+    ),
     Plan(
         "small loops returning to three positions while the rig warms up by 4 K",
         _returns,
@@ -161,9 +177,10 @@ MENU: tuple[Plan, ...] = (
         "temperature",
     ),
     Plan(
-        "loops of growing amplitude, then a small one again",
+        "loops of growing amplitude, then a small one again, each a run of its own, without "
+        "zeroing the angle reading between them",
         _ladder,
-        (0.0, *(sign * share for share in LADDER for sign in (1.0, -1.0)), 0.0),
+        (0.0, *(part * share for share in LADDER for part in (1.0, -1.0, 0.0))),
     ),
     Plan(
         "two loops to 1.4 times the largest torque, if the drive may be loaded so far",
