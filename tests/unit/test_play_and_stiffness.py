@@ -17,6 +17,7 @@ from cyclosweep.result import (
     FoundEffect,
     PlayAndStiffness,
     Reading,
+    Remainder,
     Size,
 )
 from cyclosweep.result.calibration_words import play_words
@@ -202,6 +203,19 @@ def test_the_width_of_a_loop_is_said_to_be_of_all_that_opens_it() -> None:
         (("friction_hysteresis",), (), friction),
     ):
         assert list(shown(read, named, possible)) == [label]
+
+
+def test_a_width_beside_what_has_no_name_is_not_called_friction() -> None:
+    read = PlayAndStiffness(runs=2, friction_nm=Reading(estimate=0.9, ci95=(0.8, 1.0)))
+    answer = Answer(
+        verdict="UNKNOWN_PHYSICS",
+        unknown=Remainder(shape="loop by rate", size_deg=0.1),
+        play_and_stiffness=read,
+    )
+    table = play_table(ReportData(recording=loop(), result=answer))
+    assert table is not None
+    label = "half the loop's width at the output, of friction or of what has no name"
+    assert table.rows[0][0] == label
 
 
 def test_the_fitted_friction_torque_stands_below_the_width_of_the_loop() -> None:

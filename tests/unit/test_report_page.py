@@ -17,7 +17,6 @@ from cyclosweep.report import ReportData, write_html
 from cyclosweep.report.charts import Line, nice_ticks
 from cyclosweep.report.figures import main_figure
 from cyclosweep.report.html import page
-from cyclosweep.report.look_at import LOOK_AT
 from cyclosweep.report.regions import located
 from cyclosweep.report.sentences import headline, next_experiment
 from cyclosweep.report.wording import number
@@ -31,7 +30,6 @@ from cyclosweep.result import (
     Region,
     Remainder,
 )
-from cyclosweep.simulation.effects import VOCABULARY
 from tests.unit.made_up_report import make
 
 FAULTY = Answer(verdict="DATA_FAULT", statement="Time runs backwards.")
@@ -144,10 +142,6 @@ def test_simulation_lines_reach_the_last_of_a_dozen_readings() -> None:
     line = next(s for s in loop.series if isinstance(s, Line))
     assert not np.isnan(line.x).any()
     assert line.x[-1] == 2
-
-
-def test_every_effect_says_what_to_look_at() -> None:
-    assert set(LOOK_AT) == {effect.name for effect in VOCABULARY}
 
 
 def test_nothing_is_drawn_outside_the_page(whole: ReportData) -> None:

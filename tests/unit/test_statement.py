@@ -3,9 +3,11 @@
 from dataclasses import replace
 
 import cyclosweep as cs
+from cyclosweep.diagnosis.hypotheses import behaviour_classes
 from cyclosweep.report import ReportData
+from cyclosweep.report.look_at import LOOK_AT, LOOK_AT_SHAPE
 from cyclosweep.report.sentences import effect_cards
-from cyclosweep.report.summary import summary_of
+from cyclosweep.report.summary import do_now, summary_of
 from cyclosweep.report.tables import play_table
 from cyclosweep.report.wording import verdict_words
 from cyclosweep.result import (
@@ -14,10 +16,12 @@ from cyclosweep.result import (
     BehaviourClass,
     Bound,
     CalibratedParameter,
+    Explained,
     Explanation,
     FoundEffect,
     HeldOutBlock,
     Mismatch,
+    NextExperiment,
     NoiseEstimate,
     PlayAndStiffness,
     Reading,
@@ -27,7 +31,9 @@ from cyclosweep.result import (
     Size,
     Thinning,
 )
+from cyclosweep.result.shape_words import PHRASES
 from cyclosweep.result.statement import statement_of
+from cyclosweep.simulation.effects import VOCABULARY
 
 CREEP = FoundEffect(name="creep", size_deg=Size(estimate=0.5, ci95=(0.4, 0.6)))
 CALIBRATED = {
@@ -271,3 +277,37 @@ def test_classes_are_said_apart_and_once() -> None:
     assert "the law of creep misses 3.5 %" in said
     assert "what the law of creep misses, 0.0003 deg" in said
     assert "behaviour is clear" not in said
+
+
+def test_every_effect_says_what_to_look_at() -> None:
+    assert set(LOOK_AT) == {effect.name for effect in VOCABULARY}
+    classes = {value for value in vars(behaviour_classes).values() if isinstance(value, str)}
+    assert set(LOOK_AT_SHAPE) <= set(PHRASES) | classes
+
+
+def test_the_advice_is_about_what_makes_up_most_of_the_mismatch() -> None:
+    """Friction that explained a fifth beside a drift of the zero sent the user to the bearings."""
+    friction = FoundEffect(
+        name="friction_hysteresis", size_deg=Size(estimate=0.008, ci95=(0.006, 0.01))
+    )
+    plan = NextExperiment(program="two loops")
+    drift = Remainder(shape="slow drift", size_deg=0.011)
+    play = BehaviourClass(behaviour="play that changes from run to run")
+    misfit = Remainder(shape="misfit of the model", size_deg=0.075)
+    for share, effects, rest, classes, begins in (
+        (0.19, (friction,), drift, (), "Look at what moves the zero"),
+        (0.8, (friction,), drift, (), "Look at bearings"),
+        (0.19, (friction,), misfit, (), "Record next: two loops"),
+        (0.0, (), misfit, (play,), "Look at parts that seat, wear or loosen"),
+        (0.0, (), Remainder(shape="loop by rate", size_deg=0.005), (), "Look at the torque signal"),
+        (1.0, (friction,), None, (), "Look at bearings"),
+    ):
+        answer = Answer(
+            verdict="UNKNOWN_PHYSICS" if rest else "IDENTIFIED",
+            effects=effects,
+            explained=Explained(share=share),
+            unknown=rest,
+            classes=classes,
+            next_experiment=plan,
+        )
+        assert do_now(answer).startswith(begins)

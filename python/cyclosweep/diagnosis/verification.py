@@ -7,6 +7,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.change import find_change
 from cyclosweep.diagnosis.conclude import Conclusion
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import RUN_COMPLIANCE, RUN_PLAY
 from cyclosweep.diagnosis.identify.laws.class_check import candidates_of
 from cyclosweep.diagnosis.identify.structures.verdict import Decision, verdict_by_share
 from cyclosweep.diagnosis.verify.experiment import next_experiment
@@ -28,6 +29,8 @@ SETTLE = (
     "agree, then record"
 )
 """Next experiment where the drive changed while it was tested."""
+CHANGED_BY_RUN = frozenset({RUN_COMPLIANCE, RUN_PLAY})
+"""Classes of behaviour by which the drive is another one in each run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +95,8 @@ def verify(concluded: Conclusion, *, full: bool, say: Callable[[str], None]) -> 
     say("checking on synthetic twins")
     checked = _self_check(concluded)
     say("choosing the next experiment")
-    if drift is not None or change is not None:
+    by_run = any(each.behaviour in CHANGED_BY_RUN for each in concluded.naming.shown)
+    if drift is not None or change is not None or (by_run and decision.unexplained):
         following = NextExperiment(program=SETTLE)
     else:
         following = _next_experiment(concluded, decision)

@@ -1,4 +1,4 @@
-"""What to look at on the drive when an effect was found in its recording."""
+"""What to look at on the drive when an effect, or a shape without a name, was found."""
 
 LOOK_AT = {
     "friction_hysteresis": "bearings, seals and bushes that drag: turn the input by hand without "
@@ -27,3 +27,37 @@ LOOK_AT = {
     "dial_eccentricity": "the centring of the dial or encoder disc on the shaft.",
 }
 """By name of the effect; effects that users register have none."""
+
+SLIPPED = "what may have slipped: clamps, couplings and the fastening of the angle sensor."
+ZERO = (
+    "what moves the zero: clamping of the output, fastening of the angle sensor, warm-up of drive, "
+    "sensor and amplifier."
+)
+PLAY = (
+    "parts that seat, wear or loosen: pins, bushes, bolts and couplings; feel the play by hand "
+    "before and after a run."
+)
+COMPLIANCE = "parts that seat, loosen or warm up: bolts, pin seats, bushes, the foundation."
+RATE = (
+    "the torque signal first: a filter in it, or torque read later or earlier than the angle, "
+    "opens a loop with the rate as drag does; then at grease, oil and seals."
+)
+LOOK_AT_SHAPE = {
+    "loop by rate": RATE,
+    "loop that opens with the rate": RATE,
+    "saturation at the end of the range": "sensor and amplifier at the end of their range, and "
+    "stops.",
+    "step of the angle": SLIPPED,
+    "slip within a run": SLIPPED,
+    "slow drift": ZERO,
+    "drift within runs": ZERO,
+    "wandering of the zero": ZERO,
+    "run offsets": ZERO,
+    "zero that moves from run to run": ZERO,
+    "change of play": PLAY,
+    "play that changes from run to run": PLAY,
+    "change of compliance": COMPLIANCE,
+    "compliance by run": COMPLIANCE,
+    "compliance that changes from run to run": COMPLIANCE,
+}
+"""By name of a shape without a name of its own, or of a class of behaviour that no law follows."""

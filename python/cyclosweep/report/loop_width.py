@@ -18,6 +18,8 @@ def width_label(data: ReportData) -> str:
     named = {effect.name for effect in answer.effects}
     possible = named.union(*(rival.effects for rival in answer.explanation_set))
     others = [name for name in OPEN_THE_LOOP if name in named]
+    if not others and answer.unknown is not None and not possible.intersection(FRICTIONS):
+        return f"half the loop's width at the {side}, of friction or of what has no name"
     if not others:
         return f"friction at the {side}, half the loop's width"
     width = f"half the loop's width at the {side}, of"

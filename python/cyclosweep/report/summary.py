@@ -1,6 +1,6 @@
 """The answer in one or two sentences, and what to look at or to do first."""
 
-from cyclosweep.report.look_at import LOOK_AT
+from cyclosweep.report.look_at import LOOK_AT, LOOK_AT_SHAPE
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
@@ -27,6 +27,8 @@ SHOWN_BY_LOOPS = frozenset(
     }
 )
 """Effects that a loop of many readings shows, and other programmes may not."""
+HALF = 0.5
+"""Share of the mismatch that named effects explain, below which what has no name is most of it."""
 NEARLY_ALL = 0.995
 """Share of the mismatch that would be written as all of it, though something is left."""
 
@@ -91,13 +93,27 @@ def do_now(answer: Answer) -> str:
                 "loading and unloading in many steps."
             )
         return f"{NOTHING_TO_DO} the calibrated model describes this drive."
-    largest = max(answer.effects, key=lambda effect: effect.size_deg.estimate, default=None)
-    if largest is not None and largest.name in LOOK_AT and answer.change is None:
-        return f"{LOOK_AT_PART} {LOOK_AT[largest.name]}"
+    if place := _look_at(answer):
+        return f"{LOOK_AT_PART} {place}"
     plan = answer.next_experiment
     if plan is None or not plan.program or plan.program == NONE_NEEDED:
         return ""
     return f"{RECORD_NEXT} {plan.program}."
+
+
+def _look_at(answer: Answer) -> str:
+    """Where to look for what makes up most of the mismatch; empty where that is not known."""
+    if answer.change is not None:
+        return ""
+    share = answer.explained.share
+    if answer.unknown is not None and share is not None and share < HALF:
+        if answer.drift is not None:
+            return ""
+        unnamed = [each.behaviour for each in answer.classes if not each.laws]
+        told = [name for name in (answer.unknown.shape, *unnamed) if name in LOOK_AT_SHAPE]
+        return LOOK_AT_SHAPE[told[0]] if told else ""
+    largest = max(answer.effects, key=lambda effect: effect.size_deg.estimate, default=None)
+    return "" if largest is None else LOOK_AT.get(largest.name, "")
 
 
 def not_shown(answer: Answer) -> list[str]:

@@ -282,9 +282,9 @@ def smoothed_in_words(noise_nm: float, averaged: int) -> str:
     single = "" if averaged == 1 else "; single samples may scatter by more"
     return (
         f"The torque reading scatters by {noise_nm:.2g} N m from row to row{rows} (one standard "
-        f"deviation{single}), and the twist does not follow it: noise of the torque sensor. It is smoothed "
-        "between the turning points before anything is fitted; left in, it would look like drag "
-        "and friction."
+        f"deviation{single}), and the twist does not follow it: noise of the torque sensor. It is "
+        "smoothed between the turning points before anything is fitted; left in, it would look "
+        "like drag and friction."
     )
 
 
