@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
+from cyclosweep.diagnosis.verification import SETTLE
 from cyclosweep.diagnosis.verify.experiment import FINER, next_experiment, rig_programme
 from cyclosweep.diagnosis.verify.menu import MENU, SHOWN_BY, able_to_show
 from cyclosweep.simulation.effects import VOCABULARY
@@ -155,3 +156,22 @@ def test_the_loads_of_separate_runs_are_those_that_were_simulated() -> None:
     assert [10.0 * share for share in ladder.shares] == pytest.approx(ends)
     assert "each a run of its own" in ladder.words
     assert "without zeroing the angle" in ladder.words
+
+
+def test_a_play_that_changes_from_run_to_run_is_to_settle_first() -> None:
+    """Asked for were nested loops that would show a take-up of clearance, which was not there."""
+    leg = np.linspace(0.0, 600.0, 60)
+    torque = np.r_[leg, leg[-2::-1], -leg[1:], -leg[-2::-1]]
+    elastic = torque - 20.0 * np.r_[np.ones(59), -np.ones(119), np.ones(59)]
+    rng = np.random.default_rng(3)
+    angle = [
+        half * np.sign(elastic) + 0.00036 * elastic + 0.001 * rng.normal(size=237)
+        for half in (0.30, 0.32, 0.38)
+    ]
+    recording = cs.Recording.from_arrays(
+        np.tile(torque, 3), np.concatenate(angle), run=np.repeat([1, 2, 3], 237), side="output"
+    )
+    answer = cs.diagnose(recording, cs.Drive.reference_87()).answer
+    assert "play that changes from run to run" in [each.behaviour for each in answer.classes]
+    assert answer.next_experiment is not None
+    assert answer.next_experiment.program == SETTLE
