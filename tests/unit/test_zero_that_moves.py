@@ -38,7 +38,7 @@ def test_a_steady_drift_is_no_step_and_its_size_is_that_of_the_drift() -> None:
     rest = answer.unknown
     assert rest is not None
     assert rest.shape == "slow drift"
-    assert 0.8 < rest.size_deg < 2.0
+    assert rest.size_deg == pytest.approx(2.0, rel=0.03)
 
 
 def test_places_of_equal_misfit_have_equal_shares() -> None:
@@ -50,3 +50,19 @@ def test_places_of_equal_misfit_have_equal_shares() -> None:
     assert first.direction == second.direction
     shares = first.share_of_excess or 0.0, second.share_of_excess or 0.0
     assert 0.5 < shares[0] / shares[1] < 2.0
+
+
+def test_the_size_of_a_drift_is_how_far_the_zero_moved() -> None:
+    """Beside a calibrated datum and play a quarter of it is left, which was given as its size."""
+    leg, moved_deg = np.linspace(0.0, 600.0, 60), 0.0192
+    torque = np.r_[leg, leg[-2::-1], -leg[1:], -leg[-2::-1]]
+    angle = 0.32 * np.where(torque < 0, -1.0, 1.0) + 0.00036 * torque
+    angle += np.linspace(0.0, moved_deg, len(torque))
+    angle += 0.001 * np.random.default_rng(5).normal(size=len(torque))
+    recording = cs.Recording.from_arrays(
+        torque, angle, time_s=2.0 * np.arange(len(torque)), side="output"
+    )
+    rest = cs.diagnose(recording, DRIVE, full=False).answer.unknown
+    assert rest is not None
+    assert rest.shape == "slow drift"
+    assert rest.size_deg == pytest.approx(moved_deg, rel=0.1)

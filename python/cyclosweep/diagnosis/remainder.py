@@ -20,6 +20,7 @@ from cyclosweep.diagnosis.identify.structures.testability import (
 from cyclosweep.diagnosis.locate import event_regions
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
+from cyclosweep.simulation.effects.history import Floats
 
 STRONG_WAVE = 5.0
 """Log evidence from which a sinusoid in the residual is worth naming."""
@@ -28,6 +29,8 @@ LEAST_OF_THE_REST = 0.5
 quarter of its mean square."""
 MISFIT = "misfit of the model"
 """What is left where no shape tells it."""
+DRIFT = "slow drift"
+"""The shape whose size is how far the zero moved. Its middle is the datum that was calibrated."""
 STEP_QUANTILE = 0.95
 """Quantile of the residual that is given as the size of a staircase."""
 
@@ -55,7 +58,8 @@ def remainder(
     if not verified.decision.unexplained:
         return None
     if verified.decision.best is None:
-        return _of_event(concluded, regions) or _strongest(concluded.accepted)
+        alone = _of_event(concluded, regions) or _strongest(concluded.accepted)
+        return _as_far_as_it_moved(alone, concluded.accepted, concluded.accepted.fit)
     if concluded.naming.withdrawn and concluded.naming.shown:
         return of_the_size_left(_of_class(concluded), concluded.naming.part.fit)
     if verified.drift is not None:
@@ -64,7 +68,8 @@ def remainder(
         found = _step(concluded.accepted.fit)
         return found or _staircase(concluded.accepted, concluded.repetition)
     found = _unnamed_term(concluded.best) or _unfitted(concluded)
-    return of_the_size_left(found, concluded.accepted.fit)
+    found = of_the_size_left(found, concluded.accepted.fit)
+    return _as_far_as_it_moved(found, concluded.best, concluded.accepted.fit)
 
 
 def of_the_size_left(found: Remainder, named: FittedStructure) -> Remainder:
@@ -107,6 +112,55 @@ def no_larger_than_left(found: Remainder, named: FittedStructure) -> Remainder:
     """
     largest = float(np.abs(named.residual_deg).max())
     return replace(found, size_deg=min(found.size_deg, largest))
+
+
+def _as_far_as_it_moved(
+    found: Remainder | None, candidate: Candidate, named: FittedStructure
+) -> Remainder | None:
+    """Give a slow drift the distance from its lowest to its highest zero, other shapes as found.
+
+    Parameters
+    ----------
+    found : Remainder or None
+        The shape.
+    candidate : Candidate
+        The structure that holds the drift, or in whose residual it is.
+    named : FittedStructure
+        The structure of the named effects, whose residual holds the drift.
+
+    Returns
+    -------
+    Remainder or None
+    """
+    if found is None or found.shape != DRIFT:
+        return found
+    held = [term for term in candidate.fit.terms if term.unnamed and term.unnamed.family == DRIFT]
+    term = held[0] if held else _strongest_hypothesis(candidate)[1]
+    if term is None:
+        return found
+    columns = term.columns(named.history)[named.problem.fitted]
+    return replace(found, size_deg=float(np.ptp(_fitted_beside_line(named, columns))))
+
+
+def _fitted_beside_line(named: FittedStructure, columns: Floats) -> Floats:
+    """Twist of columns fitted to what a structure leaves, beside a calibration.
+
+    Parameters
+    ----------
+    named : FittedStructure
+    columns : ndarray, shape (fitted, k)
+        Columns of a shape [deg] on the fitted rows.
+
+    Returns
+    -------
+    ndarray, shape (fitted,)
+        In deg, with what the calibration takes up of it.
+    """
+    beside_line = recalibration(named)
+    amplitudes = np.linalg.lstsq(beside_line(columns), beside_line(named.residual_deg), rcond=1e-6)[
+        0
+    ]
+    return np.asarray(columns @ amplitudes)
 
 
 def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | None:
@@ -231,10 +285,10 @@ def _strongest(accepted: Candidate) -> Remainder | None:
     size = accepted.fit.rmse_deg
     if term is not None:
         # Far beyond the noise, rows count less the further off they are; here all count the same.
-        fitted, beside_line = accepted.fit, recalibration(accepted.fit)
-        columns = beside_line(term.columns(fitted.history)[fitted.problem.fitted])
-        amplitudes = np.linalg.lstsq(columns, beside_line(fitted.residual_deg), rcond=1e-6)[0]
-        size = float(np.max(np.abs(columns @ amplitudes)))
+        fitted = accepted.fit
+        columns = term.columns(fitted.history)[fitted.problem.fitted]
+        twist = recalibration(fitted)(_fitted_beside_line(fitted, columns))
+        size = float(np.max(np.abs(twist)))
     return Remainder(shape=name, place=place, size_deg=size)
 
 
