@@ -413,3 +413,20 @@ def test_rows_of_one_reading_keep_their_time(tmp_path: Path) -> None:
     found = cs.Recording.read(write(tmp_path, text))
     assert found.time_s is not None
     assert len(np.unique(found.time_s)) == 8
+
+
+@pytest.mark.parametrize("last", ["9.0,0.5,", "9.0,0.5,29.5", "9.0,0.5,29.5,", "9.0"])
+def test_a_last_row_that_the_logger_did_not_finish_is_passed_over(
+    tmp_path: Path, last: str
+) -> None:
+    recording = cs.Recording.read(write(tmp_path, TEXT + last))
+    assert_is_the_loop(recording)
+    (note,) = [note for note in recording.notes if "incomplete" in note]
+    assert "data row 10" in note
+    assert "run" in note
+
+
+def test_a_row_without_its_run_elsewhere_is_refused(tmp_path: Path) -> None:
+    text = TEXT.replace("2.0,8.0,50.0,1", "2.0,8.0,50.0,")
+    said = complaint(write(tmp_path, text))
+    assert "data row 3, column run: found no number, expected an integer" in said

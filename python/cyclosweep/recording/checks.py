@@ -155,7 +155,7 @@ def _clock(recording: Samples) -> list[Fault]:
             Fault(
                 "time_backwards",
                 "DATA_FAULT",
-                f"Time runs backwards {times} at sample {at + 2} of run {run[at + 1]} "
+                f"Time runs backwards {times} at sample {at + 2}, run {run[at + 1]} "
                 f"({time[at]:g} s, then {time[at + 1]:g} s): the order of events is unknown."
                 f"{advice}",
             )

@@ -106,9 +106,37 @@ def load(
     numbers, words = _needed(path, meta_path, meta, sources, table.header)
     frame = table.read(sorted(numbers), sorted(words))
     notes = list(table.notes)
+    frame = _without_broken_end(frame, notes)
     remarks = take_stated_units((path, meta_path), meta, table, sources, notes)
     remarks += unread_columns(meta, sources, table)
     return frame, notes, remarks
+
+
+def _without_broken_end(frame: pl.DataFrame, notes: list[str]) -> pl.DataFrame:
+    """Pass over a last row that lacks a value no other row lacks, as where a logger was stopped.
+
+    Parameters
+    ----------
+    frame : polars.DataFrame
+        The file columns.
+    notes : list of str
+        What was passed over is added to it.
+
+    Returns
+    -------
+    polars.DataFrame
+    """
+    if frame.height < 2:
+        return frame
+    lacking = [name for name in frame.columns if frame[name].null_count() == 1]
+    broken = [name for name in lacking if frame[name][-1] is None]
+    if not broken:
+        return frame
+    notes.append(
+        f"The last row, data row {frame.height}, is incomplete (no {', '.join(broken)}): passed "
+        "over."
+    )
+    return frame.head(-1)
 
 
 def refuse_missing_columns(
@@ -268,9 +296,10 @@ def canonical_columns(
     else:
         wrong = np.flatnonzero(~(np.isfinite(run) & (run == np.rint(run)) & (abs(run) < 2**53)))
         if len(wrong):
+            value = run[wrong[0]]
             raise InputError(
                 f"{path}, data row {wrong[0] + 1}, column {sources['run'].column}: found "
-                f"{run[wrong[0]]:g}, expected an integer"
+                f"{'no number' if np.isnan(value) else f'{value:g}'}, expected an integer"
             )
     _unwrap_angle(columns, sources["angle_deg"].modulo, notes)
     return columns

@@ -18,6 +18,7 @@ from cyclosweep.recording.formats.labview import read_lvm
 from cyclosweep.recording.formats.matlab import read_hdf5, read_mat5
 from cyclosweep.recording.formats.tdms import read_tdms
 from cyclosweep.recording.metadata import TableOptions
+from cyclosweep.recording.repeated_names import without_repeated_names
 
 __all__ = ["open_table"]
 
@@ -188,4 +189,5 @@ def _text_table(
         _refuse_idle(path, options, "sheet")
         return read_json(path, content, options)
     _refuse_idle(path, options, "header_row")
-    return _CsvTable(path, open_csv(content, path, options, wanted))
+    text = open_csv(content, path, options, wanted)
+    return _CsvTable(path, without_repeated_names(text))
