@@ -61,6 +61,16 @@ def test_a_wrong_torque_is_named_as_one() -> None:
     assert "torque" in cleaned.faults[-1].reason
 
 
+@pytest.mark.parametrize("apart", [2, 3, 4])
+def test_two_wrong_readings_close_by_do_not_hide_each_other(apart: int) -> None:
+    """Three samples apart, the larger one was left out, and the smaller one fitted."""
+    recording = spoilt(spoilt(loops(), 400, 6.0), 400 + apart, -40.0)
+    cleaned = without_single_outliers(recording, LINE)
+    assert len(cleaned) == len(recording) - 2
+    assert "sample 401" in cleaned.faults[-1].reason
+    assert f"sample {401 + apart}" in cleaned.faults[-1].reason
+
+
 def test_a_jump_that_stays_and_a_knock_of_two_readings_are_kept() -> None:
     recording = loops()
     assert left_out(spoilt(recording, 400, 5.0, rows=60)) == 0

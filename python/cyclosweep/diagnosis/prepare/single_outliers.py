@@ -51,34 +51,66 @@ def without_single_outliers(recording: Recording, line: NominalLine) -> Recordin
     Recording
         The same recording where there are none; otherwise with a remark that names them.
     """
+    most = max(MOST_SHARE * len(recording), 1.0)
+    kept, words = np.arange(len(recording)), dict[int, str]()
+    while True:
+        left = recording.take(kept)
+        of_angle, of_torque = _outliers(left, line)
+        found = of_angle | of_torque
+        if not np.any(found):
+            break
+        # One hides another close by; with it left out, the other stands out by itself.
+        for row in np.flatnonzero(found):
+            words[int(kept[row])] = _words(
+                left, int(row), int(kept[row]), in_torque=bool(of_torque[row])
+            )
+        if len(words) > most:
+            return recording
+        kept = kept[~found]
+    if not words:
+        return recording
+    parts = [words[row] for row in sorted(words)[:LISTED]]
+    more = f" and {len(words) - LISTED} more" if len(words) > LISTED else ""
+    reason = f"left out as single outliers: {'; '.join(parts)}{more}"
+    return replace(left, faults=(*left.faults, Fault("single_outliers", None, reason)))
+
+
+def _outliers(recording: Recording, line: NominalLine) -> tuple[Flags, Flags]:
+    """Samples whose angle, or torque, is far from both neighbours'.
+
+    Parameters
+    ----------
+    recording : Recording
+        With an angle.
+    line : NominalLine
+        Compliance of the drive at the recorded shaft [deg/(N m)].
+
+    Returns
+    -------
+    of_angle, of_torque : ndarray of bool, shape (n,)
+        No sample is both.
+    """
     assert recording.angle_deg is not None
     torque, angle = recording.torque_nm, recording.angle_deg
     twist = angle - line.compliance_deg_per_nm * torque
     least = STEPS * recording.angle_resolution_deg
     of_angle = _spikes(twist, recording.run, least) & _is_steady(torque, recording.run)
     of_torque = _spikes(torque, recording.run, 0.0) & _is_steady(angle, recording.run)
-    of_torque &= ~of_angle
-    crosses = _may_cross_play(torque)
-    of_angle, of_torque = of_angle & ~crosses, of_torque & ~crosses
-    found = of_angle | of_torque
-    if not np.any(found) or np.count_nonzero(found) > max(MOST_SHARE * len(found), 1.0):
-        return recording
-    rows = np.flatnonzero(found)
-    parts = [_words(recording, int(row), in_torque=bool(of_torque[row])) for row in rows[:LISTED]]
-    more = f" and {len(rows) - LISTED} more" if len(rows) > LISTED else ""
-    reason = f"left out as single outliers: {'; '.join(parts)}{more}"
-    others = recording.take(~found)
-    return replace(others, faults=(*others.faults, Fault("single_outliers", None, reason)))
+    within = ~_may_cross_play(torque)
+    return of_angle & within, of_torque & ~of_angle & within
 
 
-def _words(recording: Recording, row: int, *, in_torque: bool) -> str:
+def _words(recording: Recording, row: int, sample: int, *, in_torque: bool) -> str:
     """What a single outlier reads, and where.
 
     Parameters
     ----------
     recording : Recording
+        Without the outliers that were found before.
     row : int
-        Its sample, counted from zero.
+        Its row there, counted from zero.
+    sample : int
+        Its sample in the whole recording, counted from zero.
     in_torque : bool
         Whether it is the torque that is off, and not the angle.
 
@@ -93,7 +125,7 @@ def _words(recording: Recording, row: int, *, in_torque: bool) -> str:
     middle = 0.5 * (values[row - 1] + values[row + 1])
     when = "" if recording.time_s is None else f" ({recording.time_s[row]:.6g} s)"
     return (
-        f"sample {row + 1}{when}, {name} {values[row]:.4g} {unit} between readings of about "
+        f"sample {sample + 1}{when}, {name} {values[row]:.4g} {unit} between readings of about "
         f"{middle:.4g} {unit}"
     )
 
