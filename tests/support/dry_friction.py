@@ -14,3 +14,13 @@ def twist_with_friction(
         carried[row] = np.clip(moved, -friction_nm, friction_nm)
     elastic = torque_nm - carried
     return np.asarray(28.0 * np.sign(elastic) + compliance_deg_per_nm * elastic)
+
+
+def friction_that_builds_up(torque: NDArray[np.float64], friction_nm: float) -> NDArray[np.float64]:
+    """Torque that friction takes: four parallel contacts that slip one after another."""
+    limits = friction_nm * np.array([0.5, 0.8, 1.2, 1.5])
+    taken, carried = np.zeros(len(torque)), np.zeros(4)
+    for row in range(1, len(torque)):
+        carried = np.clip(carried + torque[row] - torque[row - 1], -limits, limits)
+        taken[row] = carried.mean()
+    return taken

@@ -10,6 +10,7 @@ from cyclosweep.diagnosis.verification import SETTLE
 from cyclosweep.diagnosis.verify.experiment import FINER, next_experiment, rig_programme
 from cyclosweep.diagnosis.verify.menu import MENU, SHOWN_BY, able_to_show
 from cyclosweep.simulation.effects import VOCABULARY
+from tests.support.dry_friction import friction_that_builds_up
 from tests.support.searches import search_of, search_of_recording
 from tests.unit.test_diagnosis_answer import found
 
@@ -175,3 +176,25 @@ def test_a_play_that_changes_from_run_to_run_is_to_settle_first() -> None:
     assert "play that changes from run to run" in [each.behaviour for each in answer.classes]
     assert answer.next_experiment is not None
     assert answer.next_experiment.program == SETTLE
+
+
+def test_what_is_no_larger_than_rounding_is_to_be_read_finer() -> None:
+    """Whether it repeats was asked, which rounding does whatever rounds."""
+    leg = np.linspace(0.0, 600.0, 200)
+    torque = np.r_[leg, leg[-2::-1], -leg[1:], -leg[-2::-1]]
+    elastic = torque - friction_that_builds_up(torque, 25.0)
+    angle = 0.32 * np.where(elastic < 0, -1.0, 1.0) + 0.00036 * elastic
+    noise = 0.001 * np.random.default_rng(31).normal(size=3 * len(torque))
+    time = np.arange(len(torque)) * 600.0 / 199
+    recording = cs.Recording.from_arrays(
+        np.tile(torque, 3),
+        np.round((np.tile(angle, 3) + noise) / 0.05) * 0.05,
+        run=np.repeat([1, 2, 3], len(torque)),
+        time_s=np.concatenate([time / 5.0, 1e3 + time / 5.0, 2e3 + time / 50.0]),
+        side="output",
+        angle_resolution_deg=0.05,
+    )
+    answer = cs.diagnose(recording, cs.Drive.reference_87()).answer
+    assert answer.verdict == "UNKNOWN_PHYSICS"
+    assert answer.next_experiment is not None
+    assert "finer than 0.05 deg" in answer.next_experiment.program

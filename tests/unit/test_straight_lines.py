@@ -6,6 +6,7 @@ import pytest
 import cyclosweep as cs
 from cyclosweep.report.play_and_stiffness import mean_and_interval
 from cyclosweep.report.straight_lines import straight_lines
+from tests.support.dry_friction import friction_that_builds_up
 
 
 @pytest.mark.parametrize("rows", [240, 361])
@@ -28,16 +29,6 @@ def test_a_loop_of_few_readings_is_read_without_bias() -> None:
     assert lines.play_deg == pytest.approx(56.0, abs=0.05)
     assert lines.compliance_deg_per_nm == pytest.approx(2.7, rel=0.003)
     assert lines.friction_nm == pytest.approx(0.3, rel=0.03)
-
-
-def friction_that_builds_up(torque: np.ndarray, friction_nm: float) -> np.ndarray:
-    """Torque that friction takes: four parallel contacts that slip one after another."""
-    limits = friction_nm * np.array([0.5, 0.8, 1.2, 1.5])
-    taken, carried = np.zeros(len(torque)), np.zeros(4)
-    for row in range(1, len(torque)):
-        carried = np.clip(carried + torque[row] - torque[row - 1], -limits, limits)
-        taken[row] = carried.mean()
-    return taken
 
 
 @pytest.mark.parametrize(("rows", "runs"), [(60, 3), (60, 6), (200, 6)])

@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.verify.experiment import next_experiment
 from cyclosweep.diagnosis.verify.holdout import HeldOutResult, judge_left_out
 from cyclosweep.diagnosis.verify.self_check import self_check
 from cyclosweep.diagnosis.whole_loop.run_comparison import Steadiness
+from cyclosweep.recording.robust import rounding_sigma
 from cyclosweep.result import DriveChange, NextExperiment, RunToRunDrift, SelfCheck
 
 NOTHING_HELD_OUT = HeldOutResult((), np.nan, np.nan, np.nan, "")
@@ -29,6 +30,13 @@ SETTLE = (
     "agree, then record"
 )
 """Next experiment where the drive changed while it was tested."""
+READ_FINER = (
+    "the same programme once more, the angle read in steps finer than {step:.3g} deg: what remains "
+    "is about as large as rounding to these steps, which repeats whenever the programme does"
+)
+"""Next experiment where the rounding of the angle may be all that is left."""
+OF_ROUNDING = 1.25
+"""Largest error, over that of readings rounded to even steps, that is about as large as it."""
 CHANGED_BY_RUN = frozenset({RUN_COMPLIANCE, RUN_PLAY})
 """Classes of behaviour by which the drive is another one in each run."""
 
@@ -164,6 +172,9 @@ def _next_experiment(concluded: Conclusion, decision: Decision) -> NextExperimen
     if decision.verdict == "INSUFFICIENT_DATA" and bounds:
         weakest = max(bounds, key=lambda bound: bound.upper95_deg).name
     elif decision.verdict in ("UNKNOWN_PHYSICS", "MOSTLY_EXPLAINED"):
+        step = concluded.search.problem.recording.angle_resolution_deg
+        if concluded.accepted.fit.rmse_deg <= OF_ROUNDING * rounding_sigma(step):
+            return NextExperiment(program=READ_FINER.format(step=step))
         weakest = _least_known(concluded)
         if weakest is None:
             return NextExperiment(program=ONCE_MORE)
