@@ -335,12 +335,12 @@ def test_a_measure_that_nobody_has_makes_no_column(tmp_path: Path) -> None:
 
 
 def test_recordings_at_the_input_stand_apart_with_how_they_were_read(tmp_path: Path) -> None:
-    by_hand = row("lever", side="input", read_by="published model", friction_nm=None)
+    by_hand = row("lever", side="input", read_by="calibrated model", friction_nm=None)
     none = row("stuck", not_read="friction hides play and stiffness", play_deg=None)
     text = page_of(tmp_path, [row("a"), by_hand, none])
     output, other = (text.index(f"Measured at the {side} shaft") for side in ("output", "input"))
     assert output < text.index(">a</a>") < other < text.index(">lever</a>")
-    assert "Lever: play and compliance are those of the published model" in text
+    assert "Lever: play and compliance are those of the calibrated model, with the" in text
     assert "Stuck: a value is missing because friction hides play and stiffness" in text
 
 

@@ -20,7 +20,7 @@ from cyclosweep.result.series import FEWEST, MEASURES, Level, Trend
 
 Row = dict[str, Any]
 
-READ_BY = {True: "straight lines", False: "published model"}
+READ_BY = {True: "straight lines", False: "calibrated model"}
 """How play and compliance were read, by whether lines through the branches could be laid."""
 
 LEAST_LEVELS = 3

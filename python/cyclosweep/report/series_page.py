@@ -93,7 +93,7 @@ def _not_read(rows: Sequence[Row]) -> str:
         "effects that were found, as the readings are too few or too coarse for lines through the "
         "branches, and for a friction"
         for row in rows
-        if row.get("read_by") == "published model"
+        if row.get("read_by") == "calibrated model"
     ]
     return bullets("How values were read", items)
 
