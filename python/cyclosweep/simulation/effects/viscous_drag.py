@@ -29,9 +29,8 @@ the torque rose to the first reading of a run."""
 BEYOND_FRICTION = "beyond_friction"
 """Name in the shape of a drag: 1 where friction holds a part that does not lag, as where drag and
 friction act at different places of the drive."""
-WITHOUT_LAG = "without_lag"
-"""Name in the shape of a drag: 1 where the rate is that of the torque, by which it never lags."""
-OPTIONAL = (BY_READING, APPROACH, WITHOUT_LAG, BEYOND_FRICTION)
+OPTIONAL = (BY_READING, APPROACH, BEYOND_FRICTION)
+"""What a shape may have or not."""
 LEAST_THINNING, MOST_THINNING = 0.01, 10.0
 """Rates at which thinning may begin, over the usual rate of the recording."""
 FAR_BELOW = 0.2
@@ -59,9 +58,6 @@ class ViscousDrag(Effect):
     `by_reading` 1 the rate is instead that from one reading to the next, as in simulations that
     take one implicit step a reading. The two differ where the lag is not much shorter than the time
     between readings.
-
-    With `without_lag` 1 the rate is that of the torque times the compliance, as in simulations that
-    do not solve for the twist: the loop then has its full width right behind a reversal.
 
     Beside friction it is the part that friction holds that lags, as where both act on one joint:
     friction turns when that part turns, later than the torque. With `beyond_friction` 1 that part
@@ -119,20 +115,17 @@ class ViscousDrag(Effect):
         return both if _is_coarse(history) else both[:1]
 
     def refinements(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Other rates, another approach, no lag, and drag that thins above some rate."""
+        """The other rates, another approach to the runs, and drag that thins above some rate."""
         found = [otherwise_read(shape)] if _is_coarse(history) else []
         if APPROACH in shape:
             found.append({k: v for k, v in shape.items() if k != APPROACH})
         else:
             found.append({**shape, APPROACH: 10.0 * history.usual_step_s})
-        found.append(lagging_otherwise(shape, history))
         found.append(_thinning_otherwise(shape, _usual_rate(history)))
         return found
 
     def consistent(self, history: History, shape: Shape, amplitudes: Floats) -> Shape:
         """Shape with the lag of this drag at the usual rate."""
-        if WITHOUT_LAG in shape:
-            return shape
         usual = _usual_rate(history)
         drag = max(float(amplitudes[0]), 0.0) * _resistance(shape, usual) / usual
         shortest = SHORTEST_LAG * history.rate_step_s
@@ -192,7 +185,6 @@ class ViscousDrag(Effect):
         if not 0.0 < power <= 1.0:
             raise InputError(f"power of the rate: found {power:g}, expected above 0 and up to 1")
         check_flag(known, BY_READING)
-        check_flag(known, WITHOUT_LAG)
         check_flag(known, BEYOND_FRICTION)
         return known
 
@@ -210,25 +202,6 @@ def placed_otherwise(shape: Shape) -> Shape:
     """Drag of the part that friction holds, or beyond it, whichever it is not."""
     rest = {name: value for name, value in shape.items() if name != BEYOND_FRICTION}
     return {**rest, BEYOND_FRICTION: 1.0} if holds_friction(shape) else rest
-
-
-def lagging_otherwise(shape: Shape, history: History) -> Shape:
-    """Drag by the rate of the torque instead of that of the twist, or the other way about.
-
-    Parameters
-    ----------
-    shape : mapping
-        Of a drag.
-    history : History
-        Of the recording.
-
-    Returns
-    -------
-    mapping
-    """
-    if WITHOUT_LAG in shape:
-        return {name: value for name, value in shape.items() if name != WITHOUT_LAG}
-    return {**shape, "lag_s": SHORTEST_LAG * history.rate_step_s, WITHOUT_LAG: 1.0}
 
 
 def _thinning_otherwise(shape: Shape, usual_rate: float) -> Shape:

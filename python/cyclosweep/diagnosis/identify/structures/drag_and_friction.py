@@ -13,10 +13,12 @@ from cyclosweep.diagnosis.identify.fitting.signs import with_right_signs
 from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.simulation.effects.history import History
 from cyclosweep.simulation.effects.parameters import Shape
-from cyclosweep.simulation.effects.viscous_drag import lagging_otherwise, placed_otherwise
+from cyclosweep.simulation.effects.viscous_drag import placed_otherwise
 
 USUAL_SLIP = {"slip_deg": 0.02, "scatter": 1.0, "skew": 0.0}
 """Presliding from which friction is begun; its distance is over the largest elastic twist."""
+NOISE_ALONE = 1.02
+"""Error over the noise up to which a fit needs no other start."""
 
 
 def begun_together(joint: FittedStructure, parent: FittedStructure) -> FittedStructure:
@@ -32,16 +34,17 @@ def begun_together(joint: FittedStructure, parent: FittedStructure) -> FittedStr
     Returns
     -------
     FittedStructure
-        The given one where it has no drag, or no friction, or is no worse.
+        The given one where it has no drag, or no friction, leaves noise alone, or is no worse.
     """
     drags = [term.effect is not None and term.effect.is_drag for term in joint.terms]
     if not any(drags) or not any(term.slips for term in joint.terms):
         return joint
+    if joint.rmse_deg <= NOISE_ALONE * joint.noise.spread_deg:
+        return joint
     history = joint.problem.history
     usual = tuple(_usual(term, history) for term in joint.terms)
     best = _better(joint, usual, parent)
-    best = _better(best, _with_drag(usual, placed_otherwise), parent)
-    return _better(best, _with_drag(best.terms, lambda s: lagging_otherwise(s, history)), best)
+    return _better(best, _with_drag(usual, placed_otherwise), parent)
 
 
 def _better(
