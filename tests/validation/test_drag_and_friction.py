@@ -83,7 +83,7 @@ def test_a_model_of_both_is_solved_for_the_twist() -> None:
     lag = {"power": 1.0, "lag_s": DRAG_NM_S_PER_DEG * COMPLIANCE}
     friction = EffectValue("friction_hysteresis", {"slip_deg": SLIP_DEG, "scatter": 0.05}, (30.0,))
     errors = []
-    for shape in (lag, {**lag, "beyond_friction": 1.0}):
+    for shape in ({**lag, "holds_friction": 1.0}, lag):
         drag = EffectValue("viscous_drag", shape, (DRAG_NM_S_PER_DEG,))
         model = cs.Model(
             compliance_deg_per_nm=COMPLIANCE,

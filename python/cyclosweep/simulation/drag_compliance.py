@@ -1,16 +1,18 @@
-"""Twist that the elastic parts of a drive lose for each unit of drag.
+"""Twist that the elastic parts of a drive lose for each unit of drag, and what lags with it.
 
 Drag takes a part of the torque, and the elastic parts are twisted by what it leaves: where the
 drive is softer, the same drag takes away more twist.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from cyclosweep.simulation.effect_value import linear_twist
+from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats, History
+from cyclosweep.simulation.effects.viscous_drag import holds_friction
 from cyclosweep.simulation.elastic_law import CalibratedLine
+from cyclosweep.simulation.mesh_position import travelling
 
 LEAST_DRAG = 1e-3
 """Drag for which the compliance is taken at the least, as a share of the largest torque."""
@@ -80,3 +82,12 @@ def _under(history: History, drag_nm: Floats | float) -> History:
     torque = history.elastic_nm - drag_nm
     side = np.where(torque == 0.0, history.side, np.sign(torque))
     return history.with_state(elastic_nm=torque, side=side)
+
+
+def moving_the_held_part(others: Sequence[EffectValue]) -> list[EffectValue]:
+    """Effects without a law of their own elasticity that turn the part that friction holds.
+
+    Along the travel of the mesh that part turns, and what drag holds back it does not turn.
+    """
+    drags = (value for value in others if value.effect.is_drag and holds_friction(value.shape))
+    return [*travelling(others), *drags]

@@ -10,14 +10,13 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
-from cyclosweep.simulation.drag_compliance import under_drag_of
+from cyclosweep.simulation.drag_compliance import moving_the_held_part, under_drag_of
 from cyclosweep.simulation.effect_value import twist_with_and_without
 from cyclosweep.simulation.effects.history import Flags, Floats, History, runs_and_restarts
 from cyclosweep.simulation.effects.orders import needed_columns
 from cyclosweep.simulation.effects.slip import Friction
 from cyclosweep.simulation.effects.slip_start import lies_behind_play
 from cyclosweep.simulation.effects.twist_law import ElasticLaw
-from cyclosweep.simulation.effects.viscous_drag import holds_friction
 from cyclosweep.simulation.elastic_law import elastic_law
 from cyclosweep.simulation.mesh_position import MESH_ROUNDS, on_the_mesh, travelling
 from cyclosweep.simulation.model import SCHEMA, EffectValue, Model, check_line, linear_twist
@@ -238,12 +237,13 @@ def settle(
     sliding = [value for value in model.effects if value.effect.slips]
     others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
-    turning = _moving_the_held_part(others)
+    turning = moving_the_held_part(others)
     law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     history = history.with_state(measured_deg=None, elastic_law=law)
     if moving:
         rounds += MESH_ROUNDS
         history = on_the_mesh(moving, history, history.angle_deg)
+    least = (np.inf, history)
     for _ in range(rounds):
         history = under_drag_of(model, history)
         added, beyond_deg = twist_with_and_without(turning, others, history)
@@ -260,8 +260,13 @@ def settle(
                 history = history.with_state(angle_deg=angle)
         if not any(not v.effect.slips for v in others):
             break
-        if float(np.max(np.abs(history.angle_deg - before))) < 1e-6:
+        moved = float(np.max(np.abs(history.angle_deg - before)))
+        if moved < 1e-6:
             break
+        # A long lag and friction that turns with it swing about each other after some rounds.
+        if sliding and len(turning) > len(moving) and moved > least[0]:
+            return least[1]
+        least = (moved, history)
     return history
 
 
@@ -315,15 +320,6 @@ def _slide(
     return history.with_state(side=side, **state)
 
 
-def _moving_the_held_part(others: Sequence[EffectValue]) -> list[EffectValue]:
-    """Effects without a law of their own elasticity that turn the part that friction holds.
-
-    Along the travel of the mesh that part turns, and what drag holds back it does not turn.
-    """
-    drags = (value for value in others if value.effect.is_drag and holds_friction(value.shape))
-    return [*travelling(others), *drags]
-
-
 def _friction(sliding: Sequence[EffectValue]) -> Friction:
     """Friction of all effects that slip."""
     return Friction.of((v.effect, v.shape, v.amplitudes[0]) for v in sliding)
@@ -362,7 +358,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         if not (value.effect.elastic if held_back is None else value.elastic)
     ]
     behind = held_back is not None and lies_behind_play(held_back.shape)
-    turning = _moving_the_held_part(others)
+    turning = moving_the_held_part(others)
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     least, stalled = np.inf, 0

@@ -26,10 +26,10 @@ makes a difference whether the rate is that between the readings or that from re
 THINNED, THINNING, APPROACH = "thinned_power", "thinning_deg_per_s", "approach_s"
 """Names in the shape: power of the rate above that of thinning, that rate, and the time in which
 the torque rose to the first reading of a run."""
-BEYOND_FRICTION = "beyond_friction"
-"""Name in the shape of a drag: 1 where friction holds a part that does not lag, as where drag and
-friction act at different places of the drive."""
-OPTIONAL = (BY_READING, APPROACH, BEYOND_FRICTION)
+HOLDS_FRICTION = "holds_friction"
+"""Name in the shape of a drag: 1 where the part that friction holds lags, as where drag and
+friction act on one joint."""
+OPTIONAL = (BY_READING, APPROACH, HOLDS_FRICTION)
 """What a shape may have or not."""
 LEAST_THINNING, MOST_THINNING = 0.01, 10.0
 """Rates at which thinning may begin, over the usual rate of the recording."""
@@ -59,9 +59,9 @@ class ViscousDrag(Effect):
     take one implicit step a reading. The two differ where the lag is not much shorter than the time
     between readings.
 
-    Beside friction it is the part that friction holds that lags, as where both act on one joint:
-    friction turns when that part turns, later than the torque. With `beyond_friction` 1 that part
-    follows the torque, and the lag lies between it and the shaft that is measured.
+    Beside friction the part that friction holds follows the torque, as where drag and friction act
+    at different places. With `holds_friction` 1 that part lags, and friction turns when it turns,
+    later than the torque, as where both act on one joint.
 
     A run is reached from zero torque at the rate of its first readings, or in the time
     `approach_s`; where that is long, its first reading does not lag. It belongs to the recorded
@@ -185,7 +185,7 @@ class ViscousDrag(Effect):
         if not 0.0 < power <= 1.0:
             raise InputError(f"power of the rate: found {power:g}, expected above 0 and up to 1")
         check_flag(known, BY_READING)
-        check_flag(known, BEYOND_FRICTION)
+        check_flag(known, HOLDS_FRICTION)
         return known
 
     def amplitudes(self, shape: Shape) -> tuple[Parameter, ...]:
@@ -195,13 +195,14 @@ class ViscousDrag(Effect):
 
 def holds_friction(shape: Shape) -> bool:
     """Whether the part that friction holds lags with a drag of this shape."""
-    return not shape.get(BEYOND_FRICTION, 0.0)
+    return bool(shape.get(HOLDS_FRICTION, 0.0))
 
 
 def placed_otherwise(shape: Shape) -> Shape:
     """Drag of the part that friction holds, or beyond it, whichever it is not."""
-    rest = {name: value for name, value in shape.items() if name != BEYOND_FRICTION}
-    return {**rest, BEYOND_FRICTION: 1.0} if holds_friction(shape) else rest
+    if holds_friction(shape):
+        return {name: value for name, value in shape.items() if name != HOLDS_FRICTION}
+    return {**shape, HOLDS_FRICTION: 1.0}
 
 
 def _thinning_otherwise(shape: Shape, usual_rate: float) -> Shape:
