@@ -4,7 +4,6 @@ Found one after the other, the first makes the loop of both: a drag then thins u
 with the rate, or friction slips as far as the drag lags, and the fit of both ends there.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from cyclosweep.diagnosis.identify.fitting.fit import fit
@@ -12,7 +11,6 @@ from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructu
 from cyclosweep.diagnosis.identify.fitting.signs import with_right_signs
 from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.simulation.effects.history import History
-from cyclosweep.simulation.effects.parameters import Shape
 from cyclosweep.simulation.effects.viscous_drag import placed_otherwise
 
 USUAL_SLIP = {"slip_deg": 0.02, "scatter": 1.0, "skew": 0.0}
@@ -44,7 +42,11 @@ def begun_together(joint: FittedStructure, parent: FittedStructure) -> FittedStr
     history = joint.problem.history
     usual = tuple(_usual(term, history) for term in joint.terms)
     best = _better(joint, usual, parent)
-    return _better(best, _with_drag(usual, placed_otherwise), parent)
+    elsewhere = tuple(
+        replace(term, shape=placed_otherwise(term.shape)) if is_drag else term
+        for term, is_drag in zip(usual, drags, strict=True)
+    )
+    return _better(best, elsewhere, parent)
 
 
 def _better(
@@ -68,27 +70,6 @@ def _better(
     if other is None or other.names != best.names or other.loss >= best.loss:
         return best
     return other
-
-
-def _with_drag(terms: tuple[Term, ...], changed: Callable[[Shape], Shape]) -> tuple[Term, ...]:
-    """Terms with drag of another form.
-
-    Parameters
-    ----------
-    terms : tuple of Term
-    changed : callable
-        From the shape of the drag to another one.
-
-    Returns
-    -------
-    tuple of Term
-    """
-    return tuple(
-        replace(term, shape=changed(term.shape))
-        if term.effect is not None and term.effect.is_drag
-        else term
-        for term in terms
-    )
 
 
 def _usual(term: Term, history: History) -> Term:
