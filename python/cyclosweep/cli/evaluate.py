@@ -51,7 +51,7 @@ def evaluate(
             names = [name for name, value in one.values().items() if value == value]
             row = {name: [getattr(one, name)] for name in names if not name.startswith("shaft_")}
             base, table = one, pl.DataFrame({"name": [one.name], **row})
-            rows = ["row 2"]
+            rows = [2]
         else:
             base = Drive.load(drive)
             table, rows = read_filled_rows(designs)
@@ -60,7 +60,7 @@ def evaluate(
             table,
             model=model,
             loads_tn=loads_tn,
-            row_name=lambda index: rows[index],
+            row_name=lambda index: f"row {rows[index]}",
         )
     except InputError as error:
         text = str(error)

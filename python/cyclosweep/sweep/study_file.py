@@ -154,7 +154,9 @@ class StudyFile(TomlTable):
             raise InputError(f"{path}: no rows below the header, expected at least one")
         try:
             columns = [
-                input_column(column.alias(known_input(drive, column.name)), lambda k: rows[k])
+                input_column(
+                    column.alias(known_input(drive, column.name)), lambda k: f"row {rows[k]}"
+                )
                 for column in frame.get_columns()
             ]
             return Space.table(drive, pl.DataFrame(columns))

@@ -79,8 +79,8 @@ def read_table(path: str | Path, *, keep_blank_rows: bool = False) -> pl.DataFra
     return text.select(_typed(column) for column in text.get_columns())
 
 
-def read_filled_rows(path: str | Path) -> tuple[pl.DataFrame, list[str]]:
-    """Read a table, and what a message calls each of its rows.
+def read_filled_rows(path: str | Path) -> tuple[pl.DataFrame, list[int]]:
+    """Read a table, and where each of its rows stands in the file.
 
     Parameters
     ----------
@@ -91,8 +91,8 @@ def read_filled_rows(path: str | Path) -> tuple[pl.DataFrame, list[str]]:
     -------
     polars.DataFrame
         Without rows that have no filled cell.
-    list of str
-        Its rows as they count in the file.
+    list of int
+        Its rows as they count in the file, see :func:`row_in_file`.
 
     Raises
     ------
@@ -101,8 +101,7 @@ def read_filled_rows(path: str | Path) -> tuple[pl.DataFrame, list[str]]:
     """
     table = read_table(path, keep_blank_rows=True)
     filled = ~table.select(pl.all_horizontal(pl.all().is_null())).to_series()
-    rows = [f"row {row_in_file(path, k)}" for k, is_filled in enumerate(filled) if is_filled]
-    return table.filter(filled), rows
+    return table.filter(filled), (filled.arg_true() + row_in_file(path, 0)).to_list()
 
 
 def write_table(frame: pl.DataFrame, path: str | Path) -> None:
