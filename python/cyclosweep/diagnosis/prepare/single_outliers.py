@@ -52,21 +52,21 @@ def without_single_outliers(recording: Recording, line: NominalLine) -> Recordin
         The same recording where there are none; otherwise with a remark that names them.
     """
     most = max(MOST_SHARE * len(recording), 1.0)
-    kept, words = np.arange(len(recording)), dict[int, str]()
+    left, kept, words = recording, np.arange(len(recording)), dict[int, str]()
     while True:
-        left = recording.take(kept)
         of_angle, of_torque = _outliers(left, line)
         found = of_angle | of_torque
         if not np.any(found):
             break
+        if len(words) + np.count_nonzero(found) > most:
+            return recording
         # One hides another close by; with it left out, the other stands out by itself.
         for row in np.flatnonzero(found):
             words[int(kept[row])] = _words(
                 left, int(row), int(kept[row]), in_torque=bool(of_torque[row])
             )
-        if len(words) > most:
-            return recording
         kept = kept[~found]
+        left = recording.take(kept)
     if not words:
         return recording
     parts = [words[row] for row in sorted(words)[:LISTED]]
