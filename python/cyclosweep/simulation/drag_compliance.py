@@ -12,7 +12,6 @@ from cyclosweep.simulation.effect_value import EffectValue, linear_twist
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.viscous_drag import holds_friction
 from cyclosweep.simulation.elastic_law import CalibratedLine
-from cyclosweep.simulation.mesh_position import travelling
 
 LEAST_DRAG = 1e-3
 """Drag for which the compliance is taken at the least, as a share of the largest torque."""
@@ -84,10 +83,6 @@ def _under(history: History, drag_nm: Floats | float) -> History:
     return history.with_state(elastic_nm=torque, side=side)
 
 
-def moving_the_held_part(others: Sequence[EffectValue]) -> list[EffectValue]:
-    """Effects without a law of their own elasticity that turn the part that friction holds.
-
-    Along the travel of the mesh that part turns, and what drag holds back it does not turn.
-    """
-    drags = (value for value in others if value.effect.is_drag and holds_friction(value.shape))
-    return [*travelling(others), *drags]
+def lagging_with_friction(values: Sequence[EffectValue]) -> list[EffectValue]:
+    """Drags with which the part that friction holds lags."""
+    return [value for value in values if value.effect.is_drag and holds_friction(value.shape)]

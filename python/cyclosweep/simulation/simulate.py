@@ -10,7 +10,7 @@ from cyclosweep.design.drive import Drive
 from cyclosweep.errors import InputError, instance_of, one_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
-from cyclosweep.simulation.drag_compliance import moving_the_held_part, under_drag_of
+from cyclosweep.simulation.drag_compliance import lagging_with_friction, under_drag_of
 from cyclosweep.simulation.effect_value import twist_with_and_without
 from cyclosweep.simulation.effects.history import Flags, Floats, History, runs_and_restarts
 from cyclosweep.simulation.effects.orders import needed_columns
@@ -237,7 +237,7 @@ def settle(
     sliding = [value for value in model.effects if value.effect.slips]
     others = [v for v in model.effects if not sliding or not v.elastic]
     moving = travelling(others)
-    turning = moving_the_held_part(others)
+    lagging = lagging_with_friction(others)
     law = elastic_law(model, history.largest_torque_nm, held_by_friction=True)
     history = history.with_state(measured_deg=None, elastic_law=law)
     if moving:
@@ -246,7 +246,7 @@ def settle(
     least = (np.inf, history)
     for _ in range(rounds):
         history = under_drag_of(model, history)
-        added, beyond_deg = twist_with_and_without(turning, others, history)
+        added, beyond_deg = twist_with_and_without([*moving, *lagging], others, history)
         before = history.angle_deg
         if sliding:
             history = history.with_state(beyond_deg=beyond_deg)
@@ -264,7 +264,7 @@ def settle(
         if moved < 1e-6:
             break
         # A long lag and friction that turns with it swing about each other after some rounds.
-        if sliding and len(turning) > len(moving) and moved > least[0]:
+        if sliding and lagging and moved > least[0]:
             return least[1]
         least = (moved, history)
     return history
@@ -358,7 +358,7 @@ def _torque(model: Model, programme: Recording) -> Floats:
         if not (value.effect.elastic if held_back is None else value.elastic)
     ]
     behind = held_back is not None and lies_behind_play(held_back.shape)
-    turning = moving_the_held_part(others)
+    turning = [*travelling(others), *lagging_with_friction(others)]
     elastic = np.zeros(len(angle))
     friction = np.zeros(len(angle))
     least, stalled = np.inf, 0
