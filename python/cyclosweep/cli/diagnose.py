@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -217,7 +217,8 @@ def _diagnose_folder(
                    "levels": [{"value": level.value, "recordings": level.recordings,
                                "mean": level.mean, "ci95": level.ci95} for level in each.levels]}
                   for each in series.trends]  # fmt: skip
-        print_json({"table": series.table.to_dicts(), "trends": trends})
+        steps = None if series.steps is None else asdict(series.steps)
+        print_json({"table": series.table.to_dicts(), "trends": trends, "steps": steps})
     else:
         print_tables([_folder_table(series)], any_width=True)
         for row in series.table.to_dicts():
@@ -225,6 +226,8 @@ def _diagnose_folder(
                 print(f"Check first, {row['recording']}: {row['remarks']}")
         for trend in series.trends:
             print(trend.text)
+        if series.steps is not None:
+            print(series.steps.text)
         print(f"Written: {out / 'index.html'}, table.csv, table.parquet")
     if series.failed:
         fail(

@@ -27,6 +27,7 @@ from cyclosweep.diagnosis.series import (
     small_loops_of,
     trends,
 )
+from cyclosweep.diagnosis.series_steps import own_order, steps_in_common, steps_kept, steps_of
 from cyclosweep.display import Steps, shown_steps
 from cyclosweep.errors import (
     DesignError,
@@ -41,7 +42,7 @@ from cyclosweep.recording.columns import metadata_path, stem
 from cyclosweep.recording.endings import ENDINGS, is_recording_name
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.report.series_page import write_series_page
-from cyclosweep.result.series import Trend
+from cyclosweep.result.series import StepsInCommon, Trend
 from cyclosweep.simulation.effects import effects
 
 _LOG = logging.getLogger(__name__)
@@ -67,11 +68,14 @@ class Series:
         Columns of the table that the metadata name.
     trends : tuple of Trend
         What rises or falls with which condition.
+    steps : StepsInCommon or None
+        Order that the steps of the torque share; None where fewer than two recordings have any.
     """
 
     table: pl.DataFrame
     conditions: tuple[str, ...] = ()
     trends: tuple[Trend, ...] = field(default=())
+    steps: StepsInCommon | None = None
 
     @property
     def failed(self) -> int:
@@ -230,7 +234,10 @@ def diagnose_folder(
     _LOG.info("%d recordings diagnosed, written to %s", len(rows), target)
     ordered = [rows[path] for path in paths]
     named = {name for path in paths for name in _condition_names(path, task.meta)}
-    series = _series(ordered, named, options.get("seed", 0))
+    done = [str(row["recording"]) for row in ordered if row["status"] == "ok"]
+    kept = steps_kept({name: target / name / ROW_FILE for name in done})
+    steps = steps_in_common(kept, options.get("seed", 0))
+    series = _series(ordered, named, options.get("seed", 0), steps)
     _write(series, target)
     return series
 
@@ -284,7 +291,8 @@ def _row(path: Path, task: _Task) -> Row:
         found = diagnose(recording, task.drive, full=task.full, **task.options)
         found.write(folder, report=task.full)
         row |= row_of(found) | small_loops_of(path, meta, metadata_path(path, task.meta))
-        write_text(folder / ROW_FILE, json.dumps({"key": key, "row": row}, indent=1))
+        content = {"key": key, "row": row, "steps": steps_of(found)}
+        write_text(folder / ROW_FILE, json.dumps(content))
     except Exception as error:  # one bad file must not stop the others
         named = str(error)
         if not isinstance(error, (InputError, DesignError)):
@@ -335,7 +343,7 @@ def _kept(folder: Path, key: str) -> Row | None:
     return dict(kept["row"]) if whole else None
 
 
-def _series(rows: list[Row], named: set[str], seed: int) -> Series:
+def _series(rows: list[Row], named: set[str], seed: int, steps: StepsInCommon | None) -> Series:
     """Table and trends of all rows.
 
     Parameters
@@ -346,11 +354,14 @@ def _series(rows: list[Row], named: set[str], seed: int) -> Series:
         Columns that are conditions.
     seed : int
         Seed of the random orders by which the trends are judged.
+    steps : StepsInCommon or None
+        Order that the steps share.
 
     Returns
     -------
     Series
     """
+    rows = [row | own_order(steps, str(row["recording"])) for row in rows]
     names = columns_of(rows)
     conditions = tuple(name for name in names if name in named)
     varied = [name for name in conditions if len({row.get(name) for row in rows}) > 1]
@@ -358,7 +369,7 @@ def _series(rows: list[Row], named: set[str], seed: int) -> Series:
         varied.append("mean_temperature_c")
     table = pl.DataFrame({name: [row.get(name) for row in rows] for name in names}, strict=False)
     found = tuple(trends(rows, varied, seed))
-    return Series(table=table, conditions=conditions, trends=found)
+    return Series(table=table, conditions=conditions, trends=found, steps=steps)
 
 
 def _write(series: Series, out: Path) -> None:
@@ -368,4 +379,4 @@ def _write(series: Series, out: Path) -> None:
     with unfinished(parquet) as file:
         series.table.write_parquet(file)
     rows = series.table.to_dicts()
-    write_series_page(page, rows, series.conditions, series.trends)
+    write_series_page(page, rows, series.conditions, series.trends, series.steps)

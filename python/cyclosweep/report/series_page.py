@@ -12,7 +12,7 @@ from cyclosweep.page import bullets, document
 from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.wording import interval, number, words_of
-from cyclosweep.result.series import MEASURES, Trend
+from cyclosweep.result.series import MEASURES, StepsInCommon, Trend
 from cyclosweep.result.words import readable
 
 Row = Mapping[str, Any]
@@ -27,7 +27,11 @@ UNITS = {
 
 
 def write_series_page(
-    path: str | Path, rows: Sequence[Row], conditions: Sequence[str], trends: Sequence[Trend]
+    path: str | Path,
+    rows: Sequence[Row],
+    conditions: Sequence[str],
+    trends: Sequence[Trend],
+    steps: StepsInCommon | None = None,
 ) -> None:
     """Write the page across the recordings of a series.
 
@@ -41,12 +45,15 @@ def write_series_page(
         Columns that are conditions.
     trends : sequence of Trend
         What rises or falls with which condition.
+    steps : StepsInCommon, optional
+        Order that the steps of the torque share.
     """
     done = sum(row["status"] == "ok" for row in rows)
     body = [
         '<header class="top"><h1>Series of recordings</h1><div class="meta">Torque–twist '
         f"diagnosis<br>{done} of {len(rows)} diagnosed</div></header>",
         _trends(rows, trends),
+        _steps(steps),
         _by_side(rows, conditions),
         _check_first(rows),
         _not_read(rows),
@@ -128,6 +135,29 @@ def _trends(rows: Sequence[Row], trends: Sequence[Trend]) -> str:
             f"</tr></thead><tbody>{''.join(lines)}</tbody></table></div></section>"
         )
     return "".join(parts)
+
+
+def _steps(steps: StepsInCommon | None) -> str:
+    """Order that the steps share, and that of each recording."""
+    if steps is None:
+        return ""
+    common = f"order {number(steps.order)} alone" if steps.certain else "the clearest of all"
+    head = ("recording", "clearest order", "random staircases as clear", f"the same, {common}")
+    lines = "".join(
+        f"<tr><td>{escape(name)}</td><td>{number(own.order)}</td>"
+        f"<td>{_percent(own.chance)}</td><td>{_percent(own.chance_of_common)}</td></tr>"
+        for name, own in steps.own.items()
+    )
+    return (
+        f"<section><h2>Steps of the torque</h2><p>{escape(steps.text)}</p>"
+        f'<div class="scroll"><table><thead><tr>{"".join(f"<th>{escape(h)}</th>" for h in head)}'
+        f"</tr></thead><tbody>{lines}</tbody></table></div></section>"
+    )
+
+
+def _percent(share: float) -> str:
+    """Share in percent."""
+    return f"{100 * share:.2g} %"
 
 
 def _mean(trend: Trend, value: float) -> str:

@@ -1,5 +1,6 @@
-"""What a series of recordings shows: means at each value of a condition, and trends."""
+"""What a series of recordings shows: means at each value of a condition, trends, and steps."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import factorial
 
@@ -111,4 +112,68 @@ class Trend:
         return (
             f"{what.capitalize()} {order}; {ends}. {self.recordings} recordings are too few to "
             f"state a trend: {FEWEST} or more are needed."
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnOrder:
+    """Order of the steps of one recording of a series.
+
+    Attributes
+    ----------
+    order : float
+        Its clearest order, in cycles a turn of the input [-].
+    chance : float
+        Share of random staircases of which some order is at least as clear.
+    chance_of_common : float
+        Share of random staircases in which the order that the series shares is at least as clear.
+    """
+
+    order: float
+    chance: float
+    chance_of_common: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepsInCommon:
+    """Order of the steps that recordings of one rig share.
+
+    Attributes
+    ----------
+    order : float
+        Cycles a turn of the input at which, and at whose multiples, the torque at equal angle
+        stands out, all recordings together [-].
+    apart : float
+        By how much another order must differ to be told from it in one recording [-].
+    chance : float
+        Share of random staircases, passed by all recordings, of which some order is at least as
+        clear.
+    certain : bool
+        Whether that is so small that the order is stated.
+    own : mapping of str to OwnOrder
+        The order of each recording that was looked at, by its name.
+    """
+
+    order: float
+    apart: float
+    chance: float
+    certain: bool
+    own: Mapping[str, OwnOrder]
+
+    @property
+    def text(self) -> str:
+        """What the recordings share, in one or two sentences."""
+        count = len(self.own)
+        chance = f"of random staircases {100 * self.chance:.2g} % show as clear an order"
+        if not self.certain:
+            return (
+                f"Steps of the torque repeat in {count} recordings, and have no order in common "
+                f"that can be stated: {chance}."
+            )
+        near = sum(abs(each.order - self.order) <= self.apart for each in self.own.values())
+        return (
+            f"Steps of the torque repeat in {count} recordings and come, all together, at order "
+            f"{self.order:.3g} of a turn of the input and its multiples, as from the poles of a "
+            f"motor or the teeth of a mesh: {chance}. In {near} of them it is the clearest order, "
+            f"within {self.apart:.2g}."
         )

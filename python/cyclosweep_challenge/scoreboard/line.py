@@ -27,7 +27,7 @@ class Check:
     holds: Callable[[Outcome], bool]
 
 
-def _no_figures(found: Diagnosis) -> Mapping[str, float]:
+def _no_figures(found: Diagnosis, recordings: Path) -> Mapping[str, float]:
     """Measure nothing beside what the diagnosis says."""
     return {}
 
@@ -51,7 +51,8 @@ class Line:
     checks : sequence of Check
         What a right answer holds; none where the line is only stated.
     figures : callable
-        What is measured on the recording and the repaired model.
+        What is measured on the recording and the repaired model; gets the diagnosis and the shared
+        folder of recordings.
     file : str
         File below the shared folder, where the recording is read; empty where it is made.
     verdict_only : bool
@@ -65,7 +66,7 @@ class Line:
     source: str
     recording: Callable[[Path], Recording]
     checks: Sequence[Check] = ()
-    figures: Callable[[Diagnosis], Mapping[str, float]] = _no_figures
+    figures: Callable[[Diagnosis, Path], Mapping[str, float]] = _no_figures
     file: str = ""
     verdict_only: bool = False
 

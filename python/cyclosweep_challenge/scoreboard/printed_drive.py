@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,10 @@ from numpy.typing import NDArray
 
 import cyclosweep as cs
 from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.series import small_loops_of
+from cyclosweep.diagnosis.series_steps import CERTAIN
 from cyclosweep.recording import Recording
+from cyclosweep.recording.metadata import Metadata
 from cyclosweep_challenge.measured.loops import FIRST, SECOND, Loops, as_template
 from cyclosweep_challenge.measured.run import LOADED_NM, loaded_rms
 from cyclosweep_challenge.scoreboard.checks import (
@@ -30,6 +32,12 @@ from cyclosweep_challenge.scoreboard.checks import (
 )
 from cyclosweep_challenge.scoreboard.line import Check, Line, Summary
 from cyclosweep_challenge.scoreboard.outcome import Outcome
+from cyclosweep_challenge.scoreboard.preload_series import (
+    POSITIONS,
+    PRELOADS,
+    preload_summaries,
+)
+from cyclosweep_challenge.scoreboard.shared_order import order_of_others
 
 GROUP = "Printed 13:1 drive"
 FOLDER = "cycloidal-13-to-1"
@@ -44,14 +52,6 @@ RAMPS = (
 """Files of a drive that repeats from ramp to ramp."""
 WARM = "2024-07-16__11-55-30__torqueramp__base910_unr_runin1"
 """File of a drive that is warm from running in and changes from ramp to ramp."""
-PRELOADS = {
-    1: ("14-07-48", "14-26-23", "14-31-48"),
-    2: ("14-52-50", "14-57-29", "15-12-22"),
-    3: ("16-23-23", "16-34-37", "16-28-44"),
-    4: ("16-46-43", "16-57-04", "16-51-38"),
-}
-"""Clock in the names of the preload series, by step; positions 1, 5 and 6 in this order."""
-POSITIONS = (1, 5, 6)
 EXCHANGED = "-exchanged"
 """End of the name of a line whose ramps are in each other's place."""
 LARGEST_RATIO = 1.6
@@ -69,8 +69,6 @@ CELL_DEG = 0.1
 """Width of the cells of angle in which the remainders of two ramps are compared [deg]."""
 FEWEST_CELLS = 12
 """Cells that both ramps pass below which no correlation is stated."""
-SAME_PLAY_DEG = 0.02
-"""Play by which a step may exceed the one before; the makers' last two are equal [deg]."""
 SOURCE = "Volbeda, MSc thesis 2024 (measured); the other ramp of the same file"
 
 
@@ -165,23 +163,76 @@ def _repeating(loops: Loops, error: NDArray[np.float64]) -> tuple[float, float]:
 def _staircase_named(outcome: Outcome) -> bool:
     """Whether what repeats from ramp to ramp, here or by the diagnosis, is named by position.
 
-    By an effect that goes with the position, or by the right order of its steps.
+    By an effect that goes with the position, by the right order of its steps, or, as a series of
+    recordings is diagnosed, by that of the other files, if it is the clearest of this one, too.
     """
     left = outcome.words.partition("|")[0]
     repeats = outcome.figures.get("repeats", 0.0) >= REPEATS or "staircase" in left
     stated = re.search(r"order ([\d.]+) of a turn of the input", left)
-    if stated is not None and abs(float(stated[1]) / MOTOR_ORDER - 1.0) <= SAME_ORDER:
+    if stated is not None and _is_of_motor(float(stated[1])):
         return True
+    if _is_of_motor(outcome.figures.get("others_order", 0.0)):
+        certain = outcome.figures["others_chance"] <= CERTAIN
+        away = abs(outcome.figures.get("own_order", 0.0) - outcome.figures["others_order"])
+        if certain and away <= outcome.figures["own_apart"]:
+            return True
     return not repeats or bool(set(POSITION) & set(outcome.named))
+
+
+def _is_of_motor(order: float) -> bool:
+    """Whether an order is that of the motor."""
+    return abs(order / MOTOR_ORDER - 1.0) <= SAME_ORDER
 
 
 def _line(name: str, file: str, asks: str, answer: str, checks: tuple[Check, ...]) -> Line:
     """Line of one file."""
+    read = partial(_read, file=file)
+    return Line(name, GROUP, asks, answer, SOURCE, read, checks, partial(_figures, name=name), file)
 
-    def read(recordings: Path) -> Recording:
-        return Recording.read(recordings / file, EXAMPLE / "recording.toml")
 
-    return Line(name, GROUP, asks, answer, SOURCE, read, checks, forecast, file)
+def _read(recordings: Path, file: str) -> Recording:
+    """Read a file as the example does."""
+    return Recording.read(recordings / file, EXAMPLE / "recording.toml")
+
+
+def _figures(
+    found: Diagnosis, recordings: Path, name: str, fitted: int = FIRST, ahead: int = SECOND
+) -> Mapping[str, float]:
+    """Forecast, order of the steps, and what is read of the loop.
+
+    Parameters
+    ----------
+    found : Diagnosis
+        Diagnosis of the three ramps, of which one was kept back.
+    recordings : pathlib.Path
+        Shared folder of recordings.
+    name : str
+        Name of the line.
+    fitted, ahead : int
+        Numbers of the ramp that was fitted and of the one that was kept back.
+    """
+    read = found.answer.play_and_stiffness
+    friction = read.friction_nm if read else None
+    return {
+        **forecast(found, fitted, ahead),
+        **order_of_others(recordings, {line.name: line.recording for line in _all_lines()}, name),
+        "loop_friction_nm": math.nan if friction is None else friction.estimate,
+        "lost_motion_deg": _lost_motion(recordings, name),
+    }
+
+
+def _lost_motion(recordings: Path, name: str) -> float:
+    """Lost motion of the small ramps of a file, by the makers' test of the play [deg]."""
+    file = next(line.file for line in _all_lines() if line.name == name)
+    meta = EXAMPLE / "preload-series.toml"
+    found = small_loops_of(recordings / file, Metadata.read(meta), meta)
+    return float(found["lost_motion_deg"])
+
+
+@cache
+def _all_lines() -> tuple[Line, ...]:
+    """Lines of all files."""
+    return tuple(printed_drive_lines())
 
 
 STEADY = (
@@ -258,7 +309,7 @@ def _exchanged(line: Line) -> Line:
         group=f"{GROUP}, ramps exchanged",
         asks=f"{line.asks} Here ramp {SECOND} is fitted, ramp {FIRST} forecast.",
         recording=read,
-        figures=partial(forecast, fitted=SECOND, ahead=FIRST),
+        figures=partial(_figures, name=line.name, fitted=SECOND, ahead=FIRST),
     )
 
 
@@ -270,24 +321,6 @@ def _forecasts(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
         median <= MEDIAN_RATIO and worst <= LARGEST_RATIO,
         f"median {median:.2f}, worst {worst:.2f}",
     )
-
-
-def _dose(outcomes: Mapping[str, Outcome]) -> tuple[bool, str]:
-    """Judge whether friction rises and play falls with the preload, means of the positions."""
-    friction, play = [], []
-    for step in PRELOADS:
-        of_step = [outcomes[f"conic_{step}pre{position}"] for position in POSITIONS]
-        friction.append(float(np.mean([friction_nm(o) for o in of_step])))
-        play.append(float(np.mean([2.0 * (o.play_deg or 0.0) for o in of_step])))
-    rises = sorted(friction) == friction and friction[0] > 0.0
-    falls = all(after <= before + SAME_PLAY_DEG for before, after in itertools.pairwise(play))
-    words = ", ".join(f"{f:.2f}" for f in friction), ", ".join(f"{p:.2f}" for p in play)
-    return rises and falls, f"friction without load {words[0]} N m; play {words[1]} deg"
-
-
-def friction_nm(outcome: Outcome) -> float:
-    """Friction torque without load that a diagnosis found, as the makers state it [N m]."""
-    return outcome.parameters.get("friction_hysteresis.friction_torque_nm", 0.0)
 
 
 def all_forecasts(lines: list[Line]) -> Summary:
@@ -305,15 +338,4 @@ def all_forecasts(lines: list[Line]) -> Summary:
 
 def printed_drive_summaries() -> list[Summary]:
     """Checks over several files of the printed drive."""
-    series = tuple(f"conic_{s}pre{p}" for s in PRELOADS for p in POSITIONS)
-    return [
-        all_forecasts(printed_drive_lines()),
-        Summary(
-            "preload-order",
-            GROUP,
-            "With the preload, step 1 to 4, friction rises and play falls in order.",
-            "Volbeda, MSc thesis 2024 (makers' reading by straight lines)",
-            series,
-            _dose,
-        ),
-    ]
+    return [all_forecasts(printed_drive_lines()), *preload_summaries(GROUP)]

@@ -152,7 +152,7 @@ def diagnosed(line: Line, recordings: Path, *, full: bool = True) -> Outcome:
         start = time.process_time()
         found = cs.diagnose(recording, full=full and not line.verdict_only)
         seconds = time.process_time() - start
-        figures: Mapping[str, float] = line.figures(found)
+        figures: Mapping[str, float] = line.figures(found, recordings)
     except Exception as error:
         words = f"{type(error).__name__}: {error}"
         return Outcome(FAILURE, words, seconds=round(time.process_time() - start, 2))

@@ -224,17 +224,34 @@ def test_what_is_forecast_is_the_ramp_that_was_kept_back() -> None:
     assert other_way["forecast_deg"] > 1.0
 
 
-def test_the_preload_series_is_judged_by_its_order() -> None:
-    (summary,) = (each for each in all_summaries() if each.name == "preload-order")
+def test_steps_that_repeat_are_named_by_their_own_order_or_by_that_of_the_other_files() -> None:
+    check = next(c for c in printed_drive.STEADY if "staircase" in c.words)
+    others = {"others_order": 42.3, "others_chance": 0.0025, "own_order": 41.0, "own_apart": 3.0}
+    steps = replace(GOOD, figures={"repeats": 0.7})
+    assert not check.holds(steps)
+    assert check.holds(replace(steps, words="order 42.5 of a turn of the input"))
+    assert not check.holds(replace(steps, words="order 35 of a turn of the input"))
+    assert check.holds(replace(steps, figures=steps.figures | others))
+    for wrong in ({"others_order": 38.0}, {"others_chance": 0.05}, {"own_order": 30.0}):
+        assert not check.holds(replace(steps, figures=steps.figures | others | wrong))
+    without_own = {k: v for k, v in others.items() if k != "own_order"}
+    assert not check.holds(replace(steps, figures=steps.figures | without_own))
+
+
+@pytest.mark.parametrize("name", ["preload-order", "preload-order-fitted"])
+def test_the_preload_series_is_judged_by_its_order(name: str) -> None:
+    (summary,) = (each for each in all_summaries() if each.name == name)
+    fitted = name.endswith("fitted")
+
+    def outcome(friction: float, play: float) -> Outcome:
+        if fitted:
+            limit = {"friction_hysteresis.friction_torque_nm": friction}
+            return replace(GOOD, play_deg=play, parameters=limit)
+        return replace(GOOD, figures={"loop_friction_nm": friction, "lost_motion_deg": play})
 
     def outcomes(friction: list[float], play: list[float]) -> dict[str, Outcome]:
         return {
-            name: replace(
-                GOOD,
-                play_deg=play[int(name[6]) - 1],
-                parameters={"friction_hysteresis.friction_torque_nm": friction[int(name[6]) - 1]},
-            )
-            for name in summary.of
+            name: outcome(friction[int(name[6]) - 1], play[int(name[6]) - 1]) for name in summary.of
         }
 
     assert summary.judged(outcomes([1, 2, 3, 4], [0.4, 0.3, 0.1, 0.105]))[0]

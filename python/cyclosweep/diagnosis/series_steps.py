@@ -1,0 +1,191 @@
+"""Order that the staircases of several recordings share.
+
+One recording passes a few steps only, of which chance makes a clear order too often. Recordings
+of one rig pass the same motor and the same mesh at other places, and what pulsates with these has
+one order in all of them.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.series import Row
+from cyclosweep.diagnosis.whole_loop.step_order import apart
+from cyclosweep.diagnosis.whole_loop.step_spectrum import (
+    Leg,
+    StepSpectrum,
+    enough,
+    legs_in,
+    length_deg,
+    orders_in,
+    step_spectrum,
+)
+from cyclosweep.recording import Recording
+from cyclosweep.result.series import OwnOrder, StepsInCommon
+
+FEWEST = 2
+"""Recordings with steps from which an order is looked for that they share."""
+MOST_UNLIKE = 1.6
+"""Length of a recording's legs over the usual one, or the other way round, beyond which it is left
+out: it shows other orders."""
+CERTAIN = 0.01
+"""Share of random staircases of at least as clear an order up to which the order is stated."""
+STAIRCASE = "staircase"
+"""Topic of what a diagnosis finds of steps."""
+
+
+def steps_of(found: Diagnosis) -> dict[str, Any] | None:
+    """Torque along the legs of a recording in which steps remain that repeat, as plain data.
+
+    Parameters
+    ----------
+    found : Diagnosis
+
+    Returns
+    -------
+    dict or None
+        None where no steps repeat, or where the ratio of the drive is not known; see
+        `legs_as_data`.
+    """
+    if found.ratio is None or all(each.topic != STAIRCASE for each in found.answer.findings):
+        return None
+    return legs_as_data(found.recording, found.ratio)
+
+
+def legs_as_data(recording: Recording, ratio: float) -> dict[str, Any] | None:
+    """Torque along the legs of a recording, whether or not steps repeat in it.
+
+    Parameters
+    ----------
+    recording : Recording
+    ratio : float
+        Reduction of the drive.
+
+    Returns
+    -------
+    dict or None
+        None where the recording has no angle, or no legs of two kinds.
+    """
+    if recording.angle_deg is None:
+        return None
+    run = np.unique(recording.run, return_inverse=True)[1]
+    legs = list(legs_in(recording.torque_nm, recording.angle_deg, run))
+    if not enough(legs):
+        return None
+    return {
+        "turns_of_input": float(ratio) if recording.side == "output" else 1.0,
+        "legs": [
+            {
+                "angle_deg": leg.angle_deg.tolist(),
+                "torque_nm": leg.torque_nm.tolist(),
+                "rising": leg.rising,
+                "side": leg.side,
+            }
+            for leg in legs
+        ],
+    }
+
+
+def steps_kept(files: Mapping[str, Path]) -> dict[str, Any]:
+    """What `steps_of` returned, of the recordings whose files hold it under ``steps``, by name."""
+    kept = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items()}
+    return {name: each["steps"] for name, each in kept.items() if each.get("steps")}
+
+
+def own_order(steps: StepsInCommon | None, name: str) -> Row:
+    """Columns of a recording in the table of a series; none where it has no steps.
+
+    Parameters
+    ----------
+    steps : StepsInCommon or None
+    name : str
+        Name of the recording.
+
+    Returns
+    -------
+    dict
+        ``step_order``, its clearest order, and ``step_order_chance``.
+    """
+    own = None if steps is None else steps.own.get(name)
+    return {} if own is None else {"step_order": own.order, "step_order_chance": own.chance}
+
+
+def steps_in_common(steps: Mapping[str, Mapping[str, Any]], seed: int = 0) -> StepsInCommon | None:
+    """Look for the order that staircases share.
+
+    The clearness of each order is added up over the recordings, and so is that of random
+    staircases. All recordings pass the same random staircase, each at its own angles: where several
+    were made at the same place, they count as one.
+
+    Parameters
+    ----------
+    steps : mapping of str to mapping
+        What `steps_of` returned, by the name of the recording.
+    seed : int
+        Seed of the random staircases.
+
+    Returns
+    -------
+    StepsInCommon or None
+        None of fewer than two recordings of alike legs.
+    """
+    legs = {name: _legs_of(each) for name, each in steps.items()}
+    turns_a_deg = {name: each["turns_of_input"] / 360.0 for name, each in steps.items()}
+    lengths = {name: turns_a_deg[name] * length_deg(each) for name, each in legs.items()}
+    usual = float(np.median(list(lengths.values()))) if lengths else 0.0
+    alike = [n for n, one in lengths.items() if max(one / usual, usual / one) <= MOST_UNLIKE]
+    if len(alike) < FEWEST:
+        return None
+    orders = orders_in(usual)
+    spectra = {
+        name: step_spectrum(legs[name], orders * turns_a_deg[name], np.random.default_rng(seed))
+        for name in alike
+    }
+    common = _mean(list(spectra.values()))
+    order = float(orders[common.clearest])
+    return StepsInCommon(
+        order=order,
+        apart=order * apart(usual, order),
+        chance=common.chance,
+        certain=common.chance <= CERTAIN,
+        own={
+            name: OwnOrder(
+                order=float(orders[each.clearest]),
+                chance=each.chance,
+                chance_of_common=_chance_at(each, common.clearest),
+            )
+            for name, each in spectra.items()
+        },
+    )
+
+
+def _legs_of(steps: Mapping[str, Any]) -> list[Leg]:
+    """Legs from plain data."""
+    return [
+        Leg(
+            np.array(leg["angle_deg"]),
+            np.array(leg["torque_nm"]),
+            bool(leg["rising"]),
+            int(leg["side"]),
+        )
+        for leg in steps["legs"]
+    ]
+
+
+def _mean(spectra: Sequence[StepSpectrum]) -> StepSpectrum:
+    """Mean clearness of several recordings, drawn staircase by drawn staircase."""
+    return StepSpectrum(
+        spectra[0].cycles_per_deg,
+        np.mean([each.clearness for each in spectra], axis=0),
+        np.mean([each.drawn for each in spectra], axis=0),
+    )
+
+
+def _chance_at(spectrum: StepSpectrum, place: int) -> float:
+    """Share of random staircases in which one order is at least as clear."""
+    as_clear = np.count_nonzero(spectrum.drawn[place] >= spectrum.clearness[place])
+    return float((1 + as_clear) / (1 + spectrum.drawn.shape[1]))
