@@ -15,13 +15,15 @@ from cyclosweep_challenge.campaign.parts import parts
 SEED = 2_900_000
 
 
-def diagnosed(folder: Path, part: str, number: int) -> tuple[cs.Diagnosis, set[str]]:
+def diagnosed(
+    folder: Path, part: str, number: int, seed: int = SEED
+) -> tuple[cs.Diagnosis, set[str]]:
     """Diagnosis of a recording of the record, the true cause left out where the answer says so.
 
     With the names of the effects at work.
     """
     (made,) = [each for each in parts(1.0) if each.name == part]
-    case = make_item(made.plan(SEED, number + 1, 3_000)[number])
+    case = make_item(made.plan(seed, number + 1, 3_000)[number])
     case.write(folder)
     without = [case.truth["removed"]] if case.truth.get("removed") else []
     recording = cs.Recording.read(folder / "recording.csv")
@@ -70,4 +72,11 @@ def test_a_side_load_beside_friction_is_no_dial(tmp_path: Path) -> None:
         == true
         == {*("friction_hysteresis", "phase_dependent_compliance", "load_asymmetry")}
     )
+    assert found.verdict == "IDENTIFIED"
+
+
+def test_a_tilted_dial_is_no_side_load_with_a_softening(tmp_path: Path) -> None:
+    """The two together were found first, and the dial was never tried with its tilt."""
+    found, true = diagnosed(tmp_path, "foreign", 19, seed=7_700_000)
+    assert names(found) == true == {"dial_eccentricity"}
     assert found.verdict == "IDENTIFIED"

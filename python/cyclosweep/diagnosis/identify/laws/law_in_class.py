@@ -1,6 +1,6 @@
 """A law beside its class of behaviour: its own classes, its evidence, and how it stands."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -122,6 +122,32 @@ def share_class(one: Term, other: Term) -> bool:
     if one.effect is None or other.effect is None:
         return False
     return bool(set(own_classes(one)) & set(own_classes(other)))
+
+
+def size_of_class(term: Term, others: Iterable[tuple[float, Term]]) -> float:
+    """Size of the largest laws among others whose errors may be the whole of a term.
+
+    The error of an odd curve is odd: of a dial, which has an even part as well, it may be one part
+    alone. Such a term is held by the smaller of the largest odd and the largest even law.
+
+    Parameters
+    ----------
+    term : Term
+    others : iterable of (float, Term)
+        Other terms with their sizes, in any unit.
+
+    Returns
+    -------
+    float
+        In the same unit; zero where no other term is of its classes.
+    """
+    sizes = dict[str, float]()
+    for size, other in others:
+        for name in () if other.effect is None else own_classes(other):
+            sizes[name] = max(size, sizes.get(name, 0.0))
+    own = () if term.effect is None else own_classes(term)
+    held = [sizes.get(name, 0.0) for name in own]
+    return (min if set(own) >= BOTH_CURVES else max)(held, default=0.0)
 
 
 def cancels(fitted: FittedStructure, index: int) -> bool:

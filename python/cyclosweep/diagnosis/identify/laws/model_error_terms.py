@@ -23,7 +23,7 @@ from cyclosweep.diagnosis.identify.laws.law_in_class import (
     cancels,
     makes_others_grow,
     own_classes,
-    share_class,
+    size_of_class,
 )
 from cyclosweep.diagnosis.identify.laws.run_offsets_check import count_states
 from cyclosweep.diagnosis.identify.laws.small_laws_check import errors_of_larger
@@ -78,17 +78,17 @@ def without_model_error(
     for k, term in enumerate(fitted.terms):
         others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
         family = max((s for s, each in others if each.family == term.family), default=0.0)
-        alike = max((s for s, each in others if share_class(each, term)), default=0.0)
+        alike = size_of_class(term, others)
         if term.name in CLASSES_OF_EFFECT and _may_be_chance(fitted, k, size[k], left):
             offsets = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
             alike = max(alike, *offsets, 0.0)
-        mates = [j for j, each in enumerate(fitted.terms) if j != k and share_class(each, term)]
+        mates = [(size[j], each) for j, each in enumerate(fitted.terms) if j != k]
         beside = [other for j, other in enumerate(fitted.terms) if j != k]
         least_alone = _least_share(term, beside) * mismatch_deg
         least = max(least_alone, LEAST_OF_FAMILY * family)
         stands_out = size[k] >= min(least, TIMES_WHAT_IS_LEFT * left)
         stands_out &= size[k] >= LEAST_OF_CLASS * alike and term.name not in errors
-        largest = max((size[j] for j in mates), default=0.0)
+        largest = size_of_class(term, mates)
         small = size[k] < least_alone
         shrunk = size[k] < LEAST_OF_CLASS * before.get(term.name, 0.0)
         replaced = (small or shrunk) and size[k] < LEAST_OF_CLASS * largest

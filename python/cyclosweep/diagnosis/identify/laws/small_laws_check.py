@@ -21,7 +21,7 @@ from cyclosweep.diagnosis.identify.laws.law_in_class import (
     LawBeside,
     LawCheck,
     own_classes,
-    share_class,
+    size_of_class,
     withdrawn_where,
 )
 from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist
@@ -62,13 +62,12 @@ def without_small_laws(fitted: FittedStructure, checks: Sequence[LawCheck]) -> t
         return 1.0 if alike else LEAST_OF_CLASS
 
     def is_small(name: str) -> bool:
-        return any(
-            share_class(terms[name], terms[other])
-            and np.std(size[name]) < least_beside(name, other) * np.std(size[other])
-            and _signal_to_noise(fitted, size[other]) > LOUD_LAW
+        least = (
+            (least_beside(name, other) * float(np.std(size[other])), terms[other])
             for other in size
-            if other != name
+            if other != name and _signal_to_noise(fitted, size[other]) > LOUD_LAW
         )
+        return float(np.std(size[name])) < size_of_class(terms[name], least)
 
     errors = errors_of_larger(fitted)
     return withdrawn_where(lambda name: name in errors or is_small(name), checks)

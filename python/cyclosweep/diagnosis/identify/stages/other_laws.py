@@ -137,7 +137,8 @@ def _odds(ahead: float, explained: float) -> float:
 def visit_rivals(search: Search) -> None:
     """Fit the rivals of each effect of the best structure in its place, and dials with a tilt.
 
-    A search in breadth follows the likeliest structures, and offers a dial without a tilt.
+    So is what stands for a side load and an odd curve together, which is a dial. A search in
+    breadth follows the likeliest structures, and offers a dial without a tilt.
 
     Parameters
     ----------
@@ -148,12 +149,13 @@ def visit_rivals(search: Search) -> None:
     if best is None:
         return
     near = [best.names]
-    for term in best.fit.terms:
-        rest = best.names - {term.name}
+    for part in [(t,) for t in best.fit.terms] + _even_with_odd(best.fit):
+        rest = best.names - {term.name for term in part}
         parent = search.visited.get(rest) if rest else search.baseline
-        if term.effect is None or term.slips or parent is None:
+        if any(term.effect is None or term.slips for term in part) or parent is None:
             continue
-        rivals = list(rivals_of(search, best.fit, term))
+        of_one = [set(rivals_of(search, best.fit, term)) for term in part]
+        rivals = [name for name in search.library.effects if all(name in own for own in of_one)]
         for name in rivals:
             if rest | {name} not in search.visited:
                 _extended(search, parent, name)
@@ -179,10 +181,7 @@ def _with_dial_for_two(search: Search, fitted: FittedStructure) -> FittedStructu
     FittedStructure
         The same, or one with a dial in the place of a side load and an odd curve.
     """
-    curves = [t for t in fitted.terms if t.effect is not None and not t.slips]
-    even = [t for t in curves if own_classes(t) == (EVEN_CURVE,)]
-    odd = [t for t in curves if own_classes(t) == (ODD_CURVE,)]
-    for pair in product(even, odd):
+    for pair in _even_with_odd(fitted):
         others = tuple(each for each in fitted.terms if each not in pair)
         parent = search.refit(others, fitted) if others else search.baseline
         own = max(
@@ -200,6 +199,14 @@ def _with_dial_for_two(search: Search, fitted: FittedStructure) -> FittedStructu
             if other.all_recognised and other.score > own.score + CLEARLY:
                 return other.fit
     return fitted
+
+
+def _even_with_odd(fitted: FittedStructure) -> list[tuple[Term, ...]]:
+    """Pairs of a side load and an odd curve, which a dial makes alone."""
+    curves = [t for t in fitted.terms if t.effect is not None and not t.slips]
+    even = [t for t in curves if own_classes(t) == (EVEN_CURVE,)]
+    odd = [t for t in curves if own_classes(t) == (ODD_CURVE,)]
+    return list(product(even, odd))
 
 
 def _both(search: Search, parent: Candidate, pair: Sequence[Term]) -> Candidate | None:
