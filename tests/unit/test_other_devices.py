@@ -20,6 +20,7 @@ from cyclosweep.diagnosis.identify_effects import (
     FEWEST_PIECES,
     independent_pieces,
     instead_of_slow_noise,
+    is_within_slow_noise,
 )
 from cyclosweep.diagnosis.prepare.flanks import find_flanks
 from cyclosweep.diagnosis.remainder import no_larger_than_left, of_the_size_left
@@ -100,6 +101,32 @@ def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_mode
     nothing.noise = replace(nothing.noise, best_correlation=slow, gap=one_run)
     flexible = flexible_basis(nothing.problem, nothing.library)
     assert instead_of_slow_noise(nothing, flexible) is None
+
+
+def test_noise_far_larger_than_what_is_left_is_none_where_it_is_as_slow_as_the_recording() -> None:
+    """A steel damper was given a creep, and a noise of three times what that left."""
+    search = search_of(EffectValue("creep", {"time_constant_s": 20.0}, (6.0,)))
+    search.run()
+    found = search.best()
+    assert found is not None
+    left, rows = found.fit.rmse_deg, len(search.noise.gap)
+    one_run = np.where(np.arange(rows) > 0, 1.0, 0.0)
+    slow = replace(
+        search.noise, best_correlation=1.0 - 1.0 / rows, gap=one_run, sigma_deg=3.0 * left
+    )
+    search.noise = slow
+    assert is_within_slow_noise(search)
+    for changed in (
+        replace(slow, sigma_deg=left),
+        replace(slow, best_correlation=0.9),
+        replace(slow, gap=0.0 * one_run),
+    ):
+        search.noise = changed
+        assert not is_within_slow_noise(search)
+    nothing = search_of()
+    nothing.run()
+    nothing.noise = slow
+    assert not is_within_slow_noise(nothing)
 
 
 def test_what_is_left_is_no_larger_than_the_largest_residual() -> None:

@@ -108,7 +108,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
             break
     else:
         search.run(say)
-    if not given_up and not _leaves_something(search):
+    if not given_up and not _leaves_something(search) and not is_within_slow_noise(search):
         visit_rivals(search)
         return _crossing_as_recorded(search)
     if independent_pieces(search.noise) < FEW_PIECES:
@@ -213,6 +213,31 @@ def _leaves_something(search: Search) -> bool:
     if decision.best is None:
         return decision.unexplained
     return no_more_than_fits(decision, decision.best, search, 0.0).unexplained
+
+
+def is_within_slow_noise(search: Search) -> bool:
+    """Whether a structure is all there is only by noise that is no larger than it by chance.
+
+    An autoregression near one describes what a structure leaves as a small part of a noise far
+    larger, of which the recording holds not one independent piece.
+
+    Parameters
+    ----------
+    search : Search
+        After it has run.
+
+    Returns
+    -------
+    bool
+    """
+    best, noise = decide(search).best, search.noise
+    breaks = int(np.count_nonzero(noise.gap <= 0.0)) - 1
+    return bool(
+        best is not None
+        and best.fit.terms
+        and independent_pieces(noise) + breaks < FEWEST_PIECES
+        and noise.spread_deg > LARGER_THAN_LEFT * best.fit.rmse_deg
+    )
 
 
 def independent_pieces(noise: Noise) -> float:
