@@ -80,3 +80,16 @@ def test_a_tilted_dial_is_no_side_load_with_a_softening(tmp_path: Path) -> None:
     found, true = diagnosed(tmp_path, "foreign", 19, seed=7_700_000)
     assert names(found) == true == {"dial_eccentricity"}
     assert found.verdict == "IDENTIFIED"
+
+
+def test_a_dial_beside_friction_is_no_stiffening_with_a_side_load(tmp_path: Path) -> None:
+    """The dial fitted anew ended in a worse optimum than the one that had been accepted."""
+    found, true = diagnosed(tmp_path, "loud", 25, seed=7_700_000)
+    assert names(found) < true
+    assert {"friction_hysteresis", "dial_eccentricity", "datum_drift"} <= names(found)
+
+
+def test_a_drift_by_temperature_beside_one_from_run_to_run_is_named(tmp_path: Path) -> None:
+    """Both together have far fewer amplitudes than there are runs, and leave nothing."""
+    found, true = diagnosed(tmp_path, "loud", 42, seed=7_700_000)
+    assert names(found) == true == {"load_dependent_friction", "datum_drift", "thermal_drift"}

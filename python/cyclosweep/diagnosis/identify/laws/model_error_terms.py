@@ -7,7 +7,6 @@ import numpy as np
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_EFFECT,
     LOOPS,
-    MOST_POSITIONS,
     POSITION,
     POSITION_COMPLIANCE,
     RUN,
@@ -19,17 +18,14 @@ from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructu
 from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.identify.laws.law_in_class import (
     LEAST_OF_CLASS,
-    amplitude_count,
     cancels,
     makes_others_grow,
     own_classes,
     size_of_class,
 )
-from cyclosweep.diagnosis.identify.laws.run_offsets_check import count_states
+from cyclosweep.diagnosis.identify.laws.run_offsets_check import may_be_chance
 from cyclosweep.diagnosis.identify.laws.small_laws_check import errors_of_larger
 from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist
-from cyclosweep.simulation.effects.history import Flags, History
-from cyclosweep.simulation.effects.mesh_range import mesh_positions
 from cyclosweep.simulation.effects.order_names import from_recorded_position, travels
 
 LEAST_OF_MISMATCH = 0.04
@@ -43,8 +39,6 @@ RECORDED = frozenset({RUN, POSITION, POSITION_COMPLIANCE, TEMPERATURE})
 LEAST_OF_FAMILY = 0.25
 """Size from which an effect is told from the model error of an effect of the same family that was
 accepted before, as a share of the other's size."""
-BY_CHANCE = 1e-4
-"""Probability of a law of run offsets, found among a hundred, up to which it is no chance."""
 TIMES_WHAT_IS_LEFT = 3.0
 """Size of an effect over what the whole structure leaves beyond the noise, from which it is no
 model error in any case: laws that err by as much as the effect would leave more."""
@@ -79,7 +73,7 @@ def without_model_error(
         others = [(size[j], each) for j, each in enumerate(fitted.terms) if each.name in before]
         family = max((s for s, each in others if each.family == term.family), default=0.0)
         alike = size_of_class(term, others)
-        if term.name in CLASSES_OF_EFFECT and _may_be_chance(fitted, k, size[k], left):
+        if term.name in CLASSES_OF_EFFECT and may_be_chance(fitted, k, size[k], left):
             offsets = (s for s, each in others if each.name in CLASSES_OF_EFFECT)
             alike = max(alike, *offsets, 0.0)
         mates = [(size[j], each) for j, each in enumerate(fitted.terms) if j != k]
@@ -128,57 +122,3 @@ def _least_share(term: Term, beside: Sequence[Term]) -> float:
 def _classes(term: Term) -> frozenset[str]:
     """Classes of behaviour of a term; none of one without a name."""
     return frozenset() if term.effect is None else frozenset(own_classes(term))
-
-
-def offset_count(history: History, fitted: Flags, name: str) -> int:
-    """Number of offsets that a recording has for a law to follow.
-
-    Parameters
-    ----------
-    history : History
-        Load history of the recording.
-    fitted : ndarray of bool, shape (n,)
-        Rows that are fitted.
-    name : str
-        Name of the effect: one that goes with the position has an offset for each position of a
-        run, unless it moves steadily, the others one for each run.
-
-    Returns
-    -------
-    int
-    """
-    if history.crank_deg is None or POSITION not in CLASSES_OF_EFFECT[name]:
-        return history.run_count
-    place = mesh_positions(history.crank_deg[fitted])
-    if len(np.unique(place)) > MOST_POSITIONS:
-        return history.run_count
-    return count_states(history, fitted)
-
-
-def _may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
-    """Whether a law of run offsets may by chance hold what another one misses of them.
-
-    Offsets of runs are a few numbers. Of what is left of them, k columns drawn at random leave less
-    than a share s of the mean square with probability s to the half of their number less k.
-
-    Parameters
-    ----------
-    fitted : FittedStructure
-        The structure.
-    index : int
-        Place of the law's term.
-    size : float
-        Root mean square of its twist [deg].
-    left : float
-        Root mean square of what the whole structure leaves beyond the noise [deg].
-
-    Returns
-    -------
-    bool
-    """
-    offsets = [k for k, term in enumerate(fitted.terms) if term.name in CLASSES_OF_EFFECT]
-    counted = sum(amplitude_count(fitted, k) for k in offsets)
-    name = fitted.terms[index].name
-    free = offset_count(fitted.history, fitted.problem.fitted, name) - 1 - counted
-    share = left**2 / max(left**2 + size**2, 1e-300)
-    return free <= 0 or share ** (0.5 * free) > BY_CHANCE

@@ -9,7 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_EFFECT, POSITION
+from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
+    CLASSES_OF_EFFECT,
+    MOST_POSITIONS,
+    POSITION,
+)
+from cyclosweep.diagnosis.identify.fitting.explained import beyond_noise_deg
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.laws.law_in_class import (
@@ -19,9 +24,13 @@ from cyclosweep.diagnosis.identify.laws.law_in_class import (
     own_classes,
     withdrawn_where,
 )
+from cyclosweep.diagnosis.identify.structures.testability import recalibrated_twist
 from cyclosweep.simulation.effects.history import Flags, History
 from cyclosweep.simulation.effects.mesh_range import mesh_positions
 from cyclosweep.simulation.effects.order_names import travels
+
+BY_CHANCE = 1e-4
+"""Probability of a law of run offsets, found among a hundred, up to which it is no chance."""
 
 
 def without_leftovers(
@@ -29,7 +38,8 @@ def without_leftovers(
 ) -> tuple[LawCheck, ...]:
     """Withdraw what vanishes beside the whole class of a larger effect of the same family.
 
-    Offsets of runs are a few numbers. What one law misses of them another law fills.
+    Offsets of runs are a few numbers. What one law misses of them another law fills, unless the
+    laws have far fewer amplitudes than there are offsets, and leave next to nothing.
 
     Parameters
     ----------
@@ -54,8 +64,12 @@ def without_leftovers(
         for name in offsets
     }
     largest = max(offsets, key=lambda name: size[name])
+    left = beyond_noise_deg(fitted)
     for name in offsets:
         if name == largest or not found[name].holds:
+            continue
+        spread = float(np.std(recalibrated_twist(fitted, place[name])))
+        if not may_be_chance(fitted, place[name], spread, left):
             continue
         for whole in own_classes(fitted.terms[place[largest]]):
             if whole in classes.columns and _vanishes(fitted, classes, place[name], whole):
@@ -135,3 +149,57 @@ def _vanishes(fitted: FittedStructure, classes: ClassColumns, index: int, whole:
     bool
     """
     return LawBeside.of(fitted, classes, [index]).is_replaced(classes, whole)
+
+
+def offset_count(history: History, fitted: Flags, name: str) -> int:
+    """Number of offsets that a recording has for a law to follow.
+
+    Parameters
+    ----------
+    history : History
+        Load history of the recording.
+    fitted : ndarray of bool, shape (n,)
+        Rows that are fitted.
+    name : str
+        Name of the effect: one that goes with the position has an offset for each position of a
+        run, unless it moves steadily, the others one for each run.
+
+    Returns
+    -------
+    int
+    """
+    if history.crank_deg is None or POSITION not in CLASSES_OF_EFFECT[name]:
+        return history.run_count
+    place = mesh_positions(history.crank_deg[fitted])
+    if len(np.unique(place)) > MOST_POSITIONS:
+        return history.run_count
+    return count_states(history, fitted)
+
+
+def may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
+    """Whether a law of run offsets may by chance hold what another one misses of them.
+
+    Offsets of runs are a few numbers. Of what is left of them, k columns drawn at random leave less
+    than a share s of the mean square with probability s to the half of their number less k.
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+        The structure.
+    index : int
+        Place of the law's term.
+    size : float
+        Root mean square of its twist [deg].
+    left : float
+        Root mean square of what the whole structure leaves beyond the noise [deg].
+
+    Returns
+    -------
+    bool
+    """
+    offsets = [k for k, term in enumerate(fitted.terms) if term.name in CLASSES_OF_EFFECT]
+    counted = sum(amplitude_count(fitted, k) for k in offsets)
+    name = fitted.terms[index].name
+    free = offset_count(fitted.history, fitted.problem.fitted, name) - 1 - counted
+    share = left**2 / max(left**2 + size**2, 1e-300)
+    return free <= 0 or share ** (0.5 * free) > BY_CHANCE

@@ -20,7 +20,7 @@ from cyclosweep.diagnosis.identify.laws.law_in_class import (
     own_classes,
     share_class,
 )
-from cyclosweep.diagnosis.identify.structures.candidate import Candidate
+from cyclosweep.diagnosis.identify.structures.candidate import Candidate, prior_penalty
 from cyclosweep.diagnosis.identify.structures.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.structures.search import MOST_SHAPE_ERROR, SHAPE_ERROR, Search
 from cyclosweep.diagnosis.identify.structures.verdict import decide
@@ -61,7 +61,7 @@ def with_better_laws(
             continue
         others = tuple(each for each in fitted.terms if each is not term)
         parent = search.refit(others, fitted) if others else search.baseline
-        own = _extended(search, parent, name)
+        own = _as_accepted(search, _extended(search, parent, name), fitted)
         tried = [child for each in names if (child := _extended(search, parent, each)) is not None]
         tried = [_in_whole_class(search, child) for child in tried]
         if _is_dial(term):
@@ -88,6 +88,36 @@ def with_better_laws(
             ]
     present = frozenset(fitted.names)
     return fitted, [each for each in rivals if len(each[0].names ^ present) == 2]
+
+
+def _as_accepted(
+    search: Search, own: Candidate | None, fitted: FittedStructure
+) -> Candidate | None:
+    """Candidate of the accepted law, in the fit that was accepted where that is the better one.
+
+    A fit anew from the other effects alone may end in a worse optimum, beside which any other law
+    would seem to be likelier.
+
+    Parameters
+    ----------
+    search : Search
+    own : Candidate or None
+        The accepted law fitted anew.
+    fitted : FittedStructure
+        What was accepted.
+
+    Returns
+    -------
+    Candidate or None
+    """
+    if own is None or own.fit.loss <= fitted.loss or own.names != frozenset(fitted.names):
+        return own
+    charges = [
+        sum(prior_penalty(each.name, each.effect, each.shape) for each in fit.terms)
+        for fit in (own.fit, fitted)
+    ]
+    gain = own.gain + 0.5 * search.chi2_gain(own.fit, fitted)
+    return search.judged(fitted, gain, own.prior + charges[0] - charges[1])
 
 
 def _takes_the_place(best: Candidate, own: Candidate | None, fitted: FittedStructure) -> bool:
