@@ -1,5 +1,6 @@
 """A friction that slides fully is named, and no stiffness is read where the torque fixes none."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -53,6 +54,87 @@ def test_its_report_is_written(tmp_path: Path) -> None:
 def test_a_spring_with_a_large_friction_keeps_its_stiffness() -> None:
     # Spring torque 960 N m at the ends, friction 300 N m: the torque still fixes the twist.
     assert find_sliding(driven(300.0, hardening_nm_per_deg=120.0)) is None
+
+
+def metal(
+    every: int = 1,
+    *,
+    cycles: int = 6,
+    growing: bool = False,
+    torque_factor: float = 1.0,
+    angle_factor: float = 1.0,
+) -> cs.Recording:
+    """Recording of a bar beyond its yield point: 200 N m/deg, then 2 N m/deg, rounded.
+
+    Parameters
+    ----------
+    every : int
+        So many-th reading is kept, the turning points as they fall.
+    cycles : int
+        Times that the angle goes to and fro.
+    growing : bool
+        Whether the amplitude grows from a sixth to the whole.
+    torque_factor, angle_factor : float
+        By what the readings are too large.
+
+    Returns
+    -------
+    cyclosweep.Recording
+    """
+    rng = np.random.default_rng(11)
+    peaks = [2.0 * ((k // 2 + 1) / cycles if growing else 1.0) for k in range(2 * cycles)]
+    path = np.concatenate([[0.0], *(np.array([p, -p]) for p in peaks[::2]), [0.0]])
+    fine = np.concatenate([np.linspace(a, b, 400)[:-1] for a, b in pairwise(path)])
+    yields = np.array([20.0, 28.0, 36.0, 44.0, 60.0]) / 200.0
+    slip, torque = np.zeros(5), np.zeros(len(fine))
+    for k, at in enumerate(fine):
+        slip = np.clip(slip, at - yields, at + yields)
+        torque[k] = float(np.mean(200.0 * (at - slip))) + 2.0 * at
+    rows = np.arange(7, len(fine), 13)[::every]
+    angle, torque = fine[rows], torque[rows] + rng.normal(0.0, 0.1, len(rows))
+    return cs.Recording.from_arrays(torque * torque_factor, angle * angle_factor, side="output")
+
+
+@pytest.mark.parametrize("every", [1, 2, 3])
+def test_sliding_does_not_depend_on_how_densely_it_is_read(every: int) -> None:
+    dense, read = find_sliding(metal()), find_sliding(metal(every))
+    assert dense is not None
+    assert read is not None
+    assert read.friction_nm == pytest.approx(dense.friction_nm, rel=0.03)
+    assert read.loop_share == pytest.approx(dense.loop_share, abs=0.03)
+    assert read.rising.share == pytest.approx(dense.rising.share, abs=0.05)
+
+
+def test_readings_that_stand_there_twice_change_nothing() -> None:
+    once = metal()
+    rows = np.sort(np.r_[np.arange(len(once)), np.arange(len(once))[::2]])
+    assert once.angle_deg is not None
+    twice = cs.Recording.from_arrays(once.torque_nm[rows], once.angle_deg[rows], side="output")
+    assert find_sliding(twice) == find_sliding(once)
+
+
+@pytest.mark.parametrize("every", [1, 4])
+def test_readings_where_the_torque_is_held_are_no_travel(every: int) -> None:
+    # 200 readings at rest under each peak: of the readings most, of the travel nothing.
+    once = driven(300.0)
+    assert once.angle_deg is not None
+    turn = np.flatnonzero(np.abs(np.abs(once.angle_deg) - 8.0) < 1e-9)
+    rows = np.sort(np.r_[np.arange(len(once)), np.repeat(turn, 200)])[::every]
+    held = cs.Recording.from_arrays(once.torque_nm[rows], once.angle_deg[rows], side="output")
+    found, free = find_sliding(held), find_sliding(once)
+    assert found is not None
+    assert free is not None
+    assert found.rising.share == pytest.approx(free.rising.share, abs=0.02)
+    assert found.friction_nm == pytest.approx(free.friction_nm, rel=0.01)
+
+
+@pytest.mark.parametrize("every", [1, 5, 20])
+def test_a_spring_with_friction_does_not_slide_however_it_is_read(every: int) -> None:
+    spring = driven(300.0, hardening_nm_per_deg=120.0)
+    assert spring.angle_deg is not None
+    rows = slice(None, None, every)
+    thin = cs.Recording.from_arrays(spring.torque_nm[rows], spring.angle_deg[rows], side="output")
+    assert find_sliding(thin) is None
 
 
 @pytest.mark.shared
