@@ -60,12 +60,15 @@ STAGES = {
     "inputs": set[str](),
     "outcome": set[str](),
     "provenance": set[str](),
-    "plausibility": set[str](),
+    "mistakes": set[str](),
+    "doubts": set[str](),
+    "strokes": set[str](),
+    "reversals": set[str](),
+    "plausibility": {"mistakes", "doubts", "strokes", "reversals"},
     "left_out": set[str](),
     "elasticity": FITTING,
-    "refuse": FITTING | {"outcome", "provenance", "plausibility", "left_out"},
-    "strokes": set[str](),
-    "sliding": {"outcome", "provenance", "strokes"},
+    "refuse": FITTING | {"outcome", "provenance", "plausibility", "mistakes", "left_out"},
+    "sliding": {"outcome", "provenance", "strokes", "plausibility"},
     "series": {"outcome"},
     "series_steps": {"outcome", "series", "whole_loop"},
     "folder": {"diagnose", "inputs", "series", "series_steps"},
@@ -85,9 +88,9 @@ STAGES = {
     "effect_chance": DECIDED,
     "remainder": DECIDED | {"verify", "verification", "locate", "abrupt_step"},
     "model_error_table": DECIDED | {"verify", "verification", "repair"},
-    "finish": DECIDED | {"verification", "repair"},
+    "finish": DECIDED | {"verification", "repair", "plausibility"},
     "compose": DECIDED
-    | {"verify", "verification", "effects_found", "remainder", "repair", "plausibility", "finish"}
+    | {"verify", "verification", "effects_found", "remainder", "repair", "finish"}
     | {"model_error_table"},
 }
 

@@ -1,6 +1,5 @@
 """A friction that slides fully is named, and no stiffness is read where the torque fixes none."""
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +7,7 @@ import pytest
 
 import cyclosweep as cs
 from cyclosweep.diagnosis.sliding import find_sliding
+from tests.support.metal import metal
 
 LIMIT_NM = 300.0
 """Friction of the made brake [N m]."""
@@ -54,45 +54,6 @@ def test_its_report_is_written(tmp_path: Path) -> None:
 def test_a_spring_with_a_large_friction_keeps_its_stiffness() -> None:
     # Spring torque 960 N m at the ends, friction 300 N m: the torque still fixes the twist.
     assert find_sliding(driven(300.0, hardening_nm_per_deg=120.0)) is None
-
-
-def metal(
-    every: int = 1,
-    *,
-    cycles: int = 6,
-    growing: bool = False,
-    torque_factor: float = 1.0,
-    angle_factor: float = 1.0,
-) -> cs.Recording:
-    """Recording of a bar beyond its yield point: 200 N m/deg, then 2 N m/deg, rounded.
-
-    Parameters
-    ----------
-    every : int
-        So many-th reading is kept, the turning points as they fall.
-    cycles : int
-        Times that the angle goes to and fro.
-    growing : bool
-        Whether the amplitude grows from a sixth to the whole.
-    torque_factor, angle_factor : float
-        By what the readings are too large.
-
-    Returns
-    -------
-    cyclosweep.Recording
-    """
-    rng = np.random.default_rng(11)
-    peaks = [2.0 * ((k // 2 + 1) / cycles if growing else 1.0) for k in range(2 * cycles)]
-    path = np.concatenate([[0.0], *(np.array([p, -p]) for p in peaks[::2]), [0.0]])
-    fine = np.concatenate([np.linspace(a, b, 400)[:-1] for a, b in pairwise(path)])
-    yields = np.array([20.0, 28.0, 36.0, 44.0, 60.0]) / 200.0
-    slip, torque = np.zeros(5), np.zeros(len(fine))
-    for k, at in enumerate(fine):
-        slip = np.clip(slip, at - yields, at + yields)
-        torque[k] = float(np.mean(200.0 * (at - slip))) + 2.0 * at
-    rows = np.arange(7, len(fine), 13)[::every]
-    angle, torque = fine[rows], torque[rows] + rng.normal(0.0, 0.1, len(rows))
-    return cs.Recording.from_arrays(torque * torque_factor, angle * angle_factor, side="output")
 
 
 @pytest.mark.parametrize("every", [1, 2, 3])

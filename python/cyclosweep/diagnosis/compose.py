@@ -19,7 +19,6 @@ from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.identify.structures.testability import hidden_effects
 from cyclosweep.diagnosis.model_error_table import learned_in_words
 from cyclosweep.diagnosis.outcome import Diagnosis
-from cyclosweep.diagnosis.plausibility import doubts
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.torque_noise import smoothed_in_words
 from cyclosweep.diagnosis.provenance import provenance_of
@@ -79,10 +78,7 @@ def compose(
     search = concluded.search
     recording = search.problem.recording
     answer = _answer(concluded, regions, repaired, verified)
-    remarks = doubts(
-        answer.baseline.parameters, answer.repaired.parameters, recording, float(drive.ratio)
-    )
-    answer = finished(replace(answer, plausibility=remarks), drive, concluded, verified)
+    answer = finished(answer, drive, concluded, verified)
     hidden = tuple(row.name for row in answer.not_testable)
     return Diagnosis(
         recording=recording,

@@ -1,9 +1,10 @@
-"""Last parts of an answer: play and stiffness, words, and its check against itself."""
+"""Last parts of an answer: play and stiffness, remarks, words, its check against itself."""
 
 from dataclasses import replace
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.conclude import Conclusion
+from cyclosweep.diagnosis.plausibility import doubts
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
 from cyclosweep.report.summary import do_now, summary_of
@@ -24,7 +25,7 @@ def finished(
     concluded: Conclusion,
     verified: Verification,
 ) -> Answer:
-    """Add play and stiffness, statement and summary, and say what in the answer cannot both hold.
+    """Add play and stiffness, remarks, statement and summary; say what in it cannot both hold.
 
     Parameters
     ----------
@@ -42,10 +43,15 @@ def finished(
     Answer
     """
     read = _play_and_stiffness(answer, drive, concluded, verified)
+    answer = replace(answer, play_and_stiffness=read)
+    recording = concluded.search.problem.recording
+    hidden = concluded.accepted.fit.hidden_play is not None
+    remarks = doubts(answer, recording, float(drive.ratio), hidden=hidden)
+    answer = replace(answer, plausibility=remarks)
     plan = answer.next_experiment
     if answer.plausibility and plan is not None:
         plan = _after_check(plan)
-    answer = replace(answer, play_and_stiffness=read, next_experiment=plan)
+    answer = replace(answer, next_experiment=plan)
     sentences = (statement_of(answer), verified.held_out.missed)
     answer = replace(answer, statement=" ".join(filter(None, sentences)))
     answer = replace(answer, summary=summary_of(answer), do_now=do_now(answer))

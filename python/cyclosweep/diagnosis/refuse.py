@@ -5,12 +5,14 @@ import numpy as np
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.identify.fitting.fit import FEWEST_FITTED
 from cyclosweep.diagnosis.left_out import in_words, left_out_by_settings
+from cyclosweep.diagnosis.mistakes import likely_mistakes, with_others
 from cyclosweep.diagnosis.outcome import Diagnosis
-from cyclosweep.diagnosis.plausibility import likely_mistakes
+from cyclosweep.diagnosis.plausibility import FAR_COMPLIANCE, compliance_beside_sliding
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.exchanged_columns import EXCHANGED, are_exchanged
+from cyclosweep.report.straight_lines import straight_lines
 from cyclosweep.result import Answer, NextExperiment, NoiseEstimate, Repair, SelfCheck, Verdict
 
 LEAST_CHANGE = 0.02
@@ -155,6 +157,9 @@ def _too_little(problem: Problem, reason: str, more: str) -> NoDiagnosisError:
 def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
     """Raise `NoDiagnosisError` where the compliance is outside a tenth to ten times its nominal.
 
+    Where the loop is so wide that sliding friction may be taken for compliance, the slopes after
+    reversals decide.
+
     Parameters
     ----------
     problem : Problem
@@ -184,14 +189,25 @@ def check_compliance(problem: Problem, drive: Drive, compliance: float) -> None:
             "or torque is reversed, or the drive turned under the load",
             SETTINGS_OR_RIG.format("the sign of angle and torque", "hold the locked shaft"),
         )
+    where = f"at the {problem.recording.side} shaft"
+    nominal = problem.nominal_compliance_deg_per_nm
     likely = _likely(problem, ratio, float(drive.ratio)) if ratio > 0 else ()
+    turned = compliance_beside_sliding(problem.recording)
+    if turned is not None and turned * FAR_COMPLIANCE >= nominal:
+        if lower <= turned / nominal <= upper:
+            return
+        likely = likely_mistakes(turned / nominal, None, float(drive.ratio)) or likely
+        compliance, ratio = turned, turned / nominal
+        where += " right after reversals, before friction slips again,"
+    elif turned is not None and turned > 0 and ratio < lower:
+        likely = with_others(likely_mistakes(turned / nominal, None, float(drive.ratio)), likely)
     hint = "; check units, side and drive file"
     if likely:
         hint = f", as where {' or '.join(likely)}"
     raise NoDiagnosisError(
         "DATA_FAULT",
-        f"the compliance at the {problem.recording.side} shaft is {compliance:.4g} deg/(N m), "
-        f"{ratio:.4g} times the nominal {problem.nominal_compliance_deg_per_nm:.4g}{hint}",
+        f"the compliance {where} is {compliance:.4g} deg/(N m), "
+        f"{ratio:.4g} times the nominal {nominal:.4g}{hint}",
         SETTINGS.format("unit, side or drive"),
     )
 
@@ -243,6 +259,12 @@ def _likely(problem: Problem, factor: float, ratio: float) -> tuple[str, ...]:
     play = None
     if not problem.one_sided and problem.nominal_free_play_deg > 0:
         play = problem.history.free_play_deg / problem.nominal_free_play_deg
+    lines = [line.compliance_deg_per_nm for line in straight_lines(problem.recording)]
+    if lines and (middle := float(np.mean(lines)) / problem.nominal_compliance_deg_per_nm) > 0:
+        # Friction that holds stiffens the fitted line, and cancels in the middle of the loop.
+        likely = likely_mistakes(middle, play, ratio) or likely_mistakes(middle, None, ratio)
+        if likely:
+            return likely
     return likely_mistakes(factor, play, ratio) or likely_mistakes(factor, None, ratio)
 
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.outcome import Diagnosis
+from cyclosweep.diagnosis.plausibility import doubts_where_it_slides
 from cyclosweep.diagnosis.provenance import provenance_of
-from cyclosweep.diagnosis.strokes import strokes_of
+from cyclosweep.diagnosis.strokes import LOOP_SHARE, strokes_of
 from cyclosweep.recording import Recording
 from cyclosweep.result import (
     Answer,
@@ -22,17 +23,13 @@ from cyclosweep.result import (
     Untestable,
 )
 from cyclosweep.result.part import NORMAL_95
+from cyclosweep.result.statement import doubt_sentences
 from cyclosweep.result.words import degrees, telling_digits
 from cyclosweep.simulation.effects import Effect
 from cyclosweep.simulation.effects.history import Floats
 
 FEWEST_READINGS = 20
 """Readings from which the shape of a loop is looked at."""
-LOOP_SHARE = 0.4
-"""Area of the loop over that of the rectangle around it from which friction carries as much as the
-spring: a spring with friction of a quarter of its torque has 0.25, an ideal brake 1. Measured: 0.74
-and 0.75 for two band brakes with backlash, at most 0.31 for 17 recordings of a printed drive and
-0.27 for 300 made drives with and without friction."""
 PLATEAU_WIDTH = 0.25
 """Half width of the torque that counts as the limit, as a share of the limit: a brake's own
 fluctuation, and far less than a spring takes over the same angle."""
@@ -185,9 +182,14 @@ def sliding_diagnosis(
     """
     friction = next((effect for effect in effects if effect.name == FRICTION), None)
     named = () if friction is None else (_named(found, friction),)
+    nominal = drive.nominal_line(recording.side).compliance_deg_per_nm
+    remarks = doubts_where_it_slides(recording, nominal, float(drive.ratio))
+    said = _statement(found, named=bool(named))
     answer = Answer(
         verdict="UNKNOWN_PHYSICS",
-        statement=_statement(found, named=bool(named)),
+        statement=f"{doubt_sentences(remarks)}{said}",
+        summary=said,
+        plausibility=remarks,
         noise=NoiseEstimate(resolution_deg=recording.angle_resolution_deg),
         effects=named,
         not_testable=(

@@ -20,6 +20,12 @@ WHOLE_RANGE = 0.02
 """Share of the travel cut from either end of the torque before its range is taken, against
 single peaks at break-away."""
 
+LOOP_SHARE = 0.4
+"""Area of the loop over that of the rectangle around it from which friction carries as much as the
+spring: a spring with friction of a quarter of its torque has 0.25, an ideal brake 1. Measured: 0.74
+and 0.75 for two band brakes with backlash, at most 0.31 for 17 recordings of a printed drive and
+0.27 for 300 made drives with and without friction."""
+
 
 @dataclass(frozen=True, eq=False)
 class Strokes:

@@ -14,6 +14,7 @@ from cyclosweep.result.calibration_words import (
     play_words,
 )
 from cyclosweep.result.effects import Explanation, Remainder
+from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.proof import HeldOutBlock
 from cyclosweep.result.shape_words import cause_in_words, shape_of_size
 from cyclosweep.result.stand_in_words import removed
@@ -49,16 +50,16 @@ def statement_of(answer: Answer) -> str:
     str
         One paragraph.
     """
-    said = _doubt_sentences(answer) + _verdict_sentences(answer)
+    said = doubt_sentences(answer.plausibility) + _verdict_sentences(answer)
     said += _forecast_sentences(answer.repaired.blocks)
     return said if answer.thinning is None else f"{said} {thinning_words(answer.thinning)}"
 
 
-def _doubt_sentences(answer: Answer) -> str:
+def doubt_sentences(doubts: Sequence[Doubt]) -> str:
     """Say before anything else what is far from the drive file, and what it may mean."""
-    if not answer.plausibility:
+    if not doubts:
         return ""
-    return "Check first: " + "; ".join(doubt.text for doubt in answer.plausibility) + ". "
+    return "Check first: " + "; ".join(doubt.text for doubt in doubts) + ". "
 
 
 def _verdict_sentences(answer: Answer) -> str:
