@@ -256,3 +256,15 @@ def test_a_play_below_zero_is_said_to_be_none() -> None:
         "Read from the loop: free play from flank to flank -0.05 deg (95 %: -0.13 to 0.02), that "
         "is none, as the straight lines along the flanks overlap. "
     )
+
+
+def test_no_table_shows_a_play_below_zero() -> None:
+    label = "free play at the input, from flank to flank"
+    below = Reading(estimate=-0.05, ci95=(-0.13, 0.02))
+    assert shown(PlayAndStiffness(runs=3, free_play_deg=below))[label] == (
+        "none, the lines overlap by 0.05 deg (3 arcmin)",
+        "0 … 0.02",
+    )
+    about_zero = Reading(estimate=0.01, ci95=(-0.13, 0.15))
+    value, interval = shown(PlayAndStiffness(runs=3, free_play_deg=about_zero))[label]
+    assert (value, interval) == ("0.01 deg (0.6 arcmin)", "0 … 0.15")

@@ -378,3 +378,9 @@ def test_tables_are_as_wide_as_columns_says_and_120_without_it(
             monkeypatch.setenv("COLUMNS", columns)
         print_tables([Rule(characters="-")], any_width=True)
         assert len(capsys.readouterr().out.strip()) == width
+
+
+def test_the_page_shows_no_play_below_zero(tmp_path: Path) -> None:
+    text = page_of(tmp_path, [row("a", play_deg=-0.05, play_deg_low=-0.13, play_deg_high=0.02)])
+    assert "0 (0 … 0.02)" in text
+    assert "0.13" not in text

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from html import escape
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -207,6 +208,29 @@ def _panel(rows: Sequence[Row], trend: Trend) -> Panel:
     )
 
 
+def _measured(row: Row, measure: str) -> str:
+    """Value of a measure with its interval; a play below zero is none.
+
+    Parameters
+    ----------
+    row : mapping
+        Row of a recording.
+    measure : str
+        Name of the measure.
+
+    Returns
+    -------
+    str
+    """
+    least = 0.0 if measure == "play_deg" else -inf
+    value, low, high = (
+        None if row.get(name) is None else max(float(row[name]), least)
+        for name in (measure, f"{measure}_low", f"{measure}_high")
+    )
+    between = "" if low is None or high is None else f" ({interval((low, high))})"
+    return number(value) + between
+
+
 def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
     """Row of each recording: conditions, verdict, measures with intervals, effects with sizes."""
     measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
@@ -224,9 +248,7 @@ def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
         cells = [link, *(_value(row.get(condition)) for condition in conditions)]
         cells.append(escape(verdict_of(row)))
         for measure in measures:
-            low, high = row.get(f"{measure}_low"), row.get(f"{measure}_high")
-            ends = f" ({interval((low, high))})" if low is not None and high is not None else ""
-            cells.append(escape(number(row.get(measure)) + ends))
+            cells.append(escape(_measured(row, measure)))
         cells.append(escape("; ".join(_sizes(row))))
         lines.append(
             "<tr>" + "".join(cell("td", k, text) for k, text in enumerate(cells)) + "</tr>"

@@ -296,13 +296,13 @@ def play_table(data: ReportData) -> Table | None:
     side = data.recording.side
     friction = _friction(read.friction_nm, runs_backwards(data))
     rows = [
-        (f"free play at the {side}, from flank to flank", *_read(read.free_play_deg, angle)),
+        (f"free play at the {side}, from flank to flank", *_play(read.free_play_deg)),
         ("stiffness at the output", *_read(read.stiffness_at_output_nm_per_arcmin, _stiffnesses)),
         (width_label(data), *friction),
         *((label, *_read(torque, _torques)) for label, torque in fitted_frictions(data)),
     ]
     if side == "input":
-        rows.insert(1, ("free play at the output", *_read(read.free_play_at_output_deg, angle)))
+        rows.insert(1, ("free play at the output", *_play(read.free_play_at_output_deg)))
     shown = tuple(row for row in rows if row[1] != NOTHING)
     note = f"Read by {read.definition}."
     if read.runs == 1:
@@ -325,6 +325,18 @@ def _read(reading: Reading | None, write: Callable[[float, int], str]) -> tuple[
         return NOTHING, NOTHING
     digits = telling_digits(reading.estimate, reading.ci95)
     return write(reading.estimate, digits), interval(reading.ci95, digits)
+
+
+def _play(reading: Reading | None) -> tuple[str, str]:
+    """Free play and its interval, neither below zero: where the lines overlap there is none."""
+    if reading is None:
+        return NOTHING, NOTHING
+    digits = telling_digits(reading.estimate, reading.ci95)
+    ends = None if reading.ci95 is None else [max(end, 0.0) for end in reading.ci95]
+    if reading.estimate < 0.0:
+        overlap = angle(-reading.estimate, digits)
+        return f"none, the lines overlap by {overlap}", interval(ends, digits)
+    return angle(reading.estimate, digits), interval(ends, digits)
 
 
 def _friction(reading: Reading | None, backwards: bool) -> tuple[str, str]:

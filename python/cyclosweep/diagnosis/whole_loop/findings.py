@@ -125,6 +125,28 @@ def _half_width_of_play(forecast: Forecast) -> float:
     return float("nan")
 
 
+def play_interval(play_deg: float, half_deg: float) -> str:
+    """Write the 95 % interval of a play, which begins at zero.
+
+    Parameters
+    ----------
+    play_deg, half_deg : float
+        Play from flank to flank, and half the width of its interval [deg].
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> play_interval(0.3, 0.05), play_interval(0.0021, 1.6)
+    ('± 0.05 deg (95 %)', '(95 %: 0 to 1.6 deg)')
+    """
+    if half_deg > play_deg:
+        return f"(95 %: 0 to {play_deg + half_deg:.2g} deg)"
+    return f"± {half_deg:.2g} deg (95 %)"
+
+
 def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     """Dead zone of the simulation, and how it differs from the free play of the drive.
 
@@ -146,8 +168,8 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     dead = 2.0 * forecast.model.free_play_deg
     half = 2 * _half_width_of_play(forecast)
     text = (
-        f"Dead zone of the fitted simulation: {angle_in_words(dead)} ± {half:.2g} deg (95 %) from "
-        f"flank to flank at the {problem.recording.side} shaft, a parameter of that model."
+        f"Dead zone of the fitted simulation: {angle_in_words(dead)} {play_interval(dead, half)} "
+        f"from flank to flank at the {problem.recording.side} shaft, a parameter of that model."
     )
     law = elastic_law(forecast.model, problem.history.largest_torque_nm)
     if law is not None:
