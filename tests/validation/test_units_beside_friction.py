@@ -12,12 +12,12 @@ DRIVE = cs.Drive.reference_87().replace(
     free_play_deg=0.0, output_stiffness_nm_per_arcmin=ELASTIC_NM_PER_DEG / 60.0
 )
 """Drive whose file gives the stiffness that the bar has below its yield point."""
-GROWING = tuple(np.linspace(0.1, 0.8, 8))
+GROWING = tuple(np.linspace(0.1, 2.0, 6))
 """Cycles that grow, so that friction slides over a part of the travel only [deg]."""
 
 
 def growing(
-    every: int = 1, *, hardening: float = 8.0, torque: float = 1.0, angle: float = 1.0
+    every: int = 1, *, hardening: float = 12.0, torque: float = 1.0, angle: float = 1.0
 ) -> cs.Diagnosis:
     """Diagnose a bar in growing cycles, whose loop as a whole is many times too soft."""
     recording = metal(
@@ -51,9 +51,12 @@ def told(found: cs.Diagnosis) -> list[str]:
 
 
 @pytest.mark.parametrize("every", [1, 2])
-@pytest.mark.parametrize("hardening", [2.0, 8.0])
+@pytest.mark.parametrize("hardening", [12.0, 16.0, 20.0])
 def test_friction_that_slides_is_no_fault_and_no_soft_drive(every: int, hardening: float) -> None:
-    assert told(growing(every, hardening=hardening)) == []
+    # The line through the whole loop is 10 to 15 times softer than the file says.
+    found = growing(every, hardening=hardening)
+    assert "slides fully" not in found.statement
+    assert told(found) == []
 
 
 def test_friction_that_slides_all_the_way_is_no_soft_drive() -> None:
@@ -111,12 +114,12 @@ def test_a_soft_drive_is_remarked_on_beside_friction_that_slides() -> None:
 
 
 def test_slopes_after_reversals_leave_out_what_slides() -> None:
-    recording = metal(peaks_deg=GROWING, hardening_nm_per_deg=8.0)
+    recording = metal(peaks_deg=GROWING, hardening_nm_per_deg=12.0)
     strokes = strokes_of(recording)
     assert strokes is not None
     assert strokes.loop_share > LOOP_SHARE
     slope = compliance_after_reversals(recording)
-    assert slope == pytest.approx(1.0 / (ELASTIC_NM_PER_DEG + 8.0), rel=0.05)
+    assert slope == pytest.approx(1.0 / (ELASTIC_NM_PER_DEG + 12.0), rel=0.05)
 
 
 def test_no_slope_without_a_reversal_under_load() -> None:
