@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.elasticity import (
     compliance_with_curve,
 )
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.friction_reached import friction_reached_nm
 from cyclosweep.diagnosis.identify.laws.class_check import candidates_of
 from cyclosweep.diagnosis.identify.structures.alarm import probability
 from cyclosweep.diagnosis.identify.structures.candidate import Candidate
@@ -111,11 +112,29 @@ def _effect(
         size_deg=Size(estimate=size, ci95=(max(size - half, 0.0), size + half)),
         size_arcmin=60.0 * size,
         size_nm=finite(size / compliance_with_curve(fitted)[0]),
+        reached_nm=_reached(fitted, effect.name) if effect.slips else None,
         rms_deg=float(np.sqrt(np.mean(twist**2))),
         p_value=p_value,
         e_value=finite(e_value),
         detectability=strength,
     )
+
+
+def _reached(fitted: FittedStructure, name: str) -> float:
+    """Largest torque that the friction of a name takes on the rows that count [N m].
+
+    Parameters
+    ----------
+    fitted : FittedStructure
+    name : str
+
+    Returns
+    -------
+    float
+    """
+    problem, path = fitted.problem, fitted.prediction_path
+    rows = problem.whole_fitted | problem.whole_held_out
+    return friction_reached_nm(fitted.terms, path, name, rows)
 
 
 def _found_law(fitted: FittedStructure, index: int) -> str:

@@ -1,7 +1,9 @@
 """What the width of a loop is of, and the friction torque beside what else opens it."""
 
 from cyclosweep.report.data import ReportData
+from cyclosweep.report.wording import number
 from cyclosweep.result import Reading
+from cyclosweep.result.effects import is_reached
 from cyclosweep.result.part import NORMAL_95
 from cyclosweep.result.words import listed
 
@@ -54,5 +56,8 @@ def fitted_frictions(data: ReportData) -> list[tuple[str, Reading]]:
             ends = None if half is None else (value.estimate - half, value.estimate + half)
             what = value.meaning or "friction torque"
             label = f"{what} at the {data.recording.side}, fitted"
+            reached = effect.reached_nm
+            if reached is not None and not is_reached(reached, value.estimate):
+                label += f" limit ({number(reached)} N m reached)"
             found.append((label, Reading(estimate=value.estimate, ci95=ends)))
     return found

@@ -33,6 +33,7 @@ class EffectContent(TypedDict):
     size_deg: SizeContent
     size_arcmin: float | None
     size_nm: float | None
+    reached_nm: NotRequired[float]
     rms_deg: float | None
     p_value: float | None
     e_value: float | None

@@ -4,10 +4,35 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from cyclosweep.result.part import Part
+from cyclosweep.result.part import LEFT_OUT, Part
 
+LIMIT_REACHED = 0.9
+"""Share of the limit of a friction from which it is reached: the law of the slip elements comes
+close to its limit only where nearly all of them slide."""
 Outcome = Literal["accepted", "ruled out", "undecided", "not testable"]
 """How an effect of the library fared."""
+
+
+def is_reached(reached_nm: float, limit_nm: float) -> bool:
+    """Whether a recording shows the limit of a friction, or the law is extrapolated to it.
+
+    Parameters
+    ----------
+    reached_nm : float
+        Largest friction torque along the fitted path [N m].
+    limit_nm : float
+        Limit of the law [N m].
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> is_reached(3.8, 5.3)
+    False
+    """
+    return reached_nm >= LIMIT_REACHED * limit_nm
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +77,9 @@ class FoundEffect(Part):
     """The same [arcmin]."""
     size_nm: float | None = None
     """Torque that would twist the calibrated drive as far [N m]."""
+    reached_nm: float | None = field(default=None, metadata=LEFT_OUT)
+    """Largest torque that it takes along the fitted path, where it is a friction; less than the
+    limit of its law where the recording does not make all of it slide [N m]."""
     rms_deg: float | None = None
     """Root mean square of its twist over the fitted data [deg]."""
     p_value: float | None = None

@@ -5,9 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 from scipy import stats
 
+from cyclosweep.diagnosis.identify.fitting.friction_reached import friction_reached_nm
 from cyclosweep.diagnosis.identify.fitting.repetition import LEAST_REPEAT, Repetition
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast
+from cyclosweep.diagnosis.whole_loop.loop_width import widest_nm
 from cyclosweep.diagnosis.whole_loop.staircase_found import (
     angle_in_words,
     named_staircase,
@@ -15,6 +17,7 @@ from cyclosweep.diagnosis.whole_loop.staircase_found import (
 )
 from cyclosweep.result import Finding
 from cyclosweep.result.calibration_words import HIDDEN
+from cyclosweep.result.effects import is_reached
 from cyclosweep.result.part import NORMAL_95
 from cyclosweep.result.words import telling_digits
 from cyclosweep.simulation.effects.history import Flags, Floats
@@ -24,6 +27,8 @@ LEAST_MOVEMENT = 0.6
 """Share of the nominal dead zone below which friction has held the shaft inside its play."""
 MOST_FRICTION = 0.35
 """Share of the largest torque from which Coulomb friction decides what the loop looks like."""
+COULOMB = "friction_hysteresis"
+"""Friction that does not depend on the load."""
 
 
 def findings(
@@ -54,8 +59,8 @@ def findings(
     known = forecast.names
     hidden = hidden_by_friction(problem, forecast)
     found = [_play(problem, forecast, hidden)]
-    if "friction_hysteresis" in known:
-        found.append(_friction(forecast, limit_errors["friction_hysteresis"]))
+    if COULOMB in known:
+        found.append(_friction(problem, forecast, limit_errors[COULOMB]))
     if "load_dependent_friction" in known:
         found.append(_load_friction(forecast, limit_errors["load_dependent_friction"]))
     if hidden is None:
@@ -93,9 +98,9 @@ def hidden_by_friction(problem: Problem, forecast: Forecast) -> str | None:
     moved = float(np.ptp(problem.angle_deg[rows]))
     nominal = 2.0 * problem.nominal_free_play_deg
     largest = problem.largest_torque_nm
-    limit = sum(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
-    if limit > MOST_FRICTION * largest:
-        sign = f"Coulomb friction of {limit:.3g} N m takes {100 * limit / largest:.0f} % of"
+    taken = friction_reached_nm(forecast.terms, forecast.history, COULOMB, rows)
+    if taken > MOST_FRICTION * largest:
+        sign = f"Coulomb friction takes up to {taken:.3g} N m, {100 * taken / largest:.0f} % of"
     elif moved < LEAST_MOVEMENT * nominal:
         sign = f"the shaft moved {moved:.3g} deg only, its play is nominally {nominal:.3g}, under"
     else:
@@ -180,26 +185,35 @@ def _play(problem: Problem, forecast: Forecast, hidden: str | None) -> Finding:
     return Finding(topic="play", text=text)
 
 
-def _friction(forecast: Forecast, error_nm: float) -> Finding:
-    """Coulomb friction and the width of the loop.
+def _friction(problem: Problem, forecast: Forecast, error_nm: float) -> Finding:
+    """Coulomb friction as far as it was reached, and the width of the loop.
 
     Parameters
     ----------
+    problem : Problem
     forecast : Forecast
     error_nm : float
-        Standard error of that friction [N m].
+        Standard error of the limit of that friction [N m].
 
     Returns
     -------
     Finding
     """
-    limit = next(t.amplitude for t in forecast.terms if t.name == "friction_hysteresis")
-    half = NORMAL_95 * error_nm
-    return Finding(
-        topic="friction hysteresis",
-        text=f"Coulomb friction of {limit:.3g} ± {half:.2g} N m (95 %) at the measured shaft: the "
-        f"loop is {2 * limit:.3g} N m wide where the shaft leaves a flank.",
-    )
+    rows = problem.whole_fitted | problem.whole_held_out
+    limit = next(t.amplitude for t in forecast.terms if t.name == COULOMB)
+    taken = friction_reached_nm(forecast.terms, forecast.history, COULOMB, rows)
+    of_law = f"{limit:.3g} ± {NORMAL_95 * error_nm:.2g} N m (95 %)"
+    if is_reached(taken, limit):
+        text = f"Coulomb friction of {of_law} at the measured shaft"
+    else:
+        text = (
+            f"Coulomb friction takes up to {taken:.3g} N m at the measured shaft; the limit of its "
+            f"law, {of_law}, was not reached"
+        )
+    width = widest_nm(forecast.history, rows)
+    if width is not None:
+        text += f". The simulated loop is up to {width:.3g} N m wide at equal angle"
+    return Finding(topic="friction hysteresis", text=f"{text}.")
 
 
 def _load_friction(forecast: Forecast, error: float) -> Finding:

@@ -13,6 +13,7 @@ import numpy as np
 from cyclosweep.diagnosis.identify.fitting.fit_parameters import fit_parameters_of
 from cyclosweep.diagnosis.identify.fitting.fit_state import Linearisation
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
+from cyclosweep.diagnosis.identify.fitting.friction_reached import friction_torque_nm
 from cyclosweep.diagnosis.identify.fitting.prediction import (
     KnownFlankPrediction,
     LeftOutPrediction,
@@ -52,6 +53,11 @@ class WholeLoopFit(FittedStructure):
     def prediction(self) -> Prediction:
         """Twist of all rows, crossings of the dead zone included."""
         return Prediction(self.forecast.angle_deg, self.forecast.error_deg, "whole loops")
+
+    @property
+    def prediction_path(self) -> History:
+        """Path of the shaft by the simulation, which finds the flank for itself."""
+        return self.forecast.history
 
     def baseline_prediction(self, baseline: FittedStructure) -> Prediction:
         """Twist of all rows by the published model calibrated on whole loops.
@@ -224,15 +230,8 @@ class WholeLoopFit(FittedStructure):
         term = self.terms[index]
         if not term.slips:
             return super().contribution(index)
-        history = self.history
-        limit = np.zeros(len(history))
-        for other in self.terms:
-            if other.slips:
-                limit += other.friction_limit(history)
-        own = term.friction_limit(history)
-        share = np.divide(own, limit, out=np.zeros_like(limit), where=limit > 0)
-        friction = history.applied_nm - history.elastic_nm
-        return np.asarray(-history.compliance_deg_per_nm * share * friction)
+        taken = friction_torque_nm(self.terms, self.history, index)
+        return np.asarray(-self.history.compliance_deg_per_nm * taken)
 
 
 def known_flank_path(problem: Problem, model: Model) -> History:

@@ -113,6 +113,11 @@ class FittedStructure(ABC):
     def prediction(self) -> Prediction:
         """Twist of all rows as the structure is meant to predict it."""
 
+    @property
+    def prediction_path(self) -> History:
+        """Path of the shaft behind that prediction."""
+        return self.history
+
     @abstractmethod
     def baseline_prediction(self, baseline: "FittedStructure") -> Prediction:
         """Twist of all rows by the baseline, predicted in the same way as by the structure.
@@ -310,10 +315,8 @@ class FittedStructure(ABC):
         """Twist that a term adds on all rows [deg]."""
         term = self.terms[index]
         if term.slips:
-            column = term.columns(self.history)[:, 0]
-            return column * term.amplitude
-        part = self.column_range(index)
-        return term.columns(self.history) @ self.beta[part]
+            return term.columns(self.history)[:, 0] * term.amplitude
+        return term.columns(self.history) @ self.beta[self.column_range(index)]
 
     def whitened(self, columns: Floats, noise: Noise) -> Floats:
         """Whiten columns on the fitted rows.
@@ -363,8 +366,7 @@ class FittedStructure(ABC):
 
     def amplitude_places(self, index: int) -> list[int]:
         """Places of a linear term's amplitudes among all parameters."""
-        part = self.column_range(index)
-        return list(range(part.start, part.stop))
+        return list(range(len(self.beta)))[self.column_range(index)]
 
     def nonlinear_places(self, index: int) -> list[int]:
         """Places of a term's nonlinear parameters among all parameters."""
