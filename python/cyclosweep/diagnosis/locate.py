@@ -52,7 +52,7 @@ class _Cell:
 
 
 def locate(concluded: Conclusion) -> tuple[Region, ...]:
-    """Return where the calibrated model and the recording differ.
+    """Return where model and recording differ.
 
     Parameters
     ----------
@@ -63,17 +63,25 @@ def locate(concluded: Conclusion) -> tuple[Region, ...]:
     -------
     tuple of Region
         The strongest first; none where nothing is missing. Where something remains without a name
-        beside accepted effects, the regions are those in which these fail.
+        beside accepted effects, the regions are those in which these fail; where noise and model
+        error hide where that is, those of the calibrated model.
     """
     search, accepted = concluded.search, concluded.accepted
     found: list[Region] = []
     if search.baseline.largest_excess >= search.threshold:
         found = find_regions(search, search.baseline)
     if concluded.decision.unexplained:
+        left = find_regions(search, accepted) if accepted.fit.terms else []
+        events = event_regions(search.problem, accepted)
         if accepted.fit.terms:
-            found = find_regions(search, accepted) or found
-        found = (event_regions(search.problem, accepted) + found)[:MOST_REGIONS]
+            left, events = _of_repaired(left), _of_repaired(events)
+        found = (events + (left or found))[:MOST_REGIONS]
     return tuple(found)
+
+
+def _of_repaired(regions: Sequence[Region]) -> list[Region]:
+    """Mark regions as those in which the repaired model is off."""
+    return [replace(region, repaired=True) for region in regions]
 
 
 def event_regions(problem: Problem, accepted: Candidate) -> list[Region]:

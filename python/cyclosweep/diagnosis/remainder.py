@@ -18,8 +18,10 @@ from cyclosweep.diagnosis.identify.structures.testability import (
     size_left,
 )
 from cyclosweep.diagnosis.locate import event_regions
+from cyclosweep.diagnosis.misfit import ALL_ALONG, MISFIT, at_its_place, misfit_of
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.result import DriveChange, Region, Remainder
+from cyclosweep.result.effects import Measure
 from cyclosweep.simulation.effects.history import Floats
 
 STRONG_WAVE = 5.0
@@ -27,12 +29,10 @@ STRONG_WAVE = 5.0
 LEAST_OF_THE_REST = 0.5
 """Least height of a shape over the rms that is left beyond the noise. A lower one is less than a
 quarter of its mean square."""
-MISFIT = "misfit of the model"
-"""What is left where no shape tells it."""
+LARGEST: Measure = "largest twist"
+"""Measure of what has a shape."""
 DRIFT = "slow drift"
 """The shape whose size is how far the zero moved. Its middle is the datum that was calibrated."""
-STEP_QUANTILE = 0.95
-"""Quantile of the residual that is given as the size of a staircase."""
 
 
 def remainder(
@@ -47,7 +47,7 @@ def remainder(
     verified : Verification
         With the drift between the runs, if there is one.
     regions : sequence of Region
-        Where the calibrated model and the recording differ.
+        Where model and recording differ.
 
     Returns
     -------
@@ -66,9 +66,9 @@ def remainder(
         return Remainder(shape="drift", place="from run to run", size_deg=verified.drift.other_deg)
     if concluded.repetition is not None:
         found = _step(concluded.accepted.fit)
-        return found or _staircase(concluded.accepted, concluded.repetition)
+        return found or at_its_place(_staircase(concluded.accepted, concluded.repetition), regions)
     found = _unnamed_term(concluded.best) or _unfitted(concluded)
-    found = of_the_size_left(found, concluded.accepted.fit)
+    found = at_its_place(of_the_size_left(found, concluded.accepted.fit), regions)
     return _as_far_as_it_moved(found, concluded.best, concluded.accepted.fit)
 
 
@@ -91,8 +91,7 @@ def of_the_size_left(found: Remainder, named: FittedStructure) -> Remainder:
     beyond = float(np.sqrt(max(float(np.mean(left**2)) - noise**2, 0.0)))
     if found.size_deg >= LEAST_OF_THE_REST * beyond:
         return no_larger_than_left(found, named)
-    size = float(np.quantile(np.abs(left), STEP_QUANTILE))
-    return _step(named) or Remainder(shape=MISFIT, place="all along", size_deg=size)
+    return _step(named) or misfit_of(named, MISFIT, ALL_ALONG)
 
 
 def no_larger_than_left(found: Remainder, named: FittedStructure) -> Remainder:
@@ -139,7 +138,8 @@ def _as_far_as_it_moved(
     if term is None:
         return found
     columns = term.columns(named.history)[named.problem.fitted]
-    return replace(found, size_deg=float(np.ptp(_fitted_beside_line(named, columns))))
+    moved = float(np.ptp(_fitted_beside_line(named, columns)))
+    return replace(found, size_deg=moved, measure=None)
 
 
 def _fitted_beside_line(named: FittedStructure, columns: Floats) -> Floats:
@@ -171,7 +171,7 @@ def _of_event(concluded: Conclusion, regions: Sequence[Region]) -> Remainder | N
     concluded : Conclusion
         With the accepted structure.
     regions : sequence of Region
-        Where the calibrated model and the recording differ.
+        Where model and recording differ.
 
     Returns
     -------
@@ -229,9 +229,10 @@ def _of_class(concluded: Conclusion) -> Remainder:
         for index, term in enumerate(fitted.terms)
         if term.name in gone
     ]
-    size = max(sizes, default=concluded.naming.part.fit.rmse_deg)
     shape = concluded.naming.shown[0].behaviour
-    return Remainder(shape=shape, place="all along", size_deg=size)
+    if not sizes:
+        return misfit_of(concluded.naming.part.fit, shape, ALL_ALONG)
+    return Remainder(shape=shape, place=ALL_ALONG, size_deg=max(sizes), measure=LARGEST)
 
 
 def _step(fitted: FittedStructure) -> Remainder | None:
@@ -251,6 +252,7 @@ def _unnamed_term(best: Candidate) -> Remainder | None:
             shape=term.unnamed.family,
             place=term.unnamed.place,
             size_deg=float(np.max(np.abs(recalibrated_twist(fitted, index)))),
+            measure=LARGEST,
         )
         for index, term in enumerate(fitted.terms)
         if term.unnamed is not None
@@ -260,7 +262,9 @@ def _unnamed_term(best: Candidate) -> Remainder | None:
     for index, (term, named) in enumerate(zip(fitted.terms, best.recognised, strict=True)):
         if not named and term.effect is not None:
             size = float(np.max(np.abs(recalibrated_twist(fitted, index))))
-            return Remainder(shape=term.effect.family, place="all along", size_deg=size)
+            return Remainder(
+                shape=term.effect.family, place=ALL_ALONG, size_deg=size, measure=LARGEST
+            )
     return None
 
 
@@ -282,14 +286,14 @@ def _strongest(accepted: Candidate) -> Remainder | None:
     if step is not None:
         return step
     name, term, place = _strongest_hypothesis(accepted)
-    size = accepted.fit.rmse_deg
-    if term is not None:
-        # Far beyond the noise, rows count less the further off they are; here all count the same.
-        fitted = accepted.fit
-        columns = term.columns(fitted.history)[fitted.problem.fitted]
-        twist = recalibration(fitted)(_fitted_beside_line(fitted, columns))
-        size = float(np.max(np.abs(twist)))
-    return Remainder(shape=name, place=place, size_deg=size)
+    fitted = accepted.fit
+    if term is None:
+        return misfit_of(fitted, name, place)
+    # Far beyond the noise, rows count less the further off they are; here all count the same.
+    columns = term.columns(fitted.history)[fitted.problem.fitted]
+    twist = recalibration(fitted)(_fitted_beside_line(fitted, columns))
+    size = float(np.max(np.abs(twist)))
+    return Remainder(shape=name, place=place, size_deg=size, measure=LARGEST)
 
 
 def _unfitted(concluded: Conclusion) -> Remainder:
@@ -306,8 +310,10 @@ def _unfitted(concluded: Conclusion) -> Remainder:
     """
     best = concluded.best
     name, term, place = _strongest_hypothesis(best)
-    size = concluded.accepted.fit.rmse_deg if term is None else size_left(best.fit, term)
-    return Remainder(shape=name, place=place, size_deg=size)
+    if term is None:
+        return misfit_of(concluded.accepted.fit, name, place)
+    size = size_left(best.fit, term)
+    return Remainder(shape=name, place=place, size_deg=size, measure=LARGEST)
 
 
 def _strongest_hypothesis(candidate: Candidate) -> tuple[str, Term | None, str]:
@@ -335,7 +341,7 @@ def _strongest_hypothesis(candidate: Candidate) -> tuple[str, Term | None, str]:
     if name not in candidate.scan.groups:
         return name, None, ""
     signature = candidate.scan.library.signatures[candidate.scan.best_signature(name)]
-    place = signature.unnamed.place if signature.unnamed is not None else "all along"
+    place = signature.unnamed.place if signature.unnamed is not None else ALL_ALONG
     return name, Term(signature.effect, signature.shape, signature.unnamed), place
 
 
@@ -354,12 +360,11 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
     Remainder
     """
     fitted = accepted.fit
-    left = fitted.residual_deg
     shape, place = MISFIT, "which does not repeat from run to run"
     if repeats.is_physics or repeats.order is not None:
         shape, place = "staircase tied to the position of the mesh", f"repeating {repeats.in_words}"
     elif not repeats.is_known:
-        place = "all along"
+        place = ALL_ALONG
     elif repeats.correlation > LEAST_REPEAT:
         place = f"which repeats only in part {repeats.in_words}"
     evidence, wave = accepted.sinusoid
@@ -367,8 +372,4 @@ def _staircase(accepted: Candidate, repeats: Repetition) -> Remainder:
         place = f"{repeats.order.in_words(fitted.problem.history.mesh_ratio)}, {place}"
     elif wave is not None and evidence > STRONG_WAVE:
         place += f", strongest {wave.place}"
-    return Remainder(
-        shape=shape,
-        place=place,
-        size_deg=float(np.quantile(np.abs(left), STEP_QUANTILE)),
-    )
+    return misfit_of(fitted, shape, place)

@@ -18,7 +18,7 @@ from cyclosweep.report.wording import (
 )
 from cyclosweep.result import EffectParameter, FoundEffect, Region
 from cyclosweep.result.contradictions import NONE_NEEDED
-from cyclosweep.result.shape_words import cause_in_words, shape_of_size
+from cyclosweep.result.shape_words import cause_in_words, shape_of_size, with_measure
 from cyclosweep.result.stand_in_words import removed_by_stand_ins, stand_in_words
 from cyclosweep.result.tolerance_words import below_tolerance
 from cyclosweep.result.words import readable, telling_digits
@@ -162,10 +162,11 @@ def unknown(data: ReportData) -> str:
     if rest is None:
         return removed_by_stand_ins(data.result)
     place = f", {rest.place}" if rest.place else ""
+    size = with_measure(rest, angle(rest.size_deg))
     if rest.shape in {effect.name for effect in data.result.effects}:
-        said = f"What the law of {readable(rest.shape)} misses, {angle(rest.size_deg)}{place}."
+        said = f"What the law of {readable(rest.shape)} misses, {size}{place}."
     else:
-        what = shape_of_size(rest.shape, angle(rest.size_deg)).removeprefix("a ")
+        what = shape_of_size(rest.shape, size).removeprefix("a ")
         said = (
             f"{what[:1].upper()}{what[1:]}{place}. No listed effect explains it within the noise."
         )
@@ -275,9 +276,12 @@ def regions(data: ReportData) -> list[str]:
     for region in data.result.mismatch.regions:
         size = angle(region.mean_residual_deg)
         share = region.share_of_excess
+        when = ""
+        if data.is_repaired:
+            when = " after the repair" if region.repaired else " before the repair"
         part = "" if share is None else f", {_percent(share)} of the misfit"
         texts.append(
-            f"{_place(region)}: mean residual {size}{part}, p {probability(region.p_value)}"
+            f"{_place(region)}: mean residual {size}{when}{part}, p {probability(region.p_value)}"
         )
     return texts
 

@@ -4,7 +4,7 @@ from cyclosweep.report.look_at import LOOK_AT, LOOK_AT_SHAPE
 from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
-from cyclosweep.result.shape_words import cause_in_words, shape_of_size
+from cyclosweep.result.shape_words import cause_in_words, shape_of_size, size_left
 from cyclosweep.result.tolerance_words import tolerance_words
 from cyclosweep.result.words import degrees, falls, listed, readable
 
@@ -185,10 +185,10 @@ def _rest(answer: Answer) -> str:
     named = {effect.name for effect in answer.effects}
     if rest.shape in named:
         return (
-            f"{space}What is left, {rest.size_deg:.2g} deg, is what the law of "
+            f"{space}What is left, {size_left(rest)}, is what the law of "
             f"{readable(rest.shape)} misses."
         )
-    what = shape_of_size(rest.shape, f"{rest.size_deg:.2g} deg")
+    what = shape_of_size(rest.shape, size_left(rest))
     others = [law for law in answer.repaired.stand_ins if law not in named]
     if answer.effects and others:
         return (

@@ -50,6 +50,7 @@ class RegionContent(TypedDict):
     readings: NotRequired[list[int]]
     crank_deg: list[float] | None
     temperature_c: list[float] | None
+    repaired: bool
     mean_residual_deg: float
     share_of_excess: float | None
     p_value: float | None

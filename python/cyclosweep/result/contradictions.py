@@ -65,11 +65,20 @@ def _of_regions(answer: Answer) -> Iterator[str]:
 
 
 def _of_remainder(answer: Answer) -> Iterator[str]:
-    """Steps that repeat in one sentence and do not in another."""
+    """More than there was, or steps that repeat in one sentence and do not in another."""
     steps = [finding.text for finding in answer.findings if finding.topic == "staircase"]
     repeated = any("repeat at the same positions" in text for text in steps)
     rest = answer.unknown
-    if repeated and rest is not None and rest.shape == "misfit of the model":
+    if rest is None:
+        return
+    before = answer.baseline.rmse_deg
+    all_of_it = rest.measure == "root mean square"
+    if all_of_it and before is not None and rest.size_deg > before * (1.0 + ROUNDING):
+        yield (
+            f"what is left, {rest.size_deg:.3g} deg, is more than the calibrated model misses, "
+            f"{before:.3g} deg"
+        )
+    if repeated and rest.shape == "misfit of the model":
         yield f"steps repeat at the same positions, and a misfit remains {rest.place}"
 
 

@@ -6,6 +6,8 @@ from typing import Literal
 
 from cyclosweep.result.part import LEFT_OUT, Part
 
+Measure = Literal["largest twist", "root mean square"]
+"""What the size of something without a name is."""
 LIMIT_REACHED = 0.9
 """Share of the limit of a friction from which it is reached: the law of the slip elements comes
 close to its limit only where nearly all of them slide."""
@@ -133,7 +135,10 @@ class Remainder(Part):
     place: str = ""
     """Where it is."""
     size_deg: float
-    """How large it is [deg]."""
+    """How large it is, by `measure` [deg]."""
+    measure: Measure | None = field(default=None, metadata=LEFT_OUT)
+    """Which measure `size_deg` is: ``largest twist`` of its shape, or ``root mean square`` of all
+    that the model misses, as the errors of fits are; absent where the shape says it, as a step."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,4 +1,4 @@
-"""Where recording and calibrated model differ."""
+"""Where recording and model differ."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -29,6 +29,9 @@ class Region(Part):
     """Range of the mesh position [deg]."""
     temperature_c: tuple[float, float] | None = None
     """Temperatures that were read there [degC]."""
+    repaired: bool = False
+    """Whether the repaired model is off there, as the named effects leave it; else the calibrated
+    one, before the repair."""
     mean_residual_deg: float
     """Mean of measured less modelled twist [deg]."""
     share_of_excess: float | None = None

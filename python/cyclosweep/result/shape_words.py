@@ -1,5 +1,6 @@
 """Shapes without a name in words; docs/diagnosis.md explains each."""
 
+from cyclosweep.result.effects import Remainder
 from cyclosweep.result.words import readable, with_article
 
 PHRASES = {
@@ -66,6 +67,35 @@ def shape_of_size(shape: str, size: str) -> str:
     """
     words = shape_in_words(shape)
     return f"{words}{',' if {'that', 'which'} & set(words.split()) else ' of'} {size}"
+
+
+def with_measure(rest: Remainder, size: str) -> str:
+    """Size of what is left with the name of its measure.
+
+    Parameters
+    ----------
+    rest : Remainder
+        What is left.
+    size : str
+        Its size, in words.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> with_measure(Remainder(shape="hum", size_deg=1.0, measure="root mean square"), "1 deg")
+    '1 deg rms'
+    """
+    if rest.measure == "root mean square":
+        return f"{size} rms"
+    return f"up to {size}" if rest.measure == "largest twist" else size
+
+
+def size_left(rest: Remainder) -> str:
+    """Size of what is left, as summary and statement give it."""
+    return with_measure(rest, f"{rest.size_deg:.3g} deg")
 
 
 def cause_in_words(name: str) -> str:

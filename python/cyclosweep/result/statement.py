@@ -16,7 +16,7 @@ from cyclosweep.result.calibration_words import (
 from cyclosweep.result.effects import Explanation, Remainder
 from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.proof import HeldOutBlock
-from cyclosweep.result.shape_words import cause_in_words, shape_of_size
+from cyclosweep.result.shape_words import cause_in_words, shape_of_size, size_left
 from cyclosweep.result.stand_in_words import removed
 from cyclosweep.result.tolerance_words import tolerance_words
 from cyclosweep.result.words import (
@@ -137,12 +137,12 @@ def _mostly_explained(answer: Answer) -> str:
             share += f" (95 %: {100 * ends[0]:.{digits}g} to {100 * ends[1]:.{digits}g})"
     remains = "something without a name"
     if answer.unknown is not None:
-        remains = _remains(answer.unknown, degrees(answer.unknown.size_deg), answer)
+        remains = _remains(answer.unknown, answer)
     return (
         f"Missing physics: {names}{_others(answer.explanation_set)}. It explains {share} of the "
         f"mismatch; what is left {_beside_noise(answer)} and has no name of its own: {remains}."
         f"{_missed(answer)}{_classes(answer)} Size after re-calibration: {_sizes(answer)}."
-        f"{tolerance_words(answer)} It shows most at {place_of(answer.mismatch.regions)}."
+        f"{tolerance_words(answer)}{_shows_most(answer)}"
         f"{_improvement(answer)} {_calibration(answer)}"
     )
 
@@ -155,7 +155,7 @@ def _unknown(answer: Answer) -> str:
         known = f" Beside {names} ({_sizes(answer)}),"
     remains = ""
     if answer.unknown is not None:
-        remains = f": {_remains(answer.unknown, f'{answer.unknown.size_deg:.2g} deg', answer)}"
+        remains = f": {_remains(answer.unknown, answer)}"
     calibration = _calibration(answer)
     if answer.drift is not None and answer.change is None:
         remains = ": a drift from run to run"
@@ -166,20 +166,27 @@ def _unknown(answer: Answer) -> str:
         )
     return (
         f"Unknown physics:{known} something without a name in the vocabulary remains{remains}."
-        f"{_classes(answer)}{_stand_ins(answer)}{tolerance_words(answer)} It shows most at "
-        f"{place_of(answer.mismatch.regions)}. {calibration}"
+        f"{_classes(answer)}{_stand_ins(answer)}{tolerance_words(answer)}{_shows_most(answer)} "
+        f"{calibration}"
     )
 
 
-def _remains(rest: Remainder, size: str, answer: Answer) -> str:
+def _shows_most(answer: Answer) -> str:
+    """Say where what is left shows most, or the mismatch before the repair where that is known."""
+    regions, place = answer.mismatch.regions, place_of(answer.mismatch.regions)
+    is_repaired = answer.effects or answer.repaired.stand_ins
+    if regions and is_repaired and not regions[0].repaired:
+        return f" Before the repair the model missed most at {place}."
+    return f" It shows most at {place}."
+
+
+def _remains(rest: Remainder, answer: Answer) -> str:
     """Say what is left without a name.
 
     Parameters
     ----------
     rest : Remainder
         What is left.
-    size : str
-        Its largest size, in words.
     answer : Answer
         The answer; what has the shape of an effect that it names is left by the law of that one.
 
@@ -188,8 +195,8 @@ def _remains(rest: Remainder, size: str, answer: Answer) -> str:
     str
     """
     if rest.shape in {effect.name for effect in answer.effects}:
-        return f"what the law of {readable(rest.shape)} misses, {size}, {rest.place}"
-    return f"{shape_of_size(rest.shape, size)}, {rest.place}"
+        return f"what the law of {readable(rest.shape)} misses, {size_left(rest)}, {rest.place}"
+    return f"{shape_of_size(rest.shape, size_left(rest))}, {rest.place}"
 
 
 def _stand_ins(answer: Answer) -> str:
