@@ -20,7 +20,7 @@ from cyclosweep.result import (
     Remainder,
     Size,
 )
-from cyclosweep.result.calibration_words import play_words
+from cyclosweep.result.calibration_words import calibration_words, play_words
 from tests.support.dry_friction import twist_with_friction
 
 FITTED = {
@@ -268,3 +268,38 @@ def test_no_table_shows_a_play_below_zero() -> None:
     about_zero = Reading(estimate=0.01, ci95=(-0.13, 0.15))
     value, interval = shown(PlayAndStiffness(runs=3, free_play_deg=about_zero))[label]
     assert (value, interval) == ("0.01 deg (0.6 arcmin)", "0 … 0.15")
+
+
+def test_a_width_that_was_not_read_is_not_said_to_be_of_anything() -> None:
+    read = PlayAndStiffness(runs=0, reason="too few branches")
+    width = "half the loop's width at the output"
+    unknown = Remainder(shape="loop by rate", size_deg=0.1)
+    for rest, named in ((unknown, None), (None, "creep"), (None, "viscous_drag")):
+        found = FoundEffect(name=named or "", size_deg=Size(estimate=1.0, ci95=(0.9, 1.1)))
+        answer = Answer(
+            verdict="UNKNOWN_PHYSICS",
+            effects=(found,) if named else (),
+            unknown=rest,
+            play_and_stiffness=read,
+        )
+        table = play_table(ReportData(recording=loop(), result=answer))
+        assert table is not None
+        assert table.rows[0][:2] == (width, "not read")
+
+
+def test_a_compliance_beside_friction_is_said_to_be_of_the_elastic_parts() -> None:
+    """A loop 28 % softer than nominal stood beside a compliance of +105.8 %, of other parts."""
+    known = FITTED | {
+        "compliance_scale": CalibratedParameter(nominal=1.0, estimate=2.058),
+        "compliance_deg_per_nm": CalibratedParameter(estimate=0.2058, nominal=0.1),
+        "datum_deg": CalibratedParameter(estimate=0.0, unit="deg"),
+    }
+    read = PlayAndStiffness(compliance_deg_per_nm=Reading(estimate=0.128))
+    said = "compliance +105.8 % against nominal"
+    parts = "of the elastic parts, without those that friction holds"
+    assert f"{said}, free play" in calibration_words(known, read=read)
+    assert f"{said} ({parts}), free play" in calibration_words(known, rubs=True)
+    both = f"{said} ({parts}; of the loop as read +28.0 %), free play"
+    assert both in calibration_words(known, rubs=True, read=read)
+    same = PlayAndStiffness(compliance_deg_per_nm=Reading(estimate=0.2058))
+    assert f"{said} ({parts}), free play" in calibration_words(known, rubs=True, read=same)

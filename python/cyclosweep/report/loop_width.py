@@ -3,11 +3,11 @@
 from cyclosweep.report.data import ReportData
 from cyclosweep.report.wording import number
 from cyclosweep.result import Reading
+from cyclosweep.result.calibration_words import FRICTIONS
 from cyclosweep.result.effects import is_reached
 from cyclosweep.result.part import NORMAL_95
 from cyclosweep.result.words import listed
 
-FRICTIONS = ("friction_hysteresis", "load_dependent_friction")
 OPEN_THE_LOOP = ("creep", "viscous_drag", "thermal_drift", "datum_drift")
 """Effects by which a loop is open without friction."""
 TORQUE = "N m"
@@ -20,7 +20,11 @@ def width_label(data: ReportData) -> str:
     named = {effect.name for effect in answer.effects}
     possible = named.union(*(rival.effects for rival in answer.explanation_set))
     others = [name for name in OPEN_THE_LOOP if name in named]
-    if not others and answer.unknown is not None and not possible.intersection(FRICTIONS):
+    nameless = answer.unknown is not None and not possible.intersection(FRICTIONS)
+    read = answer.play_and_stiffness
+    if (others or nameless) and (read is None or read.friction_nm is None):
+        return f"half the loop's width at the {side}"  # not read: there is nothing to say it is of
+    if not others and nameless:
         return f"half the loop's width at the {side}, of friction or of what has no name"
     if not others:
         return f"friction at the {side}, half the loop's width"

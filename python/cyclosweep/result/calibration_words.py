@@ -14,6 +14,8 @@ AT_REFERENCE = f" at {REFERENCE_C:g} degC"
 """Temperature at which the calibration holds where something follows the temperature."""
 MEANS = " (means over the recording, whose temperature changed)"
 """What is read from the loop there."""
+FRICTIONS = frozenset({"friction_hysteresis", "load_dependent_friction"})
+"""Effects that hold a part of the drive until it slides."""
 HIDDEN = "as friction hides it"
 """Words by which a finding says why play or stiffness is not given."""
 HIDDEN_BY_FRICTION = (
@@ -110,7 +112,19 @@ def _read(reading: Reading, unit: str) -> str:
     return f"{text} (95 %: {ends[0]:.{digits}g} to {ends[1]:.{digits}g})"
 
 
-def calibration_words(parameters: Mapping[str, CalibratedParameter], *, warms: bool = False) -> str:
+def has_friction(answer: Answer) -> bool:
+    """Whether the repaired model has a friction, named or not."""
+    named = [effect.name for effect in answer.effects]
+    return not FRICTIONS.isdisjoint((*named, *answer.repaired.stand_ins))
+
+
+def calibration_words(
+    parameters: Mapping[str, CalibratedParameter],
+    *,
+    warms: bool = False,
+    rubs: bool = False,
+    read: PlayAndStiffness | None = None,
+) -> str:
     """What the calibration found, against nominal.
 
     Parameters
@@ -119,6 +133,11 @@ def calibration_words(parameters: Mapping[str, CalibratedParameter], *, warms: b
         Calibrated parameters by name.
     warms : bool
         Whether the model has an effect beside them that follows the temperature.
+    rubs : bool
+        Whether it has a friction beside them: parts that it holds lie beside the elastic ones, and
+        the loop is stiffer than these are.
+    read : PlayAndStiffness, optional
+        What was read from the loop, whose compliance is then another one.
 
     Returns
     -------
@@ -135,7 +154,34 @@ def calibration_words(parameters: Mapping[str, CalibratedParameter], *, warms: b
     words = (
         f"Calibration{AT_REFERENCE if warms else ''}: compliance {change:+.1f} % against nominal"
     )
-    words += " (between half and full torque)" if bent else ""
+    notes = ["between half and full torque"] if bent else []
+    if rubs:
+        notes.append("of the elastic parts, without those that friction holds")
+        if loop := _of_loop(line, read, change):
+            notes.append(loop)
+    words += f" ({'; '.join(notes)})" if notes else ""
     if play.std_error is not None:
         words += f", free play {degrees(play.estimate)} each side (nominal {play.nominal:.3g})"
     return f"{words}, datum {degrees(datum)}; these are settings of this specimen, not physics."
+
+
+def _of_loop(line: CalibratedParameter | None, read: PlayAndStiffness | None, change: float) -> str:
+    """Compliance of the loop as it was read, against nominal; empty where it is the same.
+
+    Parameters
+    ----------
+    line : CalibratedParameter or None
+        Compliance of the line, with the nominal one.
+    read : PlayAndStiffness or None
+        What was read from the loop.
+    change : float
+        What is said of the calibrated one against nominal [%].
+
+    Returns
+    -------
+    str
+    """
+    if read is None or read.compliance_deg_per_nm is None or line is None or not line.nominal:
+        return ""
+    loop = round(100 * (read.compliance_deg_per_nm.estimate / line.nominal - 1), 1) + 0.0
+    return "" if loop == change else f"of the loop as read {loop:+.1f} %"

@@ -10,6 +10,7 @@ from cyclosweep.result.calibration_words import (
     calibration_words,
     change_words,
     follows_temperature,
+    has_friction,
     is_hidden_by_friction,
     play_words,
 )
@@ -360,7 +361,13 @@ def _calibration(answer: Answer) -> str:
         read = play_words(answer.play_and_stiffness, warms=warms)
         if is_hidden_by_friction(answer.findings, "play"):
             return f"{read}{HIDDEN_BY_FRICTION}"
-        return f"{read}{calibration_words(answer.repaired.parameters, warms=warms)}"
+        calibrated = calibration_words(
+            answer.repaired.parameters,
+            warms=warms,
+            rubs=has_friction(answer),
+            read=answer.play_and_stiffness,
+        )
+        return f"{read}{calibrated}"
     return change_words(answer.change, answer.repaired.parameters)
 
 

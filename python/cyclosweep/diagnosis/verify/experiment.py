@@ -30,8 +30,8 @@ POSITIONS = 8
 SAME_RATE = 1.2
 """Rates nearer to each other than this factor are one."""
 FINER = (
-    "the same programme once more, read more finely or several times: by no load would it stand "
-    "out of the noise of this recording"
+    "the same programme once more, read more finely or several times: whatever the loads, the "
+    "effect that is asked for would stay below the noise of a recording like this one"
 )
 """Next experiment where no programme shows what is asked."""
 
