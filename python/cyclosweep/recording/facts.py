@@ -11,11 +11,19 @@ from cyclosweep.recording.structure import HOLD_SAMPLES
 
 __all__ = ["facts_of"]
 
+LEAST_DIRECTION = 0.05
+"""Torque of one direction over that of the other from which the drive was loaded in both: less is
+an offset of the sensor, or its noise about zero."""
+
 DWELL_BAND = 0.02
 """Band of the torque, of its range, in which a dwell stays: noise of a sensor is less."""
 
 DWELL_FACTOR = 5.0
 """A dwell stays in the band for so many times the samples that a ramp usually does."""
+
+
+MOST_TRAVEL = 0.5
+"""Most speed of the angle in a dwell, over the usual one on a ramp: creep is slower."""
 
 
 def facts_of(recording: Recording) -> dict[str, str]:
@@ -24,7 +32,8 @@ def facts_of(recording: Recording) -> dict[str, str]:
     if not len(torque):
         return {"samples": "none"}
     facts = {"samples": f"{len(recording)} of {recording.path.name if recording.path else ''}"}
-    both = torque.min() < 0 < torque.max()
+    ends = sorted((abs(min(float(torque.min()), 0.0)), max(float(torque.max()), 0.0)))
+    both = ends[0] > LEAST_DIRECTION * ends[1]
     facts["torque"] = (
         f"{torque.min():.4g} to {torque.max():.4g} N m at the {recording.side} shaft, "
         f"{'both directions' if both else 'one direction'}, "
@@ -50,7 +59,7 @@ def facts_of(recording: Recording) -> dict[str, str]:
 def _dwell_facts(recording: Recording) -> str:
     """Number of dwells and how long they last, equal torques or torques equal but for noise."""
     spans = [(hold.start, hold.stop) for hold in recording.structure.holds]
-    spans = spans or _noisy_dwells(recording.torque_nm)
+    spans = spans or _noisy_dwells(recording.torque_nm, recording.angle_deg)
     if not spans:
         return "none"
     time = recording.time_s
@@ -60,13 +69,18 @@ def _dwell_facts(recording: Recording) -> str:
     return f"{len(spans)} at constant torque, {min(known):.3g} to {max(known):.3g} s"
 
 
-def _noisy_dwells(torque: Floats) -> list[tuple[int, int]]:
+def _noisy_dwells(torque: Floats, angle: Floats | None) -> list[tuple[int, int]]:
     """Find stretches in which the torque stays in one band for far longer than elsewhere.
+
+    Where the angle goes on there as fast as elsewhere, as of a strap that hangs slack, nothing
+    dwells.
 
     Parameters
     ----------
     torque : ndarray of float, shape (n,)
         Torque [N m].
+    angle : ndarray of float, shape (n,), or None
+        Angle [deg].
 
     Returns
     -------
@@ -83,11 +97,18 @@ def _noisy_dwells(torque: Floats) -> list[tuple[int, int]]:
     spans = list(pairwise([*bounds, len(torque)]))
     usual = float(np.median([stop - start for start, stop in spans]))
     least = max(HOLD_SAMPLES, DWELL_FACTOR * usual)
-    return [
+    dwells = [
         (start, stop)
         for start, stop in spans
         if stop - start >= least and _is_level(torque[start:stop], band)
     ]
+    if angle is None:
+        return dwells
+    speeds = {span: abs(float(angle[span[1] - 1] - angle[span[0]])) / (span[1] - span[0])
+              for span in spans}  # fmt: skip
+    elsewhere = [speed for span, speed in speeds.items() if span not in dwells and speed > 0]
+    most = MOST_TRAVEL * float(np.median(elsewhere)) if elsewhere else np.inf
+    return [span for span in dwells if speeds[span] <= most]
 
 
 def _is_level(torque: Floats, band: float) -> bool:

@@ -13,6 +13,7 @@ from cyclosweep.recording.columns import file_columns, stem
 from cyclosweep.recording.facts import facts_of
 from cyclosweep.recording.file_table import FileTable
 from cyclosweep.recording.in_force import InForce
+from cyclosweep.recording.lengths import length_notes
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep.recording.metadata_text import to_toml
 from cyclosweep.recording.opening import open_table
@@ -187,6 +188,9 @@ def inspect(
             f"{', '.join(twice)}: more than one column of that name, not read; rename all but one "
             "to use it."
         )
+    if "angle_deg" not in {*choice.roles, *made.meta.get("columns", {})}:
+        read = {named.column for named in choice.roles.values()}
+        made.assumed += length_notes(table, [name for name in numbers if name not in read])
     suggested: list[str] = []
     if in_force is not None:
         by_file = choose(table, numbers, given).roles

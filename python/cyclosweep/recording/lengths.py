@@ -1,0 +1,70 @@
+"""Columns that hold a length, from which an angle has to be computed first."""
+
+import math
+import re
+from collections.abc import Iterable
+
+from cyclosweep.recording.file_table import FileTable
+
+__all__ = ["length_notes"]
+
+MILLIMETRES = {
+    "mm": 1.0, "cm": 10.0, "m": 1e3, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "in": 25.4, "inch": 25.4,
+}  # fmt: skip
+"""Millimetres in a unit of length."""
+RADIUS_MM = 100.0
+"""Radius for which the scale is given as an example [mm]."""
+
+_IN_BRACKETS = re.compile(r"[\[({<]\s*(?P<unit>[^\[\](){}<>]*?)\s*[\])}>]\s*$")
+_ENDING = re.compile(r"[_\s](?P<unit>mm|cm|µm|um)$")
+
+
+def length_notes(table: FileTable, names: Iterable[str]) -> list[str]:
+    """Say of each column that holds a length how it becomes an angle.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file, with the units that it states.
+    names : iterable of str
+        Columns of numbers that are not read.
+
+    Returns
+    -------
+    list of str
+        One line each.
+    """
+    notes = []
+    for name in names:
+        unit = _length(table, name)
+        if unit is None:
+            continue
+        scale = math.degrees(MILLIMETRES[unit] / RADIUS_MM)
+        notes.append(
+            f"{name} holds a length ({unit}), no angle: where it is measured at a radius, write "
+            f'angle_deg = {{ column = "{name}", scale = {scale:.4g} }} under [columns]; this scale '
+            f"is for a radius of {RADIUS_MM:g} mm, in inverse proportion to it."
+        )
+    return notes
+
+
+def _length(table: FileTable, name: str) -> str | None:
+    """Unit of length that is stated for a column; None where it has another unit or none.
+
+    Parameters
+    ----------
+    table : FileTable
+        The file.
+    name : str
+        The column.
+
+    Returns
+    -------
+    str or None
+    """
+    stated = table.units.get(name)
+    if stated is None:
+        match = _IN_BRACKETS.search(name) or _ENDING.search(name)
+        stated = match["unit"] if match else ""
+    unit = stated.strip().lower()
+    return unit if unit in MILLIMETRES else None
