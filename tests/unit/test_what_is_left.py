@@ -13,6 +13,7 @@ from cyclosweep.report.summary import summary_of
 from cyclosweep.result import (
     Answer,
     Baseline,
+    Bound,
     CalibratedParameter,
     Explained,
     FoundEffect,
@@ -110,3 +111,19 @@ def test_the_misfit_of_a_recording_is_its_fit_error() -> None:
     assert answer.unknown.measure == "root mean square"
     assert answer.unknown.size_deg == pytest.approx(answer.repaired.rmse_deg)
     assert contradictions(answer) == ()
+
+
+@pytest.mark.parametrize("chance", [None, 0.4, 0.035])
+def test_a_difference_that_chance_seldom_makes_is_not_said_to_be_none(chance: float | None) -> None:
+    answer = Answer(
+        verdict="INSUFFICIENT_DATA",
+        mismatch=Mismatch(p_value=chance),
+        tolerance_deg=0.05,
+        undecided=(Bound(name="load_asymmetry", upper95_deg=0.08),),
+        baseline=Baseline(parameters=PARAMETERS),
+        repaired=Repair(parameters=PARAMETERS),
+    )
+    rare = chance is not None and chance < 0.05
+    for text in (summary_of(answer), statement_of(answer)):
+        assert ("No difference was found, but" in text) is not rare
+        assert ("chance makes in 3.5 % of such recordings, but" in text) is rare

@@ -5,7 +5,7 @@ from cyclosweep.report.wording import number
 from cyclosweep.result import Answer
 from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.shape_words import cause_in_words, shape_of_size, size_left
-from cyclosweep.result.tolerance_words import tolerance_words
+from cyclosweep.result.tolerance_words import difference_words, tolerance_words
 from cyclosweep.result.words import degrees, falls, listed, readable
 
 CHECK_FIRST, LOOK_AT_PART, RECORD_NEXT = "Check first:", "Look at", "Record next:"
@@ -215,7 +215,7 @@ def _open(answer: Answer) -> str:
     if not bounds:
         return answer.statement
     return (
-        f"No difference was found, but {readable(bounds[0].name)} could be as large as "
+        f"{difference_words(answer)}, but {readable(bounds[0].name)} could be as large as "
         f"{degrees(bounds[0].upper95_deg)}, above the tolerance of {degrees(answer.tolerance_deg)}."
     )
 

@@ -19,7 +19,7 @@ from cyclosweep.result.plausibility import Doubt
 from cyclosweep.result.proof import HeldOutBlock
 from cyclosweep.result.shape_words import cause_in_words, shape_of_size, size_left
 from cyclosweep.result.stand_in_words import removed
-from cyclosweep.result.tolerance_words import tolerance_words
+from cyclosweep.result.tolerance_words import difference_words, tolerance_words
 from cyclosweep.result.words import (
     degrees,
     falls,
@@ -101,7 +101,7 @@ def _insufficient(answer: Answer) -> str:
     open_effects = sorted(answer.undecided, key=lambda bound: -bound.upper95_deg)
     names = listed([bound.name for bound in open_effects[:4]]) if open_effects else "no effect"
     return (
-        "No difference was found, but the recording is too poor to rule out what matters: "
+        f"{difference_words(answer)}, but the recording is too poor to rule out what matters: "
         f"{names} could be as large as {degrees(_largest_bound(answer))}, above the "
         f"tolerance of {degrees(answer.tolerance_deg)}. " + _calibration(answer)
     )

@@ -1,8 +1,36 @@
-"""Which named effects are smaller than the size that matters, in words."""
+"""Whether a difference was found, and which named effects are smaller than matters, in words."""
 
 from cyclosweep.result.answer import Answer
 from cyclosweep.result.effects import FoundEffect
 from cyclosweep.result.words import degrees, listed
+
+RARE = 0.05
+"""Probability by chance below which a difference cannot be said not to be there, though nothing is
+named before one in a hundred."""
+
+
+def difference_words(answer: Answer) -> str:
+    """Say that no difference was found, or one that chance makes too often for a name.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer of a diagnosis in which nothing is said to be missing.
+
+    Returns
+    -------
+    str
+        Begin of a sentence.
+
+    Examples
+    --------
+    >>> difference_words(Answer(verdict="INSUFFICIENT_DATA"))
+    'No difference was found'
+    """
+    chance = answer.mismatch.p_value
+    if chance is None or chance >= RARE:
+        return "No difference was found"
+    return f"What differs is no more than chance makes in {100 * chance:.2g} % of such recordings"
 
 
 def below_tolerance(effect: FoundEffect, tolerance_deg: float | None) -> str:
