@@ -85,8 +85,9 @@ STAGES = {
     "verification": DECIDED | {"verify", "change"},
     "effects_found": DECIDED | {"elasticity", "effect_chance"},
     "abrupt_step": DECIDED,
+    "misfit": DECIDED,
     "effect_chance": DECIDED,
-    "remainder": DECIDED | {"verify", "verification", "locate", "abrupt_step"},
+    "remainder": DECIDED | {"verify", "verification", "locate", "abrupt_step", "misfit"},
     "model_error_table": DECIDED | {"verify", "verification", "repair"},
     "finish": DECIDED | {"verification", "repair", "plausibility"},
     "compose": DECIDED
