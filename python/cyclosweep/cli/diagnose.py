@@ -217,7 +217,7 @@ def _diagnose_folder(
                    "levels": [{"value": level.value, "recordings": level.recordings,
                                "mean": level.mean, "ci95": level.ci95} for level in each.levels]}
                   for each in series.trends]  # fmt: skip
-        steps = None if series.steps is None else asdict(series.steps)
+        steps = series.steps and asdict(series.steps) | {"text": series.steps.text}
         print_json({"table": series.table.to_dicts(), "trends": trends, "steps": steps})
     else:
         print_tables([_folder_table(series)], any_width=True)

@@ -338,7 +338,8 @@ def _kept(folder: Path, key: str) -> Row | None:
         kept = json.loads((folder / ROW_FILE).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    same = isinstance(kept, dict) and kept.get("key") == key
+    # A file without steps is of a version that did not look for them.
+    same = isinstance(kept, dict) and kept.get("key") == key and "steps" in kept
     whole = same and (folder / "diagnosis.json").is_file()
     return dict(kept["row"]) if whole else None
 

@@ -216,7 +216,7 @@ def _leaves_something(search: Search) -> bool:
 
 
 def is_within_slow_noise(search: Search) -> bool:
-    """Whether a structure is all there is only by noise that is no larger than it by chance.
+    """Whether nothing more is found only because the noise is said to be far larger.
 
     An autoregression near one describes what a structure leaves as a small part of a noise far
     larger, of which the recording holds not one independent piece.

@@ -14,11 +14,13 @@ import numpy as np
 
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.series import Row
+from cyclosweep.diagnosis.whole_loop.staircase_found import are_tied_steps
 from cyclosweep.diagnosis.whole_loop.step_order import apart
 from cyclosweep.diagnosis.whole_loop.step_spectrum import (
     Leg,
     StepSpectrum,
     enough,
+    from_one_place,
     legs_in,
     length_deg,
     orders_in,
@@ -26,20 +28,20 @@ from cyclosweep.diagnosis.whole_loop.step_spectrum import (
 )
 from cyclosweep.recording import Recording
 from cyclosweep.result.series import OwnOrder, StepsInCommon
+from cyclosweep.simulation.effects.history import Floats
 
 FEWEST = 2
 """Recordings with steps from which an order is looked for that they share."""
 MOST_UNLIKE = 1.6
 """Length of a recording's legs over the usual one, or the other way round, beyond which it is left
 out: it shows other orders."""
-CERTAIN = 0.01
-"""Share of random staircases of at least as clear an order up to which the order is stated."""
-STAIRCASE = "staircase"
-"""Topic of what a diagnosis finds of steps."""
+CERTAIN_IN_COMMON = 0.01
+"""Share of random staircases of at least as clear an order up to which an order that recordings
+share is stated."""
 
 
 def steps_of(found: Diagnosis) -> dict[str, Any] | None:
-    """Torque along the legs of a recording in which steps remain that repeat, as plain data.
+    """Torque along the legs of a recording in which steps repeat at the same positions, as data.
 
     Parameters
     ----------
@@ -51,7 +53,7 @@ def steps_of(found: Diagnosis) -> dict[str, Any] | None:
         None where no steps repeat, or where the ratio of the drive is not known; see
         `legs_as_data`.
     """
-    if found.ratio is None or all(each.topic != STAIRCASE for each in found.answer.findings):
+    if found.ratio is None or not any(map(are_tied_steps, found.answer.findings)):
         return None
     return legs_as_data(found.recording, found.ratio)
 
@@ -117,9 +119,11 @@ def own_order(steps: StepsInCommon | None, name: str) -> Row:
 def steps_in_common(steps: Mapping[str, Mapping[str, Any]], seed: int = 0) -> StepsInCommon | None:
     """Look for the order that staircases share.
 
-    The clearness of each order is added up over the recordings, and so is that of random
-    staircases. All recordings pass the same random staircase, each at its own angles: where several
-    were made at the same place, they count as one.
+    The clearness of each order is the mean over the recordings, and so is that of random
+    staircases. All recordings pass the same random staircase, so that a place that was recorded
+    several times is no further evidence: once each at its own angles, and once as if all were made
+    at one place, because the angle at which a sensor reads zero may differ between recordings. The
+    larger of both chances is stated.
 
     Parameters
     ----------
@@ -141,25 +145,50 @@ def steps_in_common(steps: Mapping[str, Mapping[str, Any]], seed: int = 0) -> St
     if len(alike) < FEWEST:
         return None
     orders = orders_in(usual)
-    spectra = {
-        name: step_spectrum(legs[name], orders * turns_a_deg[name], np.random.default_rng(seed))
-        for name in alike
-    }
+
+    def spectrum(name: str, placed: Sequence[Leg]) -> StepSpectrum:
+        cycles = orders * turns_a_deg[name]
+        return step_spectrum(placed, cycles, np.random.default_rng(seed))
+
+    spectra = {name: spectrum(name, legs[name]) for name in alike}
+    at_one_place = [spectrum(name, from_one_place(legs[name])) for name in alike]
     common = _mean(list(spectra.values()))
+    chance = max(common.chance, _mean(at_one_place).chance)
     order = float(orders[common.clearest])
     return StepsInCommon(
         order=order,
         apart=order * apart(usual, order),
-        chance=common.chance,
-        certain=common.chance <= CERTAIN,
-        own={
-            name: OwnOrder(
-                order=float(orders[each.clearest]),
-                chance=each.chance,
-                chance_of_common=_chance_at(each, common.clearest),
-            )
-            for name, each in spectra.items()
-        },
+        chance=chance,
+        certain=chance <= CERTAIN_IN_COMMON,
+        own={name: _own(name, spectra, orders) for name in spectra},
+        left_out=tuple(name for name in legs if name not in spectra),
+    )
+
+
+def _own(name: str, spectra: Mapping[str, StepSpectrum], orders: Floats) -> OwnOrder:
+    """Order of one recording, and how clear that of the others is in it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the recording.
+    spectra : mapping of str to StepSpectrum
+        Of all recordings.
+    orders : ndarray, shape (k,)
+        Cycles a turn of the input.
+
+    Returns
+    -------
+    OwnOrder
+    """
+    own = spectra[name]
+    others = _mean([each for other, each in spectra.items() if other != name]).clearest
+    as_clear = np.count_nonzero(own.drawn[others] >= own.clearness[others])
+    return OwnOrder(
+        order=float(orders[own.clearest]),
+        chance=own.chance,
+        order_of_others=float(orders[others]),
+        chance_of_others=float((1 + as_clear) / (1 + own.drawn.shape[1])),
     )
 
 
@@ -183,9 +212,3 @@ def _mean(spectra: Sequence[StepSpectrum]) -> StepSpectrum:
         np.mean([each.clearness for each in spectra], axis=0),
         np.mean([each.drawn for each in spectra], axis=0),
     )
-
-
-def _chance_at(spectrum: StepSpectrum, place: int) -> float:
-    """Share of random staircases in which one order is at least as clear."""
-    as_clear = np.count_nonzero(spectrum.drawn[place] >= spectrum.clearness[place])
-    return float((1 + as_clear) / (1 + spectrum.drawn.shape[1]))

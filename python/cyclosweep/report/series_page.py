@@ -142,11 +142,17 @@ def _steps(steps: StepsInCommon | None) -> str:
     """Order that the steps share, and that of each recording."""
     if steps is None:
         return ""
-    common = f"order {number(steps.order)} alone" if steps.certain else "the clearest of all"
-    head = ("recording", "clearest order", "random staircases as clear", f"the same, {common}")
+    head = (
+        "recording",
+        "clearest order",
+        "random staircases with as clear an order",
+        "order of the other recordings",
+        "random staircases in which that one is as clear",
+    )
     lines = "".join(
         f"<tr><td>{escape(name)}</td><td>{number(own.order)}</td>"
-        f"<td>{_percent(own.chance)}</td><td>{_percent(own.chance_of_common)}</td></tr>"
+        f"<td>{_percent(own.chance)}</td><td>{number(own.order_of_others)}</td>"
+        f"<td>{_percent(own.chance_of_others)}</td></tr>"
         for name, own in steps.own.items()
     )
     return (

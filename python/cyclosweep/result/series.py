@@ -125,13 +125,16 @@ class OwnOrder:
         Its clearest order, in cycles a turn of the input [-].
     chance : float
         Share of random staircases of which some order is at least as clear.
-    chance_of_common : float
-        Share of random staircases in which the order that the series shares is at least as clear.
+    order_of_others : float
+        Clearest order of all other recordings together [-].
+    chance_of_others : float
+        Share of random staircases in which that order is at least as clear as in this recording.
     """
 
     order: float
     chance: float
-    chance_of_common: float
+    order_of_others: float
+    chance_of_others: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,6 +155,8 @@ class StepsInCommon:
         Whether that is so small that the order is stated.
     own : mapping of str to OwnOrder
         The order of each recording that was looked at, by its name.
+    left_out : tuple of str
+        Names of the recordings whose legs are too long or too short to be compared.
     """
 
     order: float
@@ -159,21 +164,26 @@ class StepsInCommon:
     chance: float
     certain: bool
     own: Mapping[str, OwnOrder]
+    left_out: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
         """What the recordings share, in one or two sentences."""
         count = len(self.own)
-        chance = f"of random staircases {100 * self.chance:.2g} % show as clear an order"
+        beside = len(self.left_out)
+        those = f"{count} recordings" + (
+            f" ({beside} more have legs of another length and are left out)" if beside else ""
+        )
+        chance = f"at most {100 * self.chance:.2g} % of random staircases show as clear an order"
         if not self.certain:
             return (
-                f"Steps of the torque repeat in {count} recordings, and have no order in common "
-                f"that can be stated: {chance}."
+                f"Steps of the torque repeat in {those}, and have no order in common that can be "
+                f"stated: {chance}."
             )
         near = sum(abs(each.order - self.order) <= self.apart for each in self.own.values())
         return (
-            f"Steps of the torque repeat in {count} recordings and come, all together, at order "
+            f"Steps of the torque repeat in {those} and come, all together, at order "
             f"{self.order:.3g} of a turn of the input and its multiples, as from the poles of a "
-            f"motor or the teeth of a mesh: {chance}. In {near} of them it is the clearest order, "
-            f"within {self.apart:.2g}."
+            f"motor or the teeth of a mesh: {chance}. In {near} of the {count} recordings it is "
+            f"the clearest order, within {self.apart:.2g}."
         )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import cyclosweep as cs
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.series import small_loops_of
-from cyclosweep.diagnosis.series_steps import CERTAIN
+from cyclosweep.diagnosis.series_steps import CERTAIN_IN_COMMON
 from cyclosweep.recording import Recording
 from cyclosweep.recording.metadata import Metadata
 from cyclosweep_challenge.measured.loops import FIRST, SECOND, Loops, as_template
@@ -164,7 +164,8 @@ def _staircase_named(outcome: Outcome) -> bool:
     """Whether what repeats from ramp to ramp, here or by the diagnosis, is named by position.
 
     By an effect that goes with the position, by the right order of its steps, or, as a series of
-    recordings is diagnosed, by that of the other files, if it is the clearest of this one, too.
+    recordings is diagnosed, by that of the other files, if the clearest order of this one agrees
+    with it. One in twelve random orders would agree.
     """
     left = outcome.words.partition("|")[0]
     repeats = outcome.figures.get("repeats", 0.0) >= REPEATS or "staircase" in left
@@ -172,7 +173,7 @@ def _staircase_named(outcome: Outcome) -> bool:
     if stated is not None and _is_of_motor(float(stated[1])):
         return True
     if _is_of_motor(outcome.figures.get("others_order", 0.0)):
-        certain = outcome.figures["others_chance"] <= CERTAIN
+        certain = outcome.figures["others_chance"] <= CERTAIN_IN_COMMON
         away = abs(outcome.figures.get("own_order", 0.0) - outcome.figures["others_order"])
         if certain and away <= outcome.figures["own_apart"]:
             return True

@@ -17,6 +17,17 @@ CLEAR_PERIOD = 0.1
 """Share of the residual that a period has to explain to be given."""
 
 
+STAIRCASE = "staircase"
+"""Topic of what is said of steps."""
+TIED, EQUAL = "tied to the position of mesh and motor", "They come at equal distances"
+"""What is said of steps that repeat at the same positions, and of those that have an order."""
+
+
+def are_tied_steps(finding: Finding) -> bool:
+    """Whether a finding says that steps without a name repeat, or have an order."""
+    return finding.topic == STAIRCASE and (TIED in finding.text or EQUAL in finding.text)
+
+
 def angle_in_words(value_deg: float) -> str:
     """Angle in deg and arcmin."""
     return f"{value_deg:.3g} deg ({60 * value_deg:.3g} arcmin)"
@@ -32,7 +43,7 @@ def named_staircase(forecast: Forecast) -> Finding | None:
         if term.effect is not None and has_steps:
             amplitudes = np.array(value.amplitudes)
             law = term.effect.found_law(forecast.history, term.shape, amplitudes)
-            return Finding(topic="staircase", text=f"Named: {readable(term.name)}. {law}")
+            return Finding(topic=STAIRCASE, text=f"Named: {readable(term.name)}. {law}")
     return None
 
 
@@ -58,7 +69,7 @@ def staircase(problem: Problem, forecast: Forecast, repeats: Repetition) -> Find
         "" if period is None else f", spaced about {angle_in_words(period)} at the measured shaft"
     )
     return Finding(
-        topic="staircase",
+        topic=STAIRCASE,
         text=f"Steps of about {angle_in_words(size)} remain that no effect explains{spaced}. "
         f"{_repeated(problem, repeats)}",
     )
@@ -81,8 +92,8 @@ def _repeated(problem: Problem, repeats: Repetition) -> str:
     spaced = "" if order is None else f" {_ordered(order, problem.history.mesh_ratio)}"
     if repeats.is_physics:
         return (
-            f"They repeat at the same positions {repeats.in_words}: they are tied to the position "
-            f"of mesh and motor, not to noise.{spaced}{in_words(direction_correlation(problem))}"
+            f"They repeat at the same positions {repeats.in_words}: they are {TIED}, not to noise."
+            f"{spaced}{in_words(direction_correlation(problem))}"
         )
     if order is not None:
         return f"They repeat in part {repeats.in_words}.{spaced}"
@@ -114,7 +125,7 @@ def _ordered(order: StepOrder, mesh_ratio: float) -> str:
     ]
     where = f" One crest of the torque is {' and '.join(crests)}." if crests else ""
     return (
-        f"They come at equal distances, {order.in_words(mesh_ratio)}, with multiples, as from the "
+        f"{EQUAL}, {order.in_words(mesh_ratio)}, with multiples, as from the "
         f"poles of a motor or the teeth of a mesh; the travel tells orders apart that differ by "
         f"{apart:.2g}, and of random staircases {100 * order.chance:.2g} % show as clear an order."
         f"{where}"

@@ -7,7 +7,7 @@ say how clear chance makes one.
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -34,6 +34,8 @@ FLOOR = 3e-3
 HARMONICS = 3
 """Order and multiples of it that are looked at together. Each counts by the logarithm of its power,
 so that a third of the order, which has the order for its third multiple, does not win."""
+SIDES = (1, -1)
+"""Signs of the load."""
 DRAWS = 399
 """Random staircases with which a staircase is compared."""
 
@@ -105,10 +107,10 @@ def legs_in(torque: Floats, angle: Floats, run: Ints) -> Iterator[Leg]:
     """
     top, whole = float(np.abs(torque).max(initial=0.0)), float(np.ptp(torque))
     parts = []
-    for each in np.unique(run):
+    for each in np.unique(run) if top > 0.0 else ():
         index = np.flatnonzero(run == each)
         for leg in legs_of(torque, index, whole):
-            for side in (1, -1):
+            for side in SIDES:
                 load = side * torque[leg] / top
                 part = leg[(load > LOADED[0]) & (load < LOADED[1])]
                 if len(part) >= FEWEST_CELLS:
@@ -149,6 +151,27 @@ def orders_in(length: float) -> Floats:
     return np.asarray(np.exp(np.arange(lowest, highest, LOG_STEP)))
 
 
+def from_one_place(legs: Sequence[Leg]) -> list[Leg]:
+    """Legs of either side counted from where the first of them begins, as if all were made there.
+
+    The angle at which a sensor reads zero is a setting: two recordings of one place may have other
+    angles.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+
+    Returns
+    -------
+    list of Leg
+    """
+    begins = {
+        side: min(float((side * leg.angle_deg).min()) for leg in legs if leg.side == side)
+        for side in {leg.side for leg in legs}
+    }
+    return [replace(leg, angle_deg=leg.angle_deg - leg.side * begins[leg.side]) for leg in legs]
+
+
 def step_spectrum(legs: Sequence[Leg], cycles: Floats, rng: np.random.Generator) -> StepSpectrum:
     """Clearness of every order in the legs of a recording, and in random staircases.
 
@@ -159,7 +182,7 @@ def step_spectrum(legs: Sequence[Leg], cycles: Floats, rng: np.random.Generator)
         Orders, evenly spaced in their logarithm by `LOG_STEP` [1/deg].
     rng : Generator
         Draws the random staircases. Equal ones, with equally many orders, draw the same staircase
-        along the angle.
+        along the angle, whichever legs there are.
 
     Returns
     -------
@@ -246,10 +269,13 @@ def _power_of_drawn(legs: Sequence[Leg], cycles: Floats, rng: np.random.Generato
     def waves() -> Floats:
         return np.asarray(rng.normal(size=(2, len(cycles), DRAWS)))
 
-    of_side = {side: waves() for side in sorted({unit.side for unit in units})}
+    # In one order, whichever legs there are: equal generators draw the same staircase.
+    of_side = {side: waves() for side in SIDES}
+    own = {(side, rising): waves() for side in SIDES for rising in (False, True)}
     profiles = []
     for unit in units:
-        real, imaginary = np.sqrt(shared) * of_side[unit.side] + np.sqrt(1.0 - shared) * waves()
+        alone = own[unit.side, unit.rising]
+        real, imaginary = np.sqrt(shared) * of_side[unit.side] + np.sqrt(1.0 - shared) * alone
         wave = np.exp(2j * np.pi * np.outer(unit.angle_deg, cycles))
         profiles.append(np.real(wave @ (amplitude * (real + 1j * imaginary))))
     return _mean_power(units, profiles, cycles)

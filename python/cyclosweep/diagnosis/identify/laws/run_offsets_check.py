@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import betainc
 
 from cyclosweep.diagnosis.hypotheses.behaviour_classes import (
     CLASSES_OF_EFFECT,
@@ -179,8 +180,8 @@ def offset_count(history: History, fitted: Flags, name: str) -> int:
 def may_be_chance(fitted: FittedStructure, index: int, size: float, left: float) -> bool:
     """Whether a law of run offsets may by chance hold what another one misses of them.
 
-    Offsets of runs are a few numbers. Of what is left of them, k columns drawn at random leave less
-    than a share s of the mean square with probability s to the half of their number less k.
+    Offsets of runs are a few numbers. Of n of them k columns drawn at random leave a share of the
+    mean square that has a beta distribution of (n - k)/2 and k/2.
 
     Parameters
     ----------
@@ -201,5 +202,15 @@ def may_be_chance(fitted: FittedStructure, index: int, size: float, left: float)
     counted = sum(amplitude_count(fitted, k) for k in offsets)
     name = fitted.terms[index].name
     free = offset_count(fitted.history, fitted.problem.fitted, name) - 1 - counted
+    if free <= 0:
+        return True
+    left = max(left, _noise_of_an_offset(fitted))
     share = left**2 / max(left**2 + size**2, 1e-300)
-    return free <= 0 or share ** (0.5 * free) > BY_CHANCE
+    return float(betainc(0.5 * free, 0.5 * counted, share)) > BY_CHANCE
+
+
+def _noise_of_an_offset(fitted: FittedStructure) -> float:
+    """Standard error of the offset of a run by the noise of its readings [deg]."""
+    noise = fitted.noise
+    pieces = len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
+    return noise.spread_deg * float(np.sqrt(fitted.history.run_count / max(pieces, 1.0)))
