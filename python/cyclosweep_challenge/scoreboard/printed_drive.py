@@ -245,7 +245,8 @@ STEADY = (
 )
 STEADY_ANSWER = (
     "Friction is named; the other ramp is forecast about as well as by this ramp itself; a "
-    "staircase that repeats is named by the position of mesh and motor."
+    "staircase that repeats is named by the position of mesh and motor, by this file or by the "
+    "order that the steps of all other files share, if its own clearest order agrees."
 )
 
 
