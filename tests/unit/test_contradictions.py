@@ -19,7 +19,7 @@ from cyclosweep.result import (
     Remainder,
     Size,
 )
-from cyclosweep.result.contradictions import contradictions
+from cyclosweep.result.contradictions import Recorded, contradictions
 from tests.unit.test_diagnosis_answer import CASES, found
 
 CREEP = FoundEffect(name="creep", size_deg=Size(estimate=0.5, ci95=(0.4, 0.6)), p_value=0.001)
@@ -78,6 +78,16 @@ def test_each_contradiction_is_found(case: str) -> None:
     assert words in said
 
 
+def test_an_effect_larger_than_the_recording_is_found() -> None:
+    recorded = Recorded(angle_deg=0.45, torque_nm=20.0)
+    (said,) = contradictions(SOUND, recorded)
+    assert said == ("creep has a size of 0.5 deg, and all of the recording lies within 0.45 deg")
+    # A friction that takes most of the torque holds back more twist than is left to be seen.
+    holds = replace(SOUND, effects=(replace(CREEP, name="friction_hysteresis", size_nm=15.0),))
+    assert contradictions(holds, recorded) == ()
+    assert contradictions(SOUND, replace(recorded, angle_deg=0.5)) == ()
+
+
 def test_a_sound_answer_has_none() -> None:
     assert contradictions(SOUND) == ()
 
@@ -93,7 +103,7 @@ def test_no_answer_contradicts_itself(case: str) -> None:
 
 def test_a_contradiction_is_said_in_the_notes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "cyclosweep.diagnosis.finish.contradictions", lambda answer: ("black is white",)
+        "cyclosweep.diagnosis.finish.contradictions", lambda *answer: ("black is white",)
     )
     recording, options, _ = CASES["identified"]
     answer = cs.diagnose(recording, cs.Drive.reference_87(), **options, full=False).answer

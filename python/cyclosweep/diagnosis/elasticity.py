@@ -73,7 +73,8 @@ def added_twist(fitted: FittedStructure, index: int) -> Floats:
     """Twist that a term adds on all rows, friction along the bent elasticity.
 
     Friction takes its torque from what twists the drive. How much twist that is, the whole elastic
-    law says.
+    law says, as far as the elastic parts were loaded: beyond, where the drive would be without
+    friction, a bent law is not known, and adds no more than at the largest torque reached.
 
     Parameters
     ----------
@@ -92,7 +93,11 @@ def added_twist(fitted: FittedStructure, index: int) -> Floats:
         return by_the_line
     history = fitted.history
     friction_nm = -by_the_line / history.compliance_deg_per_nm
-    without = history.with_state(elastic_nm=history.elastic_nm + friction_nm)
+    reached = history.elastic_nm[fitted.problem.fitted]
+    low, high = float(np.min(reached)), float(np.max(reached))
+    history = history.with_state(elastic_nm=np.clip(history.elastic_nm, low, high))
+    unheld_nm = history.elastic_nm + friction_nm
+    without = history.with_state(elastic_nm=np.clip(unheld_nm, low, high))
 
     def bent(at: History) -> Floats:
         parts = [fitted.terms[k].columns(at) @ fitted.beta[fitted.column_range(k)] for k in bending]

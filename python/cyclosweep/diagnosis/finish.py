@@ -2,14 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.conclude import Conclusion
 from cyclosweep.diagnosis.plausibility import doubts
 from cyclosweep.diagnosis.verification import Verification
+from cyclosweep.recording import Recording
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
 from cyclosweep.report.summary import do_now, summary_of
 from cyclosweep.result import Answer, NextExperiment, PlayAndStiffness
-from cyclosweep.result.contradictions import NONE_NEEDED, contradictions
+from cyclosweep.result.contradictions import NONE_NEEDED, Recorded, contradictions
 from cyclosweep.result.statement import statement_of
 
 CHECK_FIRST = (
@@ -50,16 +53,24 @@ def finished(
     answer = replace(answer, plausibility=remarks)
     plan = answer.next_experiment
     if answer.plausibility and plan is not None:
-        plan = _after_check(plan)
+        plan = after_check(plan)
     answer = replace(answer, next_experiment=plan)
     sentences = (statement_of(answer), verified.held_out.missed)
     answer = replace(answer, statement=" ".join(filter(None, sentences)))
     answer = replace(answer, summary=summary_of(answer), do_now=do_now(answer))
-    faults = tuple(f"This answer contradicts itself: {each}." for each in contradictions(answer))
+    wrong = contradictions(answer, _recorded(recording))
+    faults = tuple(f"This answer contradicts itself: {each}." for each in wrong)
     return replace(answer, notes=(*answer.notes, *faults))
 
 
-def _after_check(plan: NextExperiment) -> NextExperiment:
+def _recorded(recording: Recording) -> Recorded | None:
+    """Ranges of angle and torque of a recording; None without an angle."""
+    if recording.angle_deg is None:
+        return None
+    return Recorded(float(np.ptp(recording.angle_deg)), float(np.ptp(recording.torque_nm)))
+
+
+def after_check(plan: NextExperiment) -> NextExperiment:
     """Put the check of what is far from the drive file before the next programme."""
     if plan.program == NONE_NEEDED:
         return NextExperiment(program=CHECK_FIRST)

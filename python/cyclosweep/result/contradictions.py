@@ -1,6 +1,7 @@
 """Check of an answer against itself: statements in it that cannot both hold."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from cyclosweep.result.answer import Answer
 from cyclosweep.result.calibration_words import is_hidden_by_friction
@@ -13,13 +14,29 @@ NONE_NEEDED = "none needed"
 """Next experiment where everything is known that was asked."""
 
 
-def contradictions(answer: Answer) -> tuple[str, ...]:
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """Ranges that were recorded.
+
+    Attributes
+    ----------
+    angle_deg, torque_nm : float
+        From the least to the largest reading [deg], [N m].
+    """
+
+    angle_deg: float
+    torque_nm: float
+
+
+def contradictions(answer: Answer, recorded: Recorded | None = None) -> tuple[str, ...]:
     """List the statements of an answer that contradict each other; none in a sound answer.
 
     Parameters
     ----------
     answer : Answer
         The whole answer of a diagnosis.
+    recorded : Recorded, optional
+        Ranges of the recording, which no effect exceeds.
 
     Returns
     -------
@@ -33,6 +50,7 @@ def contradictions(answer: Answer) -> tuple[str, ...]:
     """
     return (
         *_of_effects(answer),
+        *_of_sizes(answer, recorded),
         *_of_regions(answer),
         *_of_remainder(answer),
         *_of_play(answer),
@@ -54,6 +72,24 @@ def _of_effects(answer: Answer) -> Iterator[str]:
             yield (
                 f"the interval of {effect.name} holds zero, and its probability by chance is "
                 f"{effect.p_value:.2g}"
+            )
+
+
+def _of_sizes(answer: Answer, recorded: Recorded | None) -> Iterator[str]:
+    """Effects that turn the shaft by more than it turned, and take more torque than there was.
+
+    A friction that takes most of the torque holds back more twist than is left to be seen: it is
+    within the torque.
+    """
+    if recorded is None:
+        return
+    for effect in answer.effects:
+        size, torque = effect.size_deg.estimate, effect.size_nm
+        within_torque = torque is not None and abs(torque) <= recorded.torque_nm
+        if size > recorded.angle_deg and not within_torque:
+            yield (
+                f"{effect.name} has a size of {size:.3g} deg, and all of the recording lies within "
+                f"{recorded.angle_deg:.3g} deg"
             )
 
 
