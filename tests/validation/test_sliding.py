@@ -106,3 +106,30 @@ def test_measured_brakes(shared_recordings: Path, name: str) -> None:
     assert [each["name"] for each in found.effects] == ["friction_hysteresis"]
     assert "not determined by torque" in found.statement
     assert found.content["baseline"]["parameters"] == {}
+
+
+def test_a_remark_on_units_comes_before_all_else_that_is_to_be_done() -> None:
+    """The statement alone said it; the summary's advice and the next experiment did not."""
+    leg = np.linspace(-9.0, 9.0, 40)
+    torque = np.r_[leg, np.full(60, 9.0), leg[::-1], np.full(60, -9.0)]
+    up, down = 2.7 * (leg + 9.0), 300.0 + 2.7 * (leg[::-1] + 9.0)
+    angle = np.r_[up, np.linspace(48.6, 348.6, 60), down, np.linspace(300.0, 0.0, 60)]
+    noise = np.random.default_rng(0).normal(0.0, 0.02, 400)
+    drive = cs.Drive.reference_87()
+
+    def brake(factor: float) -> cs.Diagnosis:
+        made = cs.Recording.from_arrays(
+            np.tile(torque, 2) + noise, factor * np.tile(angle, 2), run=np.repeat([0, 1], 200),
+            side="input",
+        )  # fmt: skip
+        return cs.diagnose(made, drive, full=False)
+
+    right, in_mrad = brake(1.0).answer, brake(1000.0 * np.pi / 180.0).answer
+    assert in_mrad.statement.startswith("Check first: the compliance right after reversals")
+    assert in_mrad.do_now.startswith("Check first: the compliance right after reversals")
+    assert in_mrad.next_experiment is not None
+    assert right.next_experiment is not None
+    assert in_mrad.next_experiment.program.startswith("settle what stands under Check first")
+    assert in_mrad.next_experiment.program.endswith(right.next_experiment.program)
+    assert right.plausibility == ()
+    assert right.do_now.startswith("Look at")

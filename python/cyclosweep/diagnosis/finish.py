@@ -6,20 +6,14 @@ import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.conclude import Conclusion
-from cyclosweep.diagnosis.plausibility import doubts
+from cyclosweep.diagnosis.plausibility import doubts, with_remarks
 from cyclosweep.diagnosis.verification import Verification
 from cyclosweep.recording import Recording
 from cyclosweep.report.play_and_stiffness import play_and_stiffness
 from cyclosweep.report.summary import do_now, summary_of
-from cyclosweep.result import Answer, NextExperiment, PlayAndStiffness
-from cyclosweep.result.contradictions import NONE_NEEDED, Recorded, contradictions
+from cyclosweep.result import Answer, PlayAndStiffness
+from cyclosweep.result.contradictions import Recorded, contradictions
 from cyclosweep.result.statement import statement_of
-
-CHECK_FIRST = (
-    "settle what stands under Check first: load the drive with a known weight on a known arm and "
-    "compare both columns of the file with it"
-)
-"""What to do before any other experiment where a calibrated value is far from the drive file."""
 
 
 def finished(
@@ -50,11 +44,7 @@ def finished(
     recording = concluded.search.problem.recording
     hidden = concluded.accepted.fit.hidden_play is not None
     remarks = doubts(answer, recording, float(drive.ratio), hidden=hidden)
-    answer = replace(answer, plausibility=remarks)
-    plan = answer.next_experiment
-    if answer.plausibility and plan is not None:
-        plan = after_check(plan)
-    answer = replace(answer, next_experiment=plan)
+    answer = with_remarks(answer, remarks)
     sentences = (statement_of(answer), verified.held_out.missed)
     answer = replace(answer, statement=" ".join(filter(None, sentences)))
     answer = replace(answer, summary=summary_of(answer), do_now=do_now(answer))
@@ -68,13 +58,6 @@ def _recorded(recording: Recording) -> Recorded | None:
     if recording.angle_deg is None:
         return None
     return Recorded(float(np.ptp(recording.angle_deg)), float(np.ptp(recording.torque_nm)))
-
-
-def after_check(plan: NextExperiment) -> NextExperiment:
-    """Put the check of what is far from the drive file before the next programme."""
-    if plan.program == NONE_NEEDED:
-        return NextExperiment(program=CHECK_FIRST)
-    return replace(plan, program=f"{CHECK_FIRST}; then {plan.program}")
 
 
 def _play_and_stiffness(

@@ -1,6 +1,7 @@
 """Plausibility: which mistake a compliance, play or datum far from the drive file suggests."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import log
 
 import numpy as np
@@ -11,7 +12,14 @@ from cyclosweep.diagnosis.reversals import compliance_after_reversals
 from cyclosweep.diagnosis.strokes import LOOP_SHARE, strokes_of
 from cyclosweep.recording import Recording
 from cyclosweep.recording.exchanged_columns import EXCHANGED, are_exchanged
-from cyclosweep.result import Answer, CalibratedParameter, Doubt, PlayAndStiffness
+from cyclosweep.result import (
+    Answer,
+    CalibratedParameter,
+    Doubt,
+    NextExperiment,
+    PlayAndStiffness,
+)
+from cyclosweep.result.contradictions import NONE_NEEDED
 from cyclosweep.result.plausibility import Quantity
 
 FAR_COMPLIANCE = 2.0
@@ -34,6 +42,12 @@ SAME_PLAY = log(1.1)
 """How near nominal the play must then be."""
 AFTER_REVERSALS = " right after reversals of the load, before friction slips again,"
 """Which compliance is meant where friction slides."""
+
+CHECK_FIRST = (
+    "settle what stands under Check first: load the drive with a known weight on a known arm and "
+    "compare both columns of the file with it"
+)
+"""What to do before any other experiment where a calibrated value is far from the drive file."""
 
 REMARKS: dict[str, Quantity] = {
     "columns_swapped": "columns",
@@ -120,6 +134,33 @@ def compliance_beside_sliding(recording: Recording, *, hidden: bool = False) -> 
     if not hidden and (strokes is None or strokes.loop_share < LOOP_SHARE):
         return None
     return compliance_after_reversals(recording)
+
+
+def with_remarks(answer: Answer, remarks: tuple[Doubt, ...]) -> Answer:
+    """Add remarks to an answer; where there are any, their check comes before what is to be done.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer with its next experiment.
+    remarks : tuple of Doubt
+        What is far from the drive file.
+
+    Returns
+    -------
+    Answer
+    """
+    plan = answer.next_experiment
+    if remarks and plan is not None:
+        plan = _after_check(plan)
+    return replace(answer, plausibility=remarks, next_experiment=plan)
+
+
+def _after_check(plan: NextExperiment) -> NextExperiment:
+    """Put the check of what is far from the drive file before the next programme."""
+    if plan.program == NONE_NEEDED:
+        return NextExperiment(program=CHECK_FIRST)
+    return replace(plan, program=f"{CHECK_FIRST}; then {plan.program}")
 
 
 def doubts_where_it_slides(recording: Recording, nominal: float, ratio: float) -> tuple[Doubt, ...]:

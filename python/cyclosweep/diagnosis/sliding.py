@@ -1,15 +1,16 @@
 """Recordings in which friction slides all the way, so that the torque does not fix the twist."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cyclosweep.design.drive import Drive
 from cyclosweep.diagnosis.outcome import Diagnosis
-from cyclosweep.diagnosis.plausibility import doubts_where_it_slides
+from cyclosweep.diagnosis.plausibility import doubts_where_it_slides, with_remarks
 from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.strokes import LOOP_SHARE, strokes_of
 from cyclosweep.recording import Recording
+from cyclosweep.report.summary import do_now
 from cyclosweep.result import (
     Answer,
     EffectParameter,
@@ -189,7 +190,6 @@ def sliding_diagnosis(
         verdict="UNKNOWN_PHYSICS",
         statement=f"{doubt_sentences(remarks)}{said}",
         summary=said,
-        plausibility=remarks,
         noise=NoiseEstimate(resolution_deg=recording.angle_resolution_deg),
         effects=named,
         not_testable=(
@@ -212,9 +212,10 @@ def sliding_diagnosis(
             size_deg=max(found.rising.range_deg, found.falling.range_deg),
         ),
     )
+    answer = with_remarks(answer, remarks)
     return Diagnosis(
         recording=recording,
-        answer=answer,
+        answer=replace(answer, do_now=do_now(answer)),
         ratio=float(drive.ratio),
         provenance=provenance_of(recording, drive, seed),
     )
