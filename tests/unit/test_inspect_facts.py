@@ -46,6 +46,11 @@ def test_a_dwell_in_which_the_drive_creeps_stays_one() -> None:
         ("Torque [N m],Way [mm]", "Way [mm]", "mm", "0.573"),
         ("Torque,Way\nN m,cm", "Way", "cm", "5.73"),
         ("torque_nm,disp_mm", "disp_mm", "mm", "0.573"),
+        # Names of an angle, too.
+        ("Torque [N m],displacement [mm]", "displacement [mm]", "mm", "0.573"),
+        ("Torque [N m],Position (mm)", "Position (mm)", "mm", "0.573"),
+        ("Torque,Deflection\nN m,cm", "Deflection", "cm", "5.73"),
+        ("torque_nm,displacement_mm", "displacement_mm", "mm", "0.573"),
     ],
 )
 def test_a_length_is_said_to_be_no_angle(
@@ -66,6 +71,14 @@ def test_a_length_is_said_to_be_no_angle(
     angle = cs.Recording.read(path).angle_deg
     assert angle is not None
     assert angle.max() == pytest.approx(float(scale) * 3.0)
+
+
+def test_an_angle_is_found_beside_a_displacement(tmp_path: Path) -> None:
+    path = tmp_path / "rig.csv"
+    rows = "".join(f"{load},{0.3 * load},{load}\n" for load in range(20))
+    path.write_text(f"Torque [N m],displacement [mm],position (in)\n{rows}")
+    meta = inspect(path, Known(), {}).proposal.meta
+    assert "position (in)" in str(meta["columns"]["angle_deg"])  # a word on the column, no inches
 
 
 def test_a_length_beside_an_angle_is_no_matter(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from cyclosweep.errors import InputError
 from cyclosweep.recording.cells import BadCellError
 from cyclosweep.recording.clocks import DAY_S
 from cyclosweep.recording.file_table import FileTable
+from cyclosweep.recording.lengths import is_length
 from cyclosweep.recording.metadata import APART, CANONICAL_COLUMNS
 from cyclosweep.recording.roles import Named, describe, reads_like_a_date, role_by_name
 from cyclosweep.recording.same_signal import same_signal
@@ -166,6 +167,8 @@ def choose(table: FileTable, numbers: dict[str, Floats], given: dict[str, str | 
             if n.role == role and not n.is_command and n.column not in taken
             and _can_be(role, numbers[n.column])
         ]  # fmt: skip
+        if role == "angle_deg":
+            candidates = [n for n in candidates if not is_length(table, n)]
         if role in ("crank_deg", "temperature_c"):  # a recording may lack them: nothing is asked
             unknown = [n for n in candidates if n.unknown_unit is not None]
             candidates = [n for n in candidates if n.unknown_unit is None]
