@@ -268,6 +268,9 @@ def test_no_table_shows_a_play_below_zero() -> None:
     about_zero = Reading(estimate=0.01, ci95=(-0.13, 0.15))
     value, interval = shown(PlayAndStiffness(runs=3, free_play_deg=about_zero))[label]
     assert (value, interval) == ("0.01 deg (0.6 arcmin)", "0 … 0.15")
+    assert play_words(PlayAndStiffness(runs=3, free_play_deg=about_zero)) == (
+        "Read from the loop: free play from flank to flank 0.01 deg (95 %: 0 to 0.15). "
+    )
 
 
 def test_a_width_that_was_not_read_is_not_said_to_be_of_anything() -> None:

@@ -290,7 +290,7 @@ def _folder_table(series: Series) -> _FolderTable:
     """Table across the recordings: conditions, verdict in words, friction, play, compliance."""
     from cyclosweep.report.series_page import heading, verdict_of
     from cyclosweep.report.wording import number
-    from cyclosweep.result.series import MEASURES
+    from cyclosweep.result.series import MEASURES, as_shown
     from cyclosweep.result.words import readable
 
     rows = series.table.to_dicts()
@@ -298,10 +298,12 @@ def _folder_table(series: Series) -> _FolderTable:
     conditions = [readable(condition) for condition in series.conditions]
     lines = []
     for row in rows:
-        values = [row.get(key) for key in (*series.conditions, *measures)]
+        values = {key: row.get(key) for key in (*series.conditions, *measures)}
         cells = [
-            number(value) if isinstance(value, float) else str("–" if value is None else value)
-            for value in values
+            number(as_shown(key, value))
+            if isinstance(value, float)
+            else str("–" if value is None else value)
+            for key, value in values.items()
         ]
         cells.insert(len(series.conditions), verdict_of(row))
         lines.append([str(row["recording"]), *cells])

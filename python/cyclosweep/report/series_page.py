@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from html import escape
-from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from cyclosweep.page import bullets, document
 from cyclosweep.report.charts import AFTER, BEFORE, Figure, Line, Panel, Placed, Points, Series
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.wording import interval, number, words_of
-from cyclosweep.result.series import MEASURES, StepsInCommon, Trend
+from cyclosweep.result.series import MEASURES, StepsInCommon, Trend, as_shown
 from cyclosweep.result.words import readable
 
 Row = Mapping[str, Any]
@@ -172,8 +171,7 @@ def _mean(trend: Trend, value: float) -> str:
     level = next((each for each in trend.levels if each.value == value), None)
     if level is None:
         return "<td>–</td>"
-    ends = f" ({interval(level.ci95)})" if level.ci95 else ""
-    return f"<td>{escape(number(level.mean) + ends)}</td>"
+    return f"<td>{escape(_shown(trend.measure, level.mean, level.ci95))}</td>"
 
 
 def heading(measure: str) -> str:
@@ -228,13 +226,33 @@ def _measured(row: Row, measure: str) -> str:
     -------
     str
     """
-    least = 0.0 if measure == "play_deg" else -inf
-    value, low, high = (
-        None if row.get(name) is None else max(float(row[name]), least)
-        for name in (measure, f"{measure}_low", f"{measure}_high")
-    )
-    between = "" if low is None or high is None else f" ({interval((low, high))})"
-    return number(value) + between
+    value, low, high = (row.get(name) for name in (measure, f"{measure}_low", f"{measure}_high"))
+    if value is None:
+        return number(None)
+    ends = None if low is None or high is None else (float(low), float(high))
+    return _shown(measure, float(value), ends)
+
+
+def _shown(measure: str, value: float, ends: tuple[float, float] | None) -> str:
+    """Value and interval of a measure as they are shown.
+
+    Parameters
+    ----------
+    measure : str
+        Name of the measure.
+    value : float
+        Its value or mean.
+    ends : (float, float) or None
+        Its interval.
+
+    Returns
+    -------
+    str
+    """
+    text = number(as_shown(measure, value))
+    if ends is None:
+        return text
+    return f"{text} ({interval([as_shown(measure, end) for end in ends])})"
 
 
 def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:

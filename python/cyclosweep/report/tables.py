@@ -21,6 +21,7 @@ from cyclosweep.report.wording import (
 )
 from cyclosweep.result import CalibratedParameter, Reading
 from cyclosweep.result.calibration_words import AT_REFERENCE, follows_temperature
+from cyclosweep.result.series import as_shown
 from cyclosweep.result.words import readable, telling_digits
 
 
@@ -332,7 +333,7 @@ def _play(reading: Reading | None) -> tuple[str, str]:
     if reading is None:
         return NOTHING, NOTHING
     digits = telling_digits(reading.estimate, reading.ci95)
-    ends = None if reading.ci95 is None else [max(end, 0.0) for end in reading.ci95]
+    ends = None if reading.ci95 is None else [as_shown("play_deg", end) for end in reading.ci95]
     if reading.estimate < 0.0:
         overlap = angle(-reading.estimate, digits)
         return f"none, the lines overlap by {overlap}", interval(ends, digits)

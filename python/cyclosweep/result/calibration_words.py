@@ -1,12 +1,14 @@
 """What was read from the loop and what the calibration found, in sentences."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import isclose
 
 from cyclosweep.result.answer import Answer, Finding
 from cyclosweep.result.calibration import CalibratedParameter
 from cyclosweep.result.change import DriveChange
 from cyclosweep.result.play_and_stiffness import PlayAndStiffness, Reading
+from cyclosweep.result.series import as_shown
 from cyclosweep.result.words import degrees, telling_digits
 from cyclosweep.simulation.effects.thermal_drift import REFERENCE_C
 
@@ -94,6 +96,9 @@ def play_words(read: PlayAndStiffness | None, *, warms: bool = False) -> str:
         return ""
     said = []
     if play := read.free_play_deg:
+        if play.estimate >= 0.0 and play.ci95 is not None:  # where it is none, the overlap is told
+            low, high = (as_shown("play_deg", end) for end in play.ci95)
+            play = replace(play, ci95=(low, high))
         said.append(f"free play from flank to flank {_read(play, 'deg')}")
         if play.estimate < 0.0:
             said.append("that is none, as the straight lines along the flanks overlap")

@@ -18,6 +18,30 @@ CERTAIN = 0.05
 """Largest probability, corrected for the number of trends looked at, at which a trend is stated."""
 
 
+def as_shown(measure: str, value: float) -> float:
+    """Value of a measure as it is shown: a play below zero, where lines overlap, is none.
+
+    The table keeps the value as it was read, and means are of such values.
+
+    Parameters
+    ----------
+    measure : str
+        Column of the table, or the one of an end of its interval.
+    value : float
+        Value, mean, or end of an interval.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> as_shown("play_deg", -0.02), as_shown("play_deg", 0.2), as_shown("friction_nm", -0.02)
+    (0.0, 0.2, -0.02)
+    """
+    return max(value, 0.0) if measure == "play_deg" else value
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Level:
     """Mean of a measure over the recordings at one value of a condition.
@@ -91,7 +115,9 @@ class Trend:
 
     def _of_few(self, what: str, condition: str) -> str:
         """Say what three to five recordings show: their order, and whether the ends differ."""
-        first, last = self.levels[0], self.levels[-1]
+        first, last = (
+            as_shown(self.measure, level.mean) for level in (self.levels[0], self.levels[-1])
+        )
         falling = self.pairs - self.rising
         # Every order of n recordings is equally likely by chance; two of them are monotone.
         chance = 2.0 / factorial(self.recordings)
@@ -99,7 +125,7 @@ class Trend:
             verb = "rises" if self.rising else "falls"
             order = (
                 f"{verb} with {condition} from each recording to the next, "
-                f"{first.mean:.3g} to {last.mean:.3g} (chance alone would order {self.recordings} "
+                f"{first:.3g} to {last:.3g} (chance alone would order {self.recordings} "
                 f"recordings so in {100 * chance:.2g} % of cases)"
             )
         else:
