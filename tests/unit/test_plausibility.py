@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cyclosweep as cs
-from cyclosweep.diagnosis.plausibility import likely_mistakes
+from cyclosweep.diagnosis.mistakes import likely_mistakes
 from cyclosweep_challenge import make_case
 
 

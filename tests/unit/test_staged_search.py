@@ -19,9 +19,9 @@ from cyclosweep.diagnosis.identify.laws.class_evidence import ClassColumns
 from cyclosweep.diagnosis.identify.laws.law_in_class import BOTH_CURVES
 from cyclosweep.diagnosis.identify.laws.model_error_terms import (
     LEAST_OF_MISMATCH,
-    offset_count,
     without_model_error,
 )
+from cyclosweep.diagnosis.identify.laws.run_offsets_check import offset_count
 from cyclosweep.diagnosis.identify.stages.freer_laws import freer_instead_of_others
 from cyclosweep.diagnosis.identify.stages.stage import FAINT, visibility
 from cyclosweep.diagnosis.identify.stages.staged_search import search_in_stages

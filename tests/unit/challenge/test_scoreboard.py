@@ -231,11 +231,11 @@ def test_steps_that_repeat_are_named_by_their_own_order_or_by_that_of_the_other_
     assert not check.holds(steps)
     assert check.holds(replace(steps, words="order 42.5 of a turn of the input"))
     assert not check.holds(replace(steps, words="order 35 of a turn of the input"))
-    assert check.holds(replace(steps, figures=steps.figures | others))
+    assert check.holds(replace(steps, figures={**steps.figures, **others}))
     for wrong in ({"others_order": 38.0}, {"others_chance": 0.05}, {"own_order": 30.0}):
-        assert not check.holds(replace(steps, figures=steps.figures | others | wrong))
+        assert not check.holds(replace(steps, figures={**steps.figures, **others, **wrong}))
     without_own = {k: v for k, v in others.items() if k != "own_order"}
-    assert not check.holds(replace(steps, figures=steps.figures | without_own))
+    assert not check.holds(replace(steps, figures={**steps.figures, **without_own}))
 
 
 @pytest.mark.parametrize("name", ["preload-order", "preload-order-fitted"])
