@@ -18,7 +18,6 @@ from cyclosweep.diagnosis.hypotheses.flexible_basis import flexible_basis
 from cyclosweep.diagnosis.identify.structures.verdict import Decision
 from cyclosweep.diagnosis.identify_effects import (
     FEWEST_PIECES,
-    independent_pieces,
     instead_of_slow_noise,
     is_within_slow_noise,
 )
@@ -87,7 +86,7 @@ def test_what_moves_as_slowly_as_the_recording_and_is_large_is_error_of_the_mode
     slow = 1.0 - 1.0 / rows
     search.noise = replace(search.noise, best_correlation=slow, gap=one_run, structured=False)
     slow_noise = search.noise
-    assert independent_pieces(slow_noise) < FEWEST_PIECES
+    assert slow_noise.independent_pieces < FEWEST_PIECES
     assert instead_of_slow_noise(search, flexible) is not None
     # Other runs have noise of their own, noise of many pieces is known, and without a mismatch
     # nothing speaks against slow noise.

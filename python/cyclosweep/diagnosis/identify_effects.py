@@ -85,7 +85,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     begun = friction if one else None
     if calibrated.structured or mismatch > LOUD:
         return _by_size(search, flexible, say, begun)
-    if mismatch > LOUD_FRICTION and independent_pieces(calibrated) >= FEW_PIECES:
+    if mismatch > LOUD_FRICTION and calibrated.independent_pieces >= FEW_PIECES:
         large = _mostly_friction(search, mismatch, begun)
         if large is not None:
             search = _with_interval_noise(search, large)
@@ -111,7 +111,7 @@ def identify(search: Search, say: Callable[[str], None]) -> Search:
     if not given_up and not _leaves_something(search) and not is_within_slow_noise(search):
         visit_rivals(search)
         return _crossing_as_recorded(search)
-    if independent_pieces(search.noise) < FEW_PIECES:
+    if search.noise.independent_pieces < FEW_PIECES:
         error = model_error_noise(search.problem, calibrated, flexible)
         again = Search(search.problem, error, search.library, search.seed)
         return _by_size(again, flexible, say)
@@ -231,18 +231,12 @@ def is_within_slow_noise(search: Search) -> bool:
     bool
     """
     best, noise = decide(search).best, search.noise
-    breaks = int(np.count_nonzero(noise.gap <= 0.0)) - 1
     return bool(
         best is not None
         and best.fit.terms
-        and independent_pieces(noise) + breaks < FEWEST_PIECES
+        and noise.pieces_and_breaks < FEWEST_PIECES
         and noise.spread_deg > LARGER_THAN_LEFT * best.fit.rmse_deg
     )
-
-
-def independent_pieces(noise: Noise) -> float:
-    """Independent pieces of a recording of this noise, if it were one run."""
-    return len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
 
 
 def instead_of_slow_noise(search: Search, flexible: Floats) -> Noise | None:
@@ -263,12 +257,7 @@ def instead_of_slow_noise(search: Search, flexible: Floats) -> Noise | None:
         None where the noise is known, or the mismatch is small.
     """
     noise = search.noise
-    breaks = int(np.count_nonzero(noise.gap <= 0.0)) - 1
-    if (
-        noise.structured
-        or noise.step_deg > 0
-        or independent_pieces(noise) + breaks >= FEWEST_PIECES
-    ):
+    if noise.structured or noise.step_deg > 0 or noise.pieces_and_breaks >= FEWEST_PIECES:
         return None
     steps = model_error_noise(search.problem, noise, flexible)
     large = search.baseline.fit.rmse_deg > ABOVE_STEPS * steps.sigma_deg
@@ -303,7 +292,7 @@ def _by_size(
     def renewed(searched: Search, accepted: FittedStructure) -> Search:
         noise = noise_beyond(searched.problem, searched.library, accepted)
         believed = noise.spread_deg <= LARGER_THAN_LEFT * accepted.rmse_deg
-        believed &= not searched.noise.structured or independent_pieces(noise) >= FEWEST_PIECES
+        believed &= not searched.noise.structured or noise.independent_pieces >= FEWEST_PIECES
         if not believed or noise.structured or _is_same(noise, searched.noise):
             return searched
         return Search(searched.problem, noise, searched.library, searched.seed)

@@ -27,7 +27,7 @@ from cyclosweep.result.part import NORMAL_95
 from cyclosweep.result.statement import doubt_sentences
 from cyclosweep.result.words import degrees, telling_digits
 from cyclosweep.simulation.effects import Effect
-from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.effects.history import Flags, Floats
 
 FEWEST_READINGS = 20
 """Readings from which the shape of a loop is looked at."""
@@ -36,6 +36,10 @@ PLATEAU_WIDTH = 0.25
 fluctuation, and far less than a spring takes over the same angle."""
 PLATEAU_SHARE = 0.5
 """Share of the travel of each direction at the limit from which friction slides fully."""
+AS_DENSELY_READ = 0.5
+"""Readings on the travel at the limit over those on all travel, each counted by the cells of the
+angle in which one stands, from which the shaft was turned there. Where the torque is set, it falls
+through its play within a few readings while friction holds the torque, which is no sliding."""
 FRICTION = "friction_hysteresis"
 """Effect that is named."""
 
@@ -50,6 +54,8 @@ class Limit:
         Median over the strokes, and its standard error [N m].
     share : float
         Share of the motion in this direction that goes on at this torque.
+    read_share : float
+        Share of the readings of this direction that stand there.
     range_deg : float
         Angle over which it does [deg].
     """
@@ -57,6 +63,7 @@ class Limit:
     torque_nm: float
     std_error_nm: float
     share: float
+    read_share: float
     range_deg: float
 
 
@@ -110,22 +117,26 @@ def find_sliding(recording: Recording) -> Sliding | None:
     share = strokes.loop_share
     if share < LOOP_SHARE:
         return None
-    up = _limit(strokes.rising, strokes.cell_deg)
-    down = _limit(strokes.falling, strokes.cell_deg)
+    up = _limit(strokes.rising, strokes.rising_read, strokes.cell_deg)
+    down = _limit(strokes.falling, strokes.falling_read, strokes.cell_deg)
     if not up.torque_nm > 0 > down.torque_nm:
         return None
     if min(up.share, down.share) < PLATEAU_SHARE:
         return None
+    if any(each.read_share < AS_DENSELY_READ * each.share for each in (up, down)):
+        return None
     return Sliding(rising=up, falling=down, loop_share=share)
 
 
-def _limit(torque: Floats, cell_deg: float) -> Limit:
+def _limit(torque: Floats, read: Flags, cell_deg: float) -> Limit:
     """Torque at which one direction slides, by the travel of its strokes.
 
     Parameters
     ----------
     torque : ndarray, shape (strokes, cells)
         Torque of each stroke in each cell of the angle [N m]; NaN where it does not pass.
+    read : ndarray of bool, shape (strokes, cells)
+        Cells in which a reading stands.
     cell_deg : float
         Width of a cell [deg].
 
@@ -137,7 +148,7 @@ def _limit(torque: Floats, cell_deg: float) -> Limit:
     level = float(np.median(torque[passed]))
     sliding = passed & (np.abs(torque - level) <= PLATEAU_WIDTH * abs(level))
     if not sliding.any():
-        return Limit(torque_nm=level, std_error_nm=0.0, share=0.0, range_deg=0.0)
+        return Limit(torque_nm=level, std_error_nm=0.0, share=0.0, read_share=0.0, range_deg=0.0)
     ranges = cell_deg * np.count_nonzero(sliding, axis=1)
     slid = ranges > 0
     medians = np.array(
@@ -151,6 +162,7 @@ def _limit(torque: Floats, cell_deg: float) -> Limit:
         torque_nm=level,
         std_error_nm=spread * float(np.sqrt(weight @ weight)),
         share=float(np.count_nonzero(sliding) / np.count_nonzero(passed)),
+        read_share=float(np.mean(sliding[read])) if np.any(read) else 0.0,
         range_deg=float(ranges.max()),
     )
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from cyclosweep.recording import Recording
 from cyclosweep.recording.structure import turning_points
-from cyclosweep.simulation.effects.history import Floats
+from cyclosweep.simulation.effects.history import Flags, Floats
 
 STROKE_SHARE = 0.05
 """A change of direction of the motion counts once the angle has gone back by this share of its
@@ -40,11 +40,15 @@ class Strokes:
         Mean torque of each stroke in each cell of the angle [N m]; NaN where it does not pass.
     cell_deg : float
         Width of a cell [deg].
+    rising_read, falling_read : ndarray of bool, shape (strokes, cells)
+        Cells of each stroke in which a reading stands.
     """
 
     rising: Floats
     falling: Floats
     cell_deg: float
+    rising_read: Flags
+    falling_read: Flags
 
     @property
     def loop_share(self) -> float:
@@ -85,6 +89,8 @@ def strokes_of(recording: Recording) -> Strokes | None:
     edges = np.linspace(float(angle.min()), float(angle.max()), CELLS + 1)
     rising: list[Floats] = []
     falling: list[Floats] = []
+    rising_read: list[Flags] = []
+    falling_read: list[Flags] = []
     starts = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
     for start, stop in pairwise([*starts.tolist(), len(run)]):
         part = angle[start:stop]
@@ -92,13 +98,17 @@ def strokes_of(recording: Recording) -> Strokes | None:
         # A turning point ends one stroke and begins the next.
         for first, last in pairwise([0, *turns, len(part) - 1]):
             rows = slice(start + first, start + last + 1)
-            among = rising if part[last] >= part[first] else falling
-            among.append(_by_cell(torque[rows], angle[rows], edges))
-    empty = np.zeros((0, CELLS))
+            rises = part[last] >= part[first]
+            (rising if rises else falling).append(_by_cell(torque[rows], angle[rows], edges))
+            read = np.histogram(angle[rows], edges)[0] > 0
+            (rising_read if rises else falling_read).append(read)
+    whole = (-1, CELLS)
     return Strokes(
-        rising=np.array(rising) if rising else empty,
-        falling=np.array(falling) if falling else empty,
+        rising=np.array(rising, np.float64).reshape(whole),
+        falling=np.array(falling, np.float64).reshape(whole),
         cell_deg=span / CELLS,
+        rising_read=np.array(rising_read, bool).reshape(whole),
+        falling_read=np.array(falling_read, bool).reshape(whole),
     )
 
 

@@ -94,6 +94,16 @@ class Noise:
         return rounded if self.marginal_deg is None else self.marginal_deg
 
     @property
+    def independent_pieces(self) -> float:
+        """Independent pieces of the recording by this noise, if it were one run."""
+        return len(self.gap) * (1.0 - self.best_correlation) / (1.0 + self.best_correlation)
+
+    @property
+    def pieces_and_breaks(self) -> float:
+        """The same with one more for each break between rows that do not correlate, as of runs."""
+        return self.independent_pieces + int(np.count_nonzero(self.gap <= 0.0)) - 1
+
+    @property
     def likely_spread_deg(self) -> float:
         """The same by the likeliest correlation instead of its upper estimate [deg]."""
         if self.white_share > 0.0 or self.correlation < self.best_correlation:

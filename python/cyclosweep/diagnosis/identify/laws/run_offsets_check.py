@@ -212,5 +212,5 @@ def may_be_chance(fitted: FittedStructure, index: int, size: float, left: float)
 def _noise_of_an_offset(fitted: FittedStructure) -> float:
     """Standard error of the offset of a run by the noise of its readings [deg]."""
     noise = fitted.noise
-    pieces = len(noise.gap) * (1.0 - noise.best_correlation) / (1.0 + noise.best_correlation)
-    return noise.spread_deg * float(np.sqrt(fitted.history.run_count / max(pieces, 1.0)))
+    pieces = max(noise.independent_pieces, 1.0)
+    return noise.spread_deg * float(np.sqrt(fitted.history.run_count / pieces))
