@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from cyclosweep.recording import Recording
-from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
+from cyclosweep.recording.structure import REVERSAL_SHARE, spans_of_runs, turning_points
 from cyclosweep.simulation.effects.history import Floats
 
 LARGE = 0.5
@@ -44,8 +44,7 @@ def compliance_after_reversals(recording: Recording) -> float | None:
     least = LARGE * float(np.abs(torque).max())
     threshold = REVERSAL_SHARE * float(np.ptp(torque))
     slopes = []
-    starts = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
-    for start, stop in pairwise([*starts.tolist(), len(run)]):
+    for start, stop in spans_of_runs(run):
         turns = (start + turning_points(torque[start:stop], threshold)).tolist()
         for turn, end in pairwise([*turns, stop - 1]):
             if abs(torque[turn]) >= least:

@@ -160,20 +160,22 @@ def steps_in_common(steps: Mapping[str, Mapping[str, Any]], seed: int = 0) -> St
         apart=order * apart(usual, order),
         chance=chance,
         certain=chance <= CERTAIN_IN_COMMON,
-        own={name: _own(name, spectra, orders) for name in spectra},
+        own={n: _own(own, common, len(spectra), orders) for n, own in spectra.items()},
         left_out=tuple(name for name in legs if name not in spectra),
     )
 
 
-def _own(name: str, spectra: Mapping[str, StepSpectrum], orders: Floats) -> OwnOrder:
+def _own(own: StepSpectrum, common: StepSpectrum, count: int, orders: Floats) -> OwnOrder:
     """Order of one recording, and how clear that of the others is in it.
 
     Parameters
     ----------
-    name : str
-        Name of the recording.
-    spectra : mapping of str to StepSpectrum
-        Of all recordings.
+    own : StepSpectrum
+        Of the recording.
+    common : StepSpectrum
+        Mean of all recordings.
+    count : int
+        How many they are.
     orders : ndarray, shape (k,)
         Cycles a turn of the input.
 
@@ -181,14 +183,12 @@ def _own(name: str, spectra: Mapping[str, StepSpectrum], orders: Floats) -> OwnO
     -------
     OwnOrder
     """
-    own = spectra[name]
-    others = _mean([each for other, each in spectra.items() if other != name]).clearest
-    as_clear = np.count_nonzero(own.drawn[others] >= own.clearness[others])
+    others = int(np.argmax(count * common.clearness - own.clearness))
     return OwnOrder(
         order=float(orders[own.clearest]),
         chance=own.chance,
         order_of_others=float(orders[others]),
-        chance_of_others=float((1 + as_clear) / (1 + own.drawn.shape[1])),
+        chance_of_others=own.chance_at(others),
     )
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from cyclosweep.recording import Recording
-from cyclosweep.recording.structure import turning_points
+from cyclosweep.recording.structure import spans_of_runs, turning_points
 from cyclosweep.simulation.effects.history import Flags, Floats
 
 STROKE_SHARE = 0.05
@@ -91,8 +91,7 @@ def strokes_of(recording: Recording) -> Strokes | None:
     falling: list[Floats] = []
     rising_read: list[Flags] = []
     falling_read: list[Flags] = []
-    starts = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
-    for start, stop in pairwise([*starts.tolist(), len(run)]):
+    for start, stop in spans_of_runs(run):
         part = angle[start:stop]
         turns = turning_points(part, STROKE_SHARE * span).tolist()
         # A turning point ends one stroke and begins the next.

@@ -104,11 +104,10 @@ def find_structure(recording: Samples) -> Structure:
     loading = np.ones(n, dtype=bool)
     largest = float(np.abs(torque).max(initial=0.0))
     threshold = REVERSAL_SHARE * float(np.ptp(torque)) if n else 0.0
-    edges = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
     reversals: list[int] = []
     branches: list[Branch] = []
     holds: list[Hold] = []
-    for start, stop in pairwise([*edges, n]):
+    for start, stop in spans_of_runs(run):
         part = torque[start:stop]
         turns = turning_points(part, threshold)
         reversals += (turns + start).tolist()
@@ -118,7 +117,7 @@ def find_structure(recording: Samples) -> Structure:
             sense[a:b] = 1 if rising else -1
             crossing = a + _zero_crossing(torque[a:b], rising)
             loading[a:crossing], loading[crossing:b] = False, True
-        holds += _holds(recording, int(start), int(stop))
+        holds += _holds(recording, start, stop)
     cuts = np.flatnonzero((np.diff(loading) != 0) | (np.diff(run) != 0)) + 1
     for a, b in pairwise([0, *cuts, n]):
         if b > a:
@@ -133,6 +132,12 @@ def find_structure(recording: Samples) -> Structure:
         loading,
         np.abs(torque) <= DEAD_ZONE_SHARE * largest,
     )
+
+
+def spans_of_runs(run: Ints) -> list[tuple[int, int]]:
+    """First row of each run, and the first one after it; none of no rows."""
+    starts = np.flatnonzero(np.diff(run, prepend=run[:1] - 1)).tolist()
+    return list(pairwise([*starts, len(run)]))
 
 
 def turning_points(values: Floats, threshold: float) -> Ints:

@@ -88,8 +88,28 @@ class StepSpectrum:
     @property
     def chance(self) -> float:
         """Share of random staircases of which some order is at least as clear as the clearest."""
-        as_clear = np.count_nonzero(self.drawn.max(axis=0) >= self.clearness[self.clearest])
-        return float((1 + as_clear) / (1 + self.drawn.shape[1]))
+        return _share_as_large(self.drawn.max(axis=0), self.clearness[self.clearest])
+
+    def chance_at(self, place: int) -> float:
+        """Share of random staircases in which the order at a place is at least as clear."""
+        return _share_as_large(self.drawn[place], self.clearness[place])
+
+
+def _share_as_large(drawn: Floats, recorded: float) -> float:
+    """Share of random values, the recorded one counted among them, that are as large as it.
+
+    Parameters
+    ----------
+    drawn : ndarray, shape (d,)
+        Values of random staircases.
+    recorded : float
+        Value of the recorded one.
+
+    Returns
+    -------
+    float
+    """
+    return float((1 + np.count_nonzero(drawn >= recorded)) / (1 + len(drawn)))
 
 
 def legs_in(torque: Floats, angle: Floats, run: Ints) -> Iterator[Leg]:

@@ -366,7 +366,8 @@ class FittedStructure(ABC):
 
     def amplitude_places(self, index: int) -> list[int]:
         """Places of a linear term's amplitudes among all parameters."""
-        return list(range(len(self.beta)))[self.column_range(index)]
+        part = self.column_range(index)
+        return list(range(part.start, part.stop))
 
     def nonlinear_places(self, index: int) -> list[int]:
         """Places of a term's nonlinear parameters among all parameters."""
