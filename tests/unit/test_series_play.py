@@ -7,8 +7,8 @@ import polars as pl
 import pytest
 from rich.console import Console
 
+import cyclosweep as cs
 from cyclosweep.cli.diagnose import _folder_table
-from cyclosweep.diagnosis.folder import Series
 from cyclosweep.diagnosis.series import trends
 from cyclosweep.report.series_page import write_series_page
 from cyclosweep.result.series import Level, Trend
@@ -34,7 +34,7 @@ def test_no_table_of_a_folder_shows_a_play_below_zero(
     page = re.sub(r"<svg.*?</svg>", "", (tmp_path / "index.html").read_text(), flags=re.S)
     assert "0 (0 … " in page
     assert not re.search(r"[−-]0\.\d", page)
-    series = Series(table=pl.DataFrame(rows), conditions=("dose",), trends=tuple(found))
+    series = cs.Series(table=pl.DataFrame(rows), conditions=("dose",), trends=tuple(found))
     Console(width=120).print(_folder_table(series))
     assert not re.search(r"[−-]0\.\d", capsys.readouterr().out)
     few = Trend(
