@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.noise_estimate import estimate_noise
@@ -71,6 +72,23 @@ def test_the_residual_has_unit_variance_where_outliers_follow_no_tail() -> None:
         white, _ = noise.residual(angle, np.zeros(len(x)))
         squares.append(np.mean(white**2))
     assert np.mean(squares) == pytest.approx(1.0, abs=0.015)
+
+
+@pytest.mark.parametrize("sizes_off", [0.0, 80.0])
+def test_two_readings_far_off_make_no_model_error_of_slow_noise(sizes_off: float) -> None:
+    rng, x, basis, gap = material(3000)
+    angle = 30 * x + 0.1 * lfilter([1.0], [1.0, -0.93], rng.normal(size=len(x)))
+    angle[[1000, 2200]] += 0.1 * sizes_off
+    noise = estimate_noise(angle, basis, gap, 0.0, np.ones(len(x)))
+    assert not noise.structured
+    assert noise.correlation > 0.9
+
+
+def test_errors_that_gather_at_reversals_are_model_error() -> None:
+    rng, x, basis, gap = material(3000)
+    louder = np.where(np.abs(np.sin(6 * np.pi * x)) > 0.9, 12.0, 1.0)
+    angle = 30 * x + lfilter([0.1], [1.0, -0.93], louder * rng.normal(size=len(x)))
+    assert estimate_noise(angle, basis, gap, 0.0, np.ones(len(x))).structured
 
 
 @pytest.mark.parametrize("sigma", [0.02, 0.05])

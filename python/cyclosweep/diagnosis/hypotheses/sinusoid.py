@@ -28,6 +28,14 @@ FINEST = 250
 """Most cycles within the range of twist that are looked for."""
 APART = 2.0
 """Cycles within the range of twist by which a ripple differs at least from that of the rounding."""
+HARMONICS = 5
+"""Multiples of the frequency of rounding that are looked for where even steps of the twist from row
+to row mirror them at lower frequencies."""
+WIDEST = 0.02
+"""Cycles a row by which a sinusoid differs from such a mirror at most to be taken for it: in short
+runs it would be any."""
+MIRRORED_ROWS = 0.2
+"""Share of the rows that see a sinusoid as such a multiple, from which it is rounding."""
 PRIOR_PENALTY = 1.0
 """Log prior odds against a sinusoid."""
 
@@ -56,15 +64,25 @@ def find_sinusoid(
         Cosine and sine of that frequency.
     """
     found = [
-        _in_time(history, fitted, residual),
-        _in_time(history, fitted, residual, with_torque=True),
+        _in_time(history, fitted, residual, resolution_deg),
+        _in_time(history, fitted, residual, resolution_deg, with_torque=True),
         _along_twist(history, fitted, residual, resolution_deg),
     ]
     return max(found, key=lambda pair: pair[0])
 
 
+def _beyond_play(history: History) -> Floats:
+    """Twist beyond the free play [deg]."""
+    return history.angle_deg - history.side * history.free_play_deg
+
+
 def _in_time(
-    history: History, fitted: Flags, residual: Floats, *, with_torque: bool = False
+    history: History,
+    fitted: Flags,
+    residual: Floats,
+    resolution_deg: float,
+    *,
+    with_torque: bool = False,
 ) -> tuple[float, UnnamedShape | None]:
     """Strongest sinusoid in time, of even amplitude or in proportion to torque.
 
@@ -75,6 +93,8 @@ def _in_time(
         Rows that are fitted.
     residual : ndarray, shape (fitted,)
         White residual of unit variance.
+    resolution_deg : float
+        Step of the angle reading [deg].
     with_torque : bool
         Whether the amplitude is proportional to the torque.
 
@@ -97,6 +117,7 @@ def _in_time(
         step = float((clock[-1] - clock[0]) / max(count - 1, 1))
     cell = cell.astype(np.int64)
     run = history.run[fitted]
+    twist = _beyond_play(history)[fitted]
     runs = max(int(np.count_nonzero(history.restart & fitted)), 1)
     samples = count / runs * float(np.median(positive)) / step
     unit = "Hz" if history.time_s is not None else "cycles a row"
@@ -105,7 +126,10 @@ def _in_time(
         residual,
         lowest=CYCLES / samples,
         highest=0.5,
-        hidden=lambda frequency: _looks_slow(frequency, cell, run),
+        hidden=lambda frequency: (
+            _looks_slow(frequency, cell, run)
+            | _mirrors_rounding(frequency, cell, twist, run, resolution_deg)
+        ),
         unit=step,
         family=WITH_TORQUE if with_torque else IN_TIME,
         place="at {:.4g} " + unit + ", all along",
@@ -142,6 +166,48 @@ def _looks_slow(frequency: Floats, cell: Ints, run: Ints) -> Flags:
     return np.asarray(rows > 0.5 * len(cell))
 
 
+def _mirrors_rounding(
+    frequency: Floats, clock: Floats | Ints, twist: Floats, run: Ints, resolution_deg: float
+) -> Flags:
+    """Frequencies at which rounding shows where the twist grows by equal steps from row to row.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (k,)
+        In cycles a unit of the clock.
+    clock : ndarray, shape (fitted,)
+        Place of each row in what the phase is proportional to.
+    twist : ndarray, shape (fitted,)
+        Twist of each row beyond the free play [deg].
+    run : ndarray of int, shape (fitted,)
+        Run of each row.
+    resolution_deg : float
+        Step of the angle reading [deg].
+
+    Returns
+    -------
+    ndarray of bool, shape (k,)
+    """
+    rows = np.zeros(len(frequency))
+    if resolution_deg <= 0.0:
+        return rows > 0.0
+    for label in np.unique(run):
+        here = run == label
+        if np.count_nonzero(here) < 2:
+            continue
+        growth = float(np.median(np.abs(np.diff(twist[here])))) / resolution_deg
+        seen = frequency * float(np.median(np.abs(np.diff(clock[here]))))
+        if growth == 0.0:
+            continue
+        close = min(APART * growth * resolution_deg / float(np.ptp(twist[here])), WIDEST)
+        near = np.zeros(len(frequency), dtype=bool)
+        for multiple in range(1, HARMONICS + 1):
+            for apart in (seen - multiple * growth, seen + multiple * growth):
+                near |= np.abs(apart - np.rint(apart)) < close
+        rows += np.where(near, np.count_nonzero(here), 0)
+    return np.asarray(rows > MIRRORED_ROWS * len(twist))
+
+
 def _along_twist(
     history: History, fitted: Flags, residual: Floats, resolution_deg: float
 ) -> tuple[float, UnnamedShape | None]:
@@ -162,13 +228,14 @@ def _along_twist(
     float, UnnamedShape or None
         Evidence [nat] and columns.
     """
-    twist = history.angle_deg[fitted] - history.side[fitted] * history.free_play_deg
+    twist = _beyond_play(history)[fitted]
     span = float(np.ptp(twist))
     if len(twist) < 60 or span <= 0:
         return 0.0, None
     cells = 8 * FINEST
     step = span / cells
-    cell = np.floor((twist - twist.min()) / step).astype(np.int64)
+    place = (twist - twist.min()) / step
+    cell = np.floor(place).astype(np.int64)
     return _strongest(
         cell,
         residual,
@@ -177,8 +244,11 @@ def _along_twist(
         unit=step,
         family=ALONG_TWIST,
         place="with {:.4g} cycles a degree, over the whole range",
-        clock=lambda h: h.angle_deg - h.side * h.free_play_deg,
+        clock=_beyond_play,
         rounding=resolution_deg / step,
+        hidden=lambda frequency: _mirrors_rounding(
+            frequency, place, twist, history.run[fitted], resolution_deg
+        ),
     )
 
 
