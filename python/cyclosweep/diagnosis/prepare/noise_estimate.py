@@ -33,6 +33,9 @@ FEWEST_ROWS = 100
 """Rows from which that correlation is known well enough, to 0.1."""
 UNEVEN = 0.1
 """Difference of steps by the clock from steps by rows from which it matters which of them count."""
+COARSE = 0.165
+"""Mean square of what is left over the square of the dial's step, below which its intervals may
+count: twice that of rounding alone."""
 STRETCHES = 40
 """Stretches whose sizes are compared."""
 
@@ -98,7 +101,7 @@ def estimate_noise(
     sigma, tail, moments, gain = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     if resolution > 0 and not averaged:
-        if sigma**2 < 0.165 * resolution**2 and count >= 60:
+        if sigma**2 < COARSE * resolution**2 and count >= 60:
             coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
             if coarse is not None:
                 return coarse
@@ -110,6 +113,11 @@ def estimate_noise(
     mixed = rough.white_share > 0.0
     unsteady = best > SLOW_AS_MODEL_ERROR and unsteadiness(white, loud_only=mixed) > UNSTEADY
     if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
+        # Readings that rest on a step look unsteady, and like noise larger than what is left.
+        if not averaged and left @ left < COARSE * resolution**2 * freedom:
+            coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
+            if coarse is not None:
+                return coarse
         return as_model_error(rough, left, resolution, float(np.ptp(angle)))
     return found
 
