@@ -127,6 +127,16 @@ def test_dahl_follows_its_differential_equation(power: float) -> None:
     assert law.torque == pytest.approx(down, rel=1e-4)
 
 
+@pytest.mark.parametrize("power", [0.5, 1.0, 1.4, 2.0])
+def test_a_twist_does_not_grow_while_the_load_falls(power: float) -> None:
+    """At a reversal the slope of friction jumps; Newton's steps can go round in a circle there."""
+    load = loops(points=60)
+    twist, side = solve(path_of(load), [Dahl(0.12, SHAPE | {"reach": 0.07, "power": power})], 0.07)
+    in_contact = (side[1:] != 0.0) & (side[1:] == side[:-1])
+    moved = np.diff(twist) * np.sign(np.diff(load))
+    assert moved[in_contact].min() > -1e-9
+
+
 def test_friction_of_a_load_opens_the_loop_in_proportion() -> None:
     load = loops()
     twist, _ = solve(path_of(load), [LoadedDahl(0.05, SHAPE)], 0.1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +16,10 @@ Array = NDArray[np.float64]
 FINEST, COARSEST = 0.01, 0.1
 """Bounds of an increment of torque [rated torques]."""
 ITERATIONS = 12
+"""Steps of Newton's method alone, before its steps alternate with halving the bracket: friction
+that turns is steep on one side and level on the other, between which Newton's steps can cycle."""
+BRACKETED = 100
+"""Steps after which an increment is taken as it is."""
 CLOSE = 1e-9
 """Imbalance at which an increment is solved [rated torques]."""
 
@@ -77,7 +82,8 @@ def _advance(
             return 0.0, 0.0
         touch = way
     twist, slope = now, 1.0
-    for _ in range(ITERATIONS):
+    low, high = -math.inf, math.inf
+    for iteration in range(BRACKETED):
         total, slope = twist, 1.0
         for r in resistances:
             torque, rise = r.trial(twist, twist - now, dt)
@@ -86,7 +92,11 @@ def _advance(
         gap = load - total
         if -CLOSE < gap < CLOSE:
             break
+        low, high = (twist, high) if gap > 0.0 else (low, twist)
         twist += gap / slope
+        cycles = iteration >= ITERATIONS and math.isfinite(high - low)
+        if cycles and (iteration % 2 == 0 or not low < twist < high):
+            twist = 0.5 * (low + high)
     if touch * twist <= 0.0:
         return 0.0, 0.0
     for r in resistances:
