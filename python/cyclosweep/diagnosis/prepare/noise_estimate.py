@@ -15,13 +15,13 @@ from cyclosweep.simulation.effects.history import Floats
 
 SLOW_AS_MODEL_ERROR = 0.9
 """Autocorrelation above which what is left is noise only if its size is the same everywhere."""
-UNSTEADY = 2.2
+UNSTEADY = 2.0
 """Scatter of the size of whitened stretches, over that of steady noise, from which what is left is
-error of the model. Steady noise stays below 1.8 up to an autocorrelation of 0.99, also with heavy
-tails; errors of models gather at reversals and at certain loads, and most are above 2.2."""
-FARTHEST_ROW = 5.0
-"""Sizes of whitened rows at which a single row is cut off: one row of 40 sizes made steady noise
-of heavy tails look like error of a model."""
+error of the model. Steady noise stays below 1.7 up to an autocorrelation of 0.99, also with heavy
+tails; errors of models gather at reversals and at certain loads, and most are above 2.4."""
+LOUDEST = 2
+"""Loudest stretches that do not count: readings far off, as two within the play, are no model error
+of all the rest."""
 RIDING = -0.35
 """Correlation of neighbouring whitened rows below which what is left is white noise that rides on
 something else, such as a zero that jumps. Whitening leaves none of an autoregression, and nearly
@@ -156,7 +156,7 @@ def as_model_error(noise: Noise, left: Floats, resolution: float, travel: float)
 
 
 def unsteadiness(white: Floats, *, loud_only: bool = False) -> float:
-    """Scatter of the size of stretches over what it is in steady noise; zero for few rows.
+    """Scatter of the size of most stretches over that of steady noise; zero for few rows.
 
     Parameters
     ----------
@@ -173,11 +173,9 @@ def unsteadiness(white: Floats, *, loud_only: bool = False) -> float:
     length = len(white) // STRETCHES
     if length < 5:
         return 0.0
-    farthest = FARTHEST_ROW * robust_sigma(white)
-    rows = np.minimum(np.abs(white), farthest if farthest > 0.0 else np.inf)
-    size = rows[: STRETCHES * length].reshape(STRETCHES, length).mean(axis=1)
+    size = np.abs(white[: STRETCHES * length].reshape(STRETCHES, length)).mean(axis=1)
     expected = np.sqrt((np.pi / 2.0 - 1.0) / length)
-    log_size = np.log(np.maximum(size, 1e-300))
+    log_size = np.log(np.maximum(np.sort(size)[:-LOUDEST], 1e-300))
     scatter = np.std(log_size)
     if loud_only:
         louder = np.maximum(log_size - np.median(log_size), 0.0)
