@@ -100,8 +100,9 @@ def estimate_noise(
         best = rough.best_correlation
     sigma, tail, moments, gain = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
+    by_interval = sigma**2 < COARSE * resolution**2
     if resolution > 0 and not averaged:
-        if sigma**2 < COARSE * resolution**2 and count >= 60:
+        if by_interval and count >= 60:
             coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
             if coarse is not None:
                 return coarse
@@ -114,7 +115,8 @@ def estimate_noise(
     unsteady = best > SLOW_AS_MODEL_ERROR and unsteadiness(white, loud_only=mixed) > UNSTEADY
     if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
         # Readings that rest on a step look unsteady, and like noise larger than what is left.
-        if not averaged and left @ left < COARSE * resolution**2 * freedom:
+        small = left @ left < COARSE * resolution**2 * freedom
+        if small and not by_interval and not averaged:
             coarse = _coarse_noise(angle, whole, rough, resolution, sigma)
             if coarse is not None:
                 return coarse
