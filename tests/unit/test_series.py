@@ -3,9 +3,11 @@
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 import polars as pl
@@ -189,6 +191,9 @@ def test_two_workers_give_the_table_of_one(folder: Path) -> None:
     one = cs.diagnose_folder(folder, folder.parent / "a", meta=how, full=False)
     two = cs.diagnose_folder(folder, folder.parent / "b", meta=how, full=False, workers=2)
     assert one.table.equals(two.table)
+    links = re.findall('href="([^"]+/[^"]+)"', (folder.parent / "a" / "index.html").read_text())
+    assert len(links) == one.table["verdict"].count()
+    assert all((folder.parent / "a" / unquote(link)).is_file() for link in links)
 
 
 def test_the_command_names_what_has_no_diagnosis(folder: Path) -> None:
@@ -339,7 +344,7 @@ def test_recordings_at_the_input_stand_apart_with_how_they_were_read(tmp_path: P
     none = row("stuck", not_read="friction hides play and stiffness", play_deg=None)
     text = page_of(tmp_path, [row("a"), by_hand, none])
     output, other = (text.index(f"Measured at the {side} shaft") for side in ("output", "input"))
-    assert output < text.index(">a</a>") < other < text.index(">lever</a>")
+    assert output < text.index(">a<") < other < text.index(">lever<")
     assert "Lever: play and compliance are those of the calibrated model, with the" in text
     assert "Stuck: a value is missing because friction hides play and stiffness" in text
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 
@@ -54,7 +55,7 @@ def write_series_page(
         f"diagnosis<br>{done} of {len(rows)} diagnosed</div></header>",
         _trends(rows, trends),
         _steps(steps),
-        _by_side(rows, conditions),
+        _by_side(rows, conditions, Path(path).parent),
         _check_first(rows),
         _not_read(rows),
         _failed(rows),
@@ -67,16 +68,31 @@ def write_series_page(
     write_text(path, document("Series of recordings", "".join(filter(None, body))))
 
 
-def _by_side(rows: Sequence[Row], conditions: Sequence[str]) -> str:
-    """Tables of the recordings, those measured at the input apart from those at the output."""
+def _by_side(rows: Sequence[Row], conditions: Sequence[str], folder: Path) -> str:
+    """Tables of the recordings, those measured at the input apart from those at the output.
+
+    Parameters
+    ----------
+    rows : sequence of mappings
+        Rows of the table.
+    conditions : sequence of str
+        Columns that are conditions.
+    folder : Path
+        Where the page is written.
+
+    Returns
+    -------
+    str
+    """
     sides = sorted({str(row["side"]) for row in rows if row.get("side")}, reverse=True)
     if len(sides) < 2:
-        return f"<section><h2>Every recording</h2>{_table(rows, conditions)}</section>"
+        return f"<section><h2>Every recording</h2>{_table(rows, conditions, folder)}</section>"
     # Those without a diagnosis are listed below, with the reason.
     return "".join(
-        f"<section><h2>Measured at the {escape(side)} shaft</h2>"
-        f"{_table([row for row in rows if row.get('side') == side], conditions)}</section>"
+        f"<section><h2>Measured at the {escape(side)} shaft</h2>{_table(part, conditions, folder)}"
+        "</section>"
         for side in sides
+        for part in [[row for row in rows if row.get("side") == side]]
     )
 
 
@@ -255,8 +271,22 @@ def _shown(measure: str, value: float, ends: tuple[float, float] | None) -> str:
     return f"{text} ({interval([as_shown(measure, end) for end in ends])})"
 
 
-def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
-    """Row of each recording: conditions, verdict, measures with intervals, effects with sizes."""
+def _table(rows: Sequence[Row], conditions: Sequence[str], folder: Path) -> str:
+    """Row of each recording: conditions, verdict, measures with intervals, effects with sizes.
+
+    Parameters
+    ----------
+    rows : sequence of mappings
+        Rows of the table.
+    conditions : sequence of str
+        Columns that are conditions.
+    folder : Path
+        Where the page is written.
+
+    Returns
+    -------
+    str
+    """
     measures = [name for name in MEASURES if any(row.get(name) is not None for row in rows)]
     head = ["recording", *map(readable, conditions), "verdict", *map(heading, measures), "effects"]
     words = {0, len(conditions) + 1, len(head) - 1}
@@ -267,9 +297,7 @@ def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
 
     lines = []
     for row in rows:
-        name = escape(str(row["recording"]))
-        link = f'<a href="{name}/report.html">{name}</a>' if row["status"] == "ok" else name
-        cells = [link, *(_value(row.get(condition)) for condition in conditions)]
+        cells = [_link(row, folder), *(_value(row.get(condition)) for condition in conditions)]
         cells.append(escape(verdict_of(row)))
         for measure in measures:
             cells.append(escape(_measured(row, measure)))
@@ -282,6 +310,27 @@ def _table(rows: Sequence[Row], conditions: Sequence[str]) -> str:
         f'<div class="scroll"><table class="stacked"><thead><tr>{top}</tr></thead>'
         f"<tbody>{''.join(lines)}</tbody></table></div>"
     )
+
+
+def _link(row: Row, folder: Path) -> str:
+    """Name of a recording, with a link to its report, or to its diagnosis without one.
+
+    Parameters
+    ----------
+    row : mapping
+        Row of the table.
+    folder : Path
+        Where the page is written.
+
+    Returns
+    -------
+    str
+    """
+    name = str(row["recording"])
+    for file in ("report.html", "diagnosis.json"):
+        if row["status"] == "ok" and (folder / name / file).exists():
+            return f'<a href="{quote(name)}/{file}">{escape(name)}</a>'
+    return escape(name)
 
 
 def verdict_of(row: Row) -> str:
