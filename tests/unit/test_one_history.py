@@ -95,12 +95,41 @@ def test_a_rig_that_was_reset_has_no_history() -> None:
     assert diagnosis.content["repaired"]["rmse_deg"] > 2.0 * NOISE_DEG
 
 
-def test_friction_of_one_history_is_tried_where_much_is_left() -> None:
+LOADED_FRICTION = EffectValue("load_dependent_friction", {"slip_deg": 3.0, "scatter": 0.6}, (0.1,))
+
+
+@pytest.mark.parametrize("standing_in", [FRICTION, LOADED_FRICTION], ids=lambda value: value.name)
+def test_friction_that_goes_on_is_tried_where_another_may_stand_in_for_it(
+    standing_in: EffectValue,
+) -> None:
     joined = search_of_recording(measured("continuous"), one_history=True)
-    assert friction_of(joined, 1.2 * NOISE_DEG) is None
-    found = friction_of(joined, 20.0 * NOISE_DEG)
+    within_noise = search_of_recording(measured("per-run", replace(MODEL, effects=(standing_in,))))
+    found = within_noise.extend(within_noise.baseline, standing_in.name)
     assert found is not None
-    assert found.rmse_deg < 1.2 * NOISE_DEG
+    assert found.fit.rmse_deg < 1.2 * NOISE_DEG
+    friction = friction_of(joined, found.fit)
+    assert (friction is None) == (standing_in is FRICTION)
+    much_left = friction_of(joined, within_noise.baseline.fit)
+    for each in (friction, much_left):
+        assert each is None or each.rmse_deg < 1.2 * NOISE_DEG
+    assert much_left is not None
+
+
+def test_friction_that_goes_on_is_found_of_loops_to_and_fro() -> None:
+    """Runs that begin afresh were taken for most of it, and left seven times the noise."""
+    steps = np.arange(109)
+    parts = []
+    for k, top in enumerate((8.0, 6.0, 4.0, 3.0)):
+        torque = np.interp(steps, [0, 27, 81, 108], [0.01, top, -top, 0.01])
+        parts.append((torque, 1.1 * steps + 150.0 * k, np.full(len(steps), k + 1)))
+    torque, time, run = map(np.concatenate, zip(*parts, strict=True))
+    load = cs.Recording.from_arrays(torque, time_s=time, run=run)
+    friction = EffectValue("friction_hysteresis", {"slip_deg": 3.0, "scatter": 0.8}, (0.3,))
+    angle = twist(replace(MODEL, effects=(friction,)), replace(load, history="continuous"))
+    noise = np.random.default_rng(1).normal(0.0, 0.02, len(angle))
+    diagnosis = cs.diagnose(load.with_angle(angle + noise), cs.Drive.reference_87(), full=False)
+    assert [effect["name"] for effect in diagnosis.effects] == ["friction_hysteresis"]
+    assert diagnosis.content["repaired"]["rmse_deg"] < 0.04
 
 
 @pytest.mark.parametrize(

@@ -18,14 +18,16 @@ from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
 from cyclosweep.simulation.effects.datum_drift import DatumDrift
+from cyclosweep.simulation.effects.load_dependent_friction import LoadDependentFriction
 
 CLEARLY = 20.0
 """What one history must gain, as `structure_cost` counts: two fifths of the mean square of what
 runs leave that begin afresh."""
 CLEARLY_LIKELIER = 40.0
 """What it must gain against the noise, as minus twice the log likelihood."""
-CREEP = "relaxation"
-"""Family of the effects whose delayed twist at the end of a run may go on in the next."""
+DELAYED = ("relaxation", "hysteresis")
+"""Families of the effects whose delayed twist at the end of a run may go on in the next, or that
+stand in for friction which does."""
 
 
 def identify_over_runs(
@@ -51,7 +53,7 @@ def identify_over_runs(
     if not may_be_one_history(recording):
         return searched
     found = _best(searched)
-    if not _remembers(found):
+    if not _may_remember(found):
         return searched
     joined = calibrated(True)
     if not explains_more(searched, found, joined):
@@ -98,7 +100,7 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
     offered = dict.fromkeys((terms, still), joined.baseline.fit)
-    friction = friction_of(joined, found.rmse_deg)
+    friction = friction_of(joined, found)
     if friction is not None:
         offered[friction.terms] = friction
     going_on = min(
@@ -116,26 +118,34 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
     return within_noise or structure_cost(afresh) - structure_cost(going_on) > CLEARLY
 
 
-def friction_of(joined: Search, left_deg: float) -> FittedStructure | None:
-    """Friction alone of runs that go on, where much is left of those that begin afresh.
-
-    What was found of them may stand in for friction that starts otherwise.
+def friction_of(joined: Search, found: FittedStructure) -> FittedStructure | None:
+    """Friction alone of runs that go on, where what was found may stand in for it.
 
     Parameters
     ----------
     joined : Search
         Calibrated, of the runs as one history.
-    left_deg : float
-        Error of what was found of runs that begin afresh [deg].
+    found : FittedStructure
+        What was found of runs that begin afresh.
 
     Returns
     -------
     FittedStructure or None
-        None where little is left, or no friction is found.
+        None where nothing found may stand in for it and little is left, or no friction is found.
     """
     assert joined.flexible is not None
     little = model_error_noise(joined.problem, joined.noise, joined.flexible)
-    return friction_first(joined, little) if left_deg > FAR_ABOVE_STEPS * little.sigma_deg else None
+    doubtful = any(map(_may_be_friction_that_goes_on, found.terms))
+    if not doubtful and found.rmse_deg <= FAR_ABOVE_STEPS * little.sigma_deg:
+        return None
+    return friction_first(joined, little)
+
+
+def _may_be_friction_that_goes_on(term: Term) -> bool:
+    """Creep, drag, friction that grows with the load, or any shape without a name."""
+    if term.slips:
+        return term.name == LoadDependentFriction.name
+    return term.effect is None or term.family in DELAYED
 
 
 def _named(fitted: FittedStructure) -> tuple[Term, ...]:
@@ -145,7 +155,12 @@ def _named(fitted: FittedStructure) -> tuple[Term, ...]:
 
 def _remembers(fitted: FittedStructure) -> bool:
     """Whether a named effect of a structure has a memory of the load over runs."""
-    return any(term.slips or term.family == CREEP for term in _named(fitted))
+    return any(term.slips or term.family in DELAYED for term in _named(fitted))
+
+
+def _may_remember(fitted: FittedStructure) -> bool:
+    """Whether a structure has such a memory, or a shape without a name that may stand for it."""
+    return _remembers(fitted) or len(_named(fitted)) < len(fitted.terms)
 
 
 def _best(searched: Search) -> FittedStructure:
