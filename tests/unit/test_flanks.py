@@ -3,7 +3,7 @@
 import numpy as np
 
 from cyclosweep.design.nominal_line import NominalLine
-from cyclosweep.diagnosis.prepare.flanks import find_flanks
+from cyclosweep.diagnosis.prepare.flank_lines import find_flanks
 from cyclosweep.diagnosis.prepare.play_jumps import sides_by_jumps
 from cyclosweep.simulation.effects.history import Flags
 from tests.support.arrays import Floats
@@ -153,3 +153,22 @@ def test_flanks_of_runs_that_begin_elsewhere_are_told_about_their_own_middle() -
     np.testing.assert_array_equal(side, np.sign(torque))
     assert found.all()
     assert abs(flanks.free_play_deg - 0.5) < 0.02
+
+
+def test_the_play_of_a_drive_that_gives_way_is_seen_by_its_light_readings() -> None:
+    """The line through loaded readings showed none, so that the torque's sign told the flank."""
+    torque = crossings(289, 1)
+    torque = torque + 0.013
+    sign = np.sign(torque)
+    softer = 7.5 * np.maximum(np.abs(torque) - 10.0, 0.0)
+    noise = 0.08 * np.random.default_rng(3).normal(size=len(torque))
+    angle = twist(torque, sign * softer + noise)
+    # A reading that has just passed zero is still on the flank that the shaft comes from.
+    still_there = np.flatnonzero(np.abs(torque) < 0.02)[:1]
+    angle[still_there] -= 2.0 * PLAY
+    found = find_flanks(torque, angle, LINE)
+    assert abs(found.free_play_deg - PLAY) < 0.2
+    side, _ = found.at(torque, angle)
+    expected = np.where(torque >= 0.0, 1.0, -1.0)
+    expected[still_there] = -1.0
+    np.testing.assert_array_equal(side, expected)

@@ -115,21 +115,40 @@ def test_friction_that_goes_on_is_tried_where_another_may_stand_in_for_it(
     assert much_left is not None
 
 
-def test_friction_that_goes_on_is_found_of_loops_to_and_fro() -> None:
-    """Runs that begin afresh were taken for most of it, and left seven times the noise."""
+def to_and_fro(tops: tuple[float, ...], limit_nm: float, slip_deg: float) -> cs.Recording:
+    """Loops to both sides, one a run, of friction that goes on from each to the next."""
     steps = np.arange(109)
     parts = []
-    for k, top in enumerate((8.0, 6.0, 4.0, 3.0)):
+    for k, top in enumerate(tops):
         torque = np.interp(steps, [0, 27, 81, 108], [0.01, top, -top, 0.01])
         parts.append((torque, 1.1 * steps + 150.0 * k, np.full(len(steps), k + 1)))
     torque, time, run = map(np.concatenate, zip(*parts, strict=True))
     load = cs.Recording.from_arrays(torque, time_s=time, run=run)
-    friction = EffectValue("friction_hysteresis", {"slip_deg": 3.0, "scatter": 0.8}, (0.3,))
-    angle = twist(replace(MODEL, effects=(friction,)), replace(load, history="continuous"))
-    noise = np.random.default_rng(1).normal(0.0, 0.02, len(angle))
-    diagnosis = cs.diagnose(load.with_angle(angle + noise), cs.Drive.reference_87(), full=False)
+    shape = {"slip_deg": slip_deg, "scatter": 0.8}
+    model = replace(MODEL, effects=(EffectValue("friction_hysteresis", shape, (limit_nm,)),))
+    angle = twist(model, replace(load, history="continuous"))
+    return load.with_angle(angle + np.random.default_rng(1).normal(0.0, 0.02, len(angle)))
+
+
+def test_friction_that_goes_on_is_found_of_loops_to_and_fro() -> None:
+    """Runs that begin afresh were taken for most of it, and left seven times the noise."""
+    recording = to_and_fro((8.0, 6.0, 4.0, 3.0), 0.3, 3.0)
+    diagnosis = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
     assert [effect["name"] for effect in diagnosis.effects] == ["friction_hysteresis"]
     assert diagnosis.content["repaired"]["rmse_deg"] < 0.04
+
+
+def test_runs_that_are_read_from_a_load_on_need_no_other_effect() -> None:
+    """Sharp friction that holds beyond the first reading asked for a line with a kink beside it.
+
+    That line took the whole compliance, so that the recording was said to be at fault.
+    """
+    whole = to_and_fro((6.0,) * 7, 0.38, 0.2)
+    recording = whole.take(np.flatnonzero(np.arange(len(whole)) % 109 > 0))
+    diagnosis = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
+    assert diagnosis.verdict == "IDENTIFIED"
+    assert [effect["name"] for effect in diagnosis.effects] == ["friction_hysteresis"]
+    assert diagnosis.content["repaired"]["rmse_deg"] < 0.025
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from cyclosweep.diagnosis.identify_effects import (
     instead_of_slow_noise,
     is_within_slow_noise,
 )
-from cyclosweep.diagnosis.prepare.flanks import find_flanks
+from cyclosweep.diagnosis.prepare.flank_lines import find_flanks
 from cyclosweep.diagnosis.remainder import no_larger_than_left, of_the_size_left
 from cyclosweep.report.summary import summary_of
 from cyclosweep.result import (

@@ -189,10 +189,12 @@ def _with_range(answer: Answer, change: DriveChange) -> Answer:
 def _noise(search: Search) -> NoiseEstimate:
     """Noise of the recording, by the likeliest estimate of its autocorrelation."""
     noise = search.noise
+    slow = 1.0 - noise.likely_white_share
     return NoiseEstimate(
         sigma_deg=noise.likely_spread_deg,
-        autocorrelation=noise.best_correlation,
-        autocorrelation_upper=None if noise.structured else noise.correlation,
+        autocorrelation=slow * noise.best_correlation,
+        autocorrelation_upper=None if noise.structured else slow * noise.correlation,
+        white_share=noise.likely_white_share or None,
         tail_degrees_of_freedom=finite(noise.tail),
         resolution_deg=search.problem.resolution_deg,
         torque_nm=search.problem.torque_noise_nm,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from cyclosweep.diagnosis.friction_in_noise import FAR_ABOVE_STEPS, model_error_noise
+from cyclosweep.diagnosis.friction_in_noise import model_error_noise
 from cyclosweep.diagnosis.identify.fitting.fit import fit
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.fitting.terms import Term
@@ -13,10 +13,15 @@ from cyclosweep.diagnosis.identify.stages.friction_first import (
     structure_cost,
 )
 from cyclosweep.diagnosis.identify.structures.search import Search
-from cyclosweep.diagnosis.identify.structures.verdict import accepted_in_stages, decide
+from cyclosweep.diagnosis.identify.structures.verdict import (
+    WITHIN_NOISE,
+    accepted_in_stages,
+    decide,
+)
 from cyclosweep.diagnosis.identify_effects import identify
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
+from cyclosweep.result.part import NORMAL_95
 from cyclosweep.simulation.effects.datum_drift import DatumDrift
 from cyclosweep.simulation.effects.load_dependent_friction import LoadDependentFriction
 
@@ -25,6 +30,8 @@ CLEARLY = 20.0
 runs leave that begin afresh."""
 CLEARLY_LIKELIER = 40.0
 """What it must gain against the noise, as minus twice the log likelihood."""
+AS_WELL = NORMAL_95**2
+"""Minus twice the log likelihood that fewer effects may lack where runs go on."""
 DELAYED = ("relaxation", "hysteresis")
 """Families of the effects whose delayed twist at the end of a run may go on in the next, or that
 stand in for friction which does."""
@@ -99,7 +106,8 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
     afresh = fit(searched.problem, noise, terms, found, rounds=CONVERGED)
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
-    offered = dict.fromkeys((terms, still), joined.baseline.fit)
+    alone = tuple(term for term in terms if term.slips)
+    offered = dict.fromkeys((terms, still, alone), joined.baseline.fit)
     friction = friction_of(joined, found)
     if friction is not None:
         offered[friction.terms] = friction
@@ -111,6 +119,8 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
         key=structure_cost,
     )
     likelier = afresh.loss + charges(afresh) - going_on.loss - charges(going_on)
+    if going_on.loss < afresh.loss + AS_WELL and set(going_on.names) < set(afresh.names):
+        return True
     if likelier <= CLEARLY_LIKELIER:
         return False
     # What is left of either may be error of the laws, of which there is less than there are rows.
@@ -136,7 +146,7 @@ def friction_of(joined: Search, found: FittedStructure) -> FittedStructure | Non
     assert joined.flexible is not None
     little = model_error_noise(joined.problem, joined.noise, joined.flexible)
     doubtful = any(map(_may_be_friction_that_goes_on, found.terms))
-    if not doubtful and found.rmse_deg <= FAR_ABOVE_STEPS * little.sigma_deg:
+    if not doubtful and found.rmse_deg <= WITHIN_NOISE * little.spread_deg:
         return None
     return friction_first(joined, little)
 

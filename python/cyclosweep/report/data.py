@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cyclosweep.recording import Recording
 from cyclosweep.recording.robust import robust_sigma
 from cyclosweep.report.residual_scale import MAY_BE_IN_PLAY_SHARE, scale_deg
-from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, answer_of
+from cyclosweep.result import Answer, HeldOutBlock, Hypothesis, NoiseEstimate, answer_of
 from cyclosweep.result.stand_in_words import stand_in_words
 
 Floats = NDArray[np.float64]
@@ -159,8 +159,11 @@ class ReportData:
 
     @property
     def noise(self) -> tuple[float, float]:
-        """Standard deviation [deg] and lag-one autocorrelation of the noise of the samples."""
-        sigma, rho = self.result.noise.sigma_deg, self.result.noise.autocorrelation
+        """Standard deviation [deg] and lag-one autocorrelation of the noise of the samples.
+
+        Of noise of two parts it is the autocorrelation of one part whose means vary as much.
+        """
+        sigma, rho = self.result.noise.sigma_deg, _of_means(self.result.noise)
         thinning = self.result.thinning
         if thinning is not None and thinning.sample_sigma_deg is not None:
             sigma = thinning.sample_sigma_deg
@@ -174,3 +177,13 @@ class ReportData:
     def _residual(self, predicted: Floats | None) -> Floats | None:
         measured = self.recording.angle_deg
         return None if predicted is None or measured is None else measured - predicted
+
+
+def _of_means(noise: NoiseEstimate) -> float | None:
+    """Autocorrelation of noise of one part whose means vary as much as those of this one."""
+    rho, share = noise.autocorrelation, noise.white_share
+    if rho is None or share is None or not rho < 1.0 - share:
+        return rho
+    slow = rho / (1.0 - share)
+    inflation = share + (1.0 - share) * (1.0 + slow) / (1.0 - slow)
+    return (inflation - 1.0) / (inflation + 1.0)

@@ -14,7 +14,7 @@ from cyclosweep.report.figures import all_figures
 from cyclosweep.report.summary import LEADS, do_now, summary_of
 from cyclosweep.report.svg import figure_svg
 from cyclosweep.report.wording import number, probability, verdict_words
-from cyclosweep.result import Thinning
+from cyclosweep.result import NoiseEstimate, Thinning
 
 
 def write_html(data: ReportData, path: str | Path) -> Path:
@@ -190,9 +190,7 @@ def _recording(data: ReportData) -> str:
         ("resolution of the angle",
          f"{number(recording.angle_resolution_deg)} deg" if recording.angle_resolution_deg
          else "continuous"),
-        ("noise", "not estimated" if noise.sigma_deg is None
-         else f"{number(noise.sigma_deg)} deg, lag-one autocorrelation "
-              f"{number(noise.autocorrelation, 2)}"),
+        ("noise", _noise(noise)),
         ("history", "continuous over the runs"
          if recording.history == "continuous" or ONE_HISTORY in data.result.notes
          else "play, slip and creep start afresh with each run"),
@@ -203,6 +201,21 @@ def _recording(data: ReportData) -> str:
     remarks = [*sentences.asked(data), *recording.notes, *faults]
     listed = "".join(f"<li>{escape(text)}</li>" for text in remarks)
     return section("The recording", definitions(rows) + (f"<ul>{listed}</ul>" if listed else ""))
+
+
+def _noise(noise: NoiseEstimate) -> str:
+    """Size of the noise of a reading, and how it goes on from one to the next."""
+    if noise.sigma_deg is None:
+        return "not estimated"
+    size = f"{number(noise.sigma_deg)} deg"
+    if noise.white_share is None or noise.autocorrelation is None:
+        return f"{size}, lag-one autocorrelation {number(noise.autocorrelation, 2)}"
+    rest = 1.0 - noise.white_share
+    white, slow = (number(noise.sigma_deg * part**0.5) for part in (noise.white_share, rest))
+    return (
+        f"{size}: {white} deg new in every reading, and a slow part of {slow} deg with a lag-one "
+        f"autocorrelation of {number(noise.autocorrelation / rest, 3)}"
+    )
 
 
 def _extent(values: "Iterable[float]", unit: str) -> str:

@@ -21,6 +21,9 @@ class NoiseEstimate(Part):
     autocorrelation_upper: float | None = None
     """Upper estimate of that correlation, with which all tests are made; null where they count
     independent pieces of a loop instead, as what is left repeats itself along it."""
+    white_share: float | None = None
+    """Share of the variance that is new in every sample, beside a part that varies slowly; null
+    where the noise is of one part."""
     tail_degrees_of_freedom: float | None = None
     """Degrees of freedom of Student's t where the noise has heavy tails; null where Gaussian."""
     resolution_deg: float | None = None

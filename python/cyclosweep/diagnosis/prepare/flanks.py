@@ -1,21 +1,12 @@
-"""The flank in contact and the dead zone, read off a recording by a robust line."""
+"""The flank in contact and the dead zone of a recording, told by a line."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.prepare.play_jumps import FEW_STEPS, sides_by_jumps
-from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay, turned_play
-from cyclosweep.recording.robust import (
-    robust_sigma,
-    rounding_sigma,
-    sigma_by_second_differences,
-)
+from cyclosweep.diagnosis.prepare.turned_play import TurnedPlay
 from cyclosweep.simulation.effects.history import Flags, Floats, Ints
-
-LOADED = 0.25
-"""Share of the largest torque beyond which a flank is taken to be in contact."""
 
 LIGHT = 0.2
 """Share of that torque up to which a shaft may stand where it was turned to by hand: a twentieth of
@@ -40,9 +31,6 @@ LEAST_COMPLIANCE = 1e-12
 FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
-
-FEWEST_SCATTERED = 8
-"""Readings under load from which their scatter is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +75,7 @@ class Flanks:
         return max(friction_nm, LIGHT * self.loaded_nm)
 
     @property
-    def _apart_deg(self) -> float:
+    def apart_deg(self) -> float:
         """Move of the middle of a run from which its flanks are told about it [deg]."""
         of_loop = OF_LOOP * self.loop_width_deg
         return max(self.free_play_deg, of_loop, SCATTERED * self.scatter_deg)
@@ -104,7 +92,7 @@ class Flanks:
         wide = self.loop_width_deg > self.free_play_deg
         return both and wide and self._pushed_nm < self.loaded_nm
 
-    def _is_loaded(self, torque: Floats, scored: Flags | None) -> Flags:
+    def is_loaded(self, torque: Floats, scored: Flags | None) -> Flags:
         """Readings that are in contact whatever the angle says.
 
         Parameters
@@ -122,7 +110,7 @@ class Flanks:
             return np.asarray(np.abs(torque) > self.loaded_nm)
         return np.asarray((np.abs(torque) > self.loaded_scored_nm) & scored)
 
-    def _off_middle(self, torque: Floats, angle: Floats) -> Floats:
+    def off_middle(self, torque: Floats, angle: Floats) -> Floats:
         """How far each reading lies from the line through the middle of the play [deg].
 
         Parameters
@@ -170,13 +158,13 @@ class Flanks:
             # No reading tells where in it the shaft stands: to take those near a flank would be to
             # take them by their noise.
             return sign, np.ones(len(torque), dtype=bool)
-        loaded = self._is_loaded(torque, scored)
+        loaded = self.is_loaded(torque, scored)
         run = np.zeros(len(torque), dtype=np.int64) if run is None else run
-        inside = self._off_middle(torque, angle)
+        inside = self.off_middle(torque, angle)
         least = max(LEAST_MOVED * play, OF_LOOP * self.loop_width_deg)
-        moved = _moved_datum(inside - sign * play, sign * loaded, run, least)
+        moved = moved_datum(inside - sign * play, sign * loaded, run, least)
         # Of a run that is moved by more than the play, the middle of all runs tells nothing.
-        apart = np.abs(moved) > self._apart_deg
+        apart = np.abs(moved) > self.apart_deg
         inside = np.where(apart, inside - moved, inside)
         moved = np.where(apart, 0.0, moved)
         side = np.where(inside >= 0, 1.0, -1.0)
@@ -204,7 +192,7 @@ class Flanks:
         return side, contact & ~_on_the_way(depth, contact, loaded)
 
 
-def _moved_datum(left: Floats, loaded: Floats, run: Ints, least: float) -> Floats:
+def moved_datum(left: Floats, loaded: Floats, run: Ints, least: float) -> Floats:
     """How far the middle between both flanks lies from the datum in each run.
 
     Of a zero that drifts, as with the temperature, the play is crossed about the middle of the run.
@@ -287,109 +275,3 @@ def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
     maybe = ~contact | moving
     stretch = np.cumsum(np.r_[True, np.diff(maybe.astype(np.int8)) != 0])
     return np.asarray(contact & maybe & np.isin(stretch, stretch[~contact]))
-
-
-def find_flanks(
-    torque: Floats,
-    angle: Floats,
-    line: NominalLine,
-    scored: Flags | None = None,
-    resolution_deg: float = 0.0,
-    run: Ints | None = None,
-) -> Flanks:
-    """Fit a robust line through the loaded rows.
-
-    Parameters
-    ----------
-    torque, angle : ndarray, shape (n,)
-        Torque [N m] and twist [deg].
-    line : NominalLine
-        Line of the uncalibrated model, for what the recording does not show.
-    scored : ndarray of bool, shape (n,), optional
-        Rows through which the line goes; default: all.
-    resolution_deg : float
-        Step of the angle reading [deg].
-    run : ndarray of int, shape (n,), optional
-        Run of each reading; where the middles of the runs differ by more than the play, the line
-        goes through the readings less their run's middle. Default: all are one run.
-
-    Returns
-    -------
-    Flanks
-    """
-    found = _through(torque, angle, line, scored, resolution_deg)
-    if run is None or found.turned is not None or found.only_direction is not None:
-        return found
-    sign = np.where(torque >= 0, 1.0, -1.0)
-    left = found._off_middle(torque, angle) - sign * found.free_play_deg
-    moved = _moved_datum(left, sign * found._is_loaded(torque, scored), run, 0.0)
-    if not np.any(np.abs(moved) > found.free_play_deg):
-        return found
-    within = _through(torque, angle - moved, line, scored, resolution_deg)
-    return within if np.any(np.abs(moved) > within._apart_deg) else found
-
-
-def _through(
-    torque: Floats,
-    angle: Floats,
-    line: NominalLine,
-    scored: Flags | None,
-    resolution_deg: float,
-) -> Flanks:
-    """Robust line through the loaded rows; see `find_flanks`.
-
-    Parameters
-    ----------
-    torque, angle : ndarray, shape (n,)
-    line : NominalLine
-    scored : ndarray of bool, shape (n,), or None
-    resolution_deg : float
-
-    Returns
-    -------
-    Flanks
-    """
-    from scipy.optimize import least_squares
-
-    largest = float(np.abs(torque).max(initial=0.0))
-    threshold = scored_threshold = LOADED * largest
-    loaded = np.abs(torque) > threshold
-    if scored is not None:
-        scored_threshold = LOADED * float(np.abs(torque[scored]).max(initial=0.0))
-        loaded = (np.abs(torque) > scored_threshold) & scored
-    sign = np.where(torque >= 0, 1.0, -1.0)
-    both = bool(np.any(sign[loaded] > 0) and np.any(sign[loaded] < 0))
-    design = np.column_stack([np.ones_like(torque), torque, sign])[:, : 3 if both else 2]
-    target = angle if both else angle - sign * line.free_play_deg
-    start = np.linalg.lstsq(design[loaded], target[loaded], rcond=None)[0]
-    residual = target[loaded] - design[loaded] @ start
-    scale = max(robust_sigma(residual), 1e-9)
-
-    def misfit(values: Floats) -> Floats:
-        return np.asarray((target[loaded] - design[loaded] @ values) / scale)
-
-    robust = least_squares(misfit, start, loss="soft_l1").x
-    datum, compliance = float(robust[0]), float(robust[1])
-    if compliance <= 0 and torque @ (angle - angle.mean()) > 0:
-        # Friction hides the slope where the drive hardly turns back.
-        compliance = line.compliance_deg_per_nm
-    play = float(robust[2]) if both else line.free_play_deg
-    residual = target[loaded] - design[loaded] @ robust
-    width = 2.0 * float(np.quantile(np.abs(residual), 0.9))
-    scatter = sigma_by_second_differences(residual) if len(residual) >= FEWEST_SCATTERED else 0.0
-    scatter = float(np.hypot(scatter, rounding_sigma(resolution_deg)))
-    turned = turned_play(compliance * torque, angle, sign * loaded)
-    if turned is not None:
-        datum, play = turned.datum_deg, turned.free_play_deg
-    only = None if both or not np.any(loaded) else float(sign[loaded][0])
-    return Flanks(
-        datum_deg=datum,
-        compliance_deg_per_nm=compliance,
-        free_play_deg=max(play, 0.0),
-        scatter_deg=scatter,
-        loop_width_deg=width,
-        loaded_nm=threshold,
-        loaded_scored_nm=scored_threshold,
-        turned=turned,
-        only_direction=only,
-    )

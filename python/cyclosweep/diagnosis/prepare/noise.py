@@ -106,11 +106,21 @@ class Noise:
     @property
     def likely_spread_deg(self) -> float:
         """The same by the likeliest correlation instead of its upper estimate [deg]."""
-        if self.white_share > 0.0 or self.correlation < self.best_correlation:
-            return self.spread_deg
+        return self.spread_deg * float(np.sqrt(self.white_share + self._likely_slow))
+
+    @property
+    def likely_white_share(self) -> float:
+        """Share of the variance that is new in every row, by the likeliest correlation."""
+        return self.white_share / (self.white_share + self._likely_slow)
+
+    @property
+    def _likely_slow(self) -> float:
+        """Likeliest variance of the part that correlates, over that of a row."""
+        slow = 1.0 - self.white_share
+        if self.correlation < self.best_correlation:
+            return slow
         # The innovations are known; what they add up to depends on how long they last.
-        fresh = (1.0 - self.correlation**2) / (1.0 - self.best_correlation**2)
-        return self.spread_deg * float(np.sqrt(fresh))
+        return slow * (1.0 - self.correlation**2) / (1.0 - self.best_correlation**2)
 
     @cached_property
     def _pair(self) -> Floats:

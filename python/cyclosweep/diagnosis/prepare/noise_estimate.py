@@ -9,7 +9,12 @@ from scipy.stats import t as student_t
 from cyclosweep.diagnosis.prepare.autocorrelation import autocorrelation
 from cyclosweep.diagnosis.prepare.noise import COARSE_STEP, Noise, orthonormal
 from cyclosweep.diagnosis.prepare.row_score import bin_score, interval_score, student_score
-from cyclosweep.diagnosis.prepare.white_part import MUCH_LIKELIER, noise_with_white_part
+from cyclosweep.diagnosis.prepare.steadiness import rides, unsteadiness
+from cyclosweep.diagnosis.prepare.white_part import (
+    MUCH_LIKELIER,
+    noise_with_free_white_part,
+    noise_with_white_part,
+)
 from cyclosweep.recording.robust import robust_sigma, rounding_sigma, sigma_by_second_differences
 from cyclosweep.simulation.effects.history import Floats
 
@@ -19,25 +24,11 @@ UNSTEADY = 2.0
 """Scatter of the size of whitened stretches, over that of steady noise, from which what is left is
 error of the model. Steady noise stays below 1.7 up to an autocorrelation of 0.99, also with heavy
 tails; errors of models gather at reversals and at certain loads, and most are above 2.4."""
-LOUDEST = 2
-"""Loudest stretches that do not count: readings far off, as two within the play, are no model error
-of all the rest."""
-RIDING = -0.35
-"""Correlation of neighbouring whitened rows below which what is left is white noise that rides on
-something else, such as a zero that jumps. Whitening leaves none of an autoregression, and nearly
--1/2 of white noise beside something much slower. Of 515 recordings with nothing missing and an
-autocorrelation of 0.9 to 0.99, none of over a hundred rows went below -0.30."""
-SLOW = 0.8
-"""Autocorrelation from which the correlation of whitened neighbours is compared with `RIDING`."""
-FEWEST_ROWS = 100
-"""Rows from which that correlation is known well enough, to 0.1."""
 UNEVEN = 0.1
 """Difference of steps by the clock from steps by rows from which it matters which of them count."""
 COARSE = 0.165
 """Mean square of what is left over the square of the dial's step, below which its intervals may
 count: twice that of rounding alone."""
-STRETCHES = 40
-"""Stretches whose sizes are compared."""
 
 
 def estimate_noise(
@@ -98,6 +89,10 @@ def estimate_noise(
         least = 0.0 if white_deg > 0.0 else MUCH_LIKELIER
         rough = noise_with_white_part(clean, basis, rough, white_part, least) or rough
         best = rough.best_correlation
+    one_part = rough.white_share == 0.0
+    if one_part and not rides(rough, rough.whiten(left)):
+        rough = noise_with_free_white_part(clean, basis, rough) or rough
+        best = rough.best_correlation
     sigma, tail, moments, gain = _size(rough, left, basis, freedom)
     sigma = max(sigma, 1e-6 * float(np.ptp(angle)), 1e-12)
     by_interval = sigma**2 < COARSE * resolution**2
@@ -113,7 +108,7 @@ def estimate_noise(
     white = rough.whiten(left)
     mixed = rough.white_share > 0.0
     unsteady = best > SLOW_AS_MODEL_ERROR and unsteadiness(white, loud_only=mixed) > UNSTEADY
-    if unsteady or (best > SLOW and count >= FEWEST_ROWS and _neighbours(white, gap) < RIDING):
+    if unsteady or rides(rough, white):
         # Readings that rest on a step look unsteady, and like noise larger than what is left.
         small = left @ left < COARSE * resolution**2 * freedom
         if small and not by_interval and not averaged:
@@ -155,55 +150,6 @@ def as_model_error(noise: Noise, left: Floats, resolution: float, travel: float)
         score_moments=(1.0, 1.0),
         structured=True,
     )
-
-
-def unsteadiness(white: Floats, *, loud_only: bool = False) -> float:
-    """Scatter of the size of most stretches over that of steady noise; zero for few rows.
-
-    Parameters
-    ----------
-    white : ndarray, shape (n,)
-        Whitened residual.
-    loud_only : bool
-        Only stretches louder than the median count, as where a dial hides the noise of readings
-        at a held torque.
-
-    Returns
-    -------
-    float
-    """
-    length = len(white) // STRETCHES
-    if length < 5:
-        return 0.0
-    size = np.abs(white[: STRETCHES * length].reshape(STRETCHES, length)).mean(axis=1)
-    expected = np.sqrt((np.pi / 2.0 - 1.0) / length)
-    log_size = np.log(np.maximum(np.sort(size)[:-LOUDEST], 1e-300))
-    scatter = np.std(log_size)
-    if loud_only:
-        louder = np.maximum(log_size - np.median(log_size), 0.0)
-        scatter = np.sqrt(2.0 * np.mean(louder**2))
-    return float(scatter / expected)
-
-
-def _neighbours(white: Floats, gap: Floats) -> float:
-    """Correlation of neighbouring whitened rows; a few that are far off count as three sizes.
-
-    Parameters
-    ----------
-    white : ndarray, shape (n,)
-        Whitened residual.
-    gap : ndarray, shape (n,)
-        Steps since the row before, zero where unrelated.
-
-    Returns
-    -------
-    float
-    """
-    limit = 3.0 * robust_sigma(white)
-    clipped = np.clip(white, -limit, limit)
-    near = np.flatnonzero(gap > 0)
-    total = float(clipped @ clipped)
-    return float(clipped[near] @ clipped[near - 1]) / total if total > 0 else 0.0
 
 
 def _coarse_noise(

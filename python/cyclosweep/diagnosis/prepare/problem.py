@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from cyclosweep.design.nominal_line import NominalLine
-from cyclosweep.diagnosis.prepare.flanks import Flanks, find_flanks
+from cyclosweep.diagnosis.prepare.flank_lines import find_flanks
+from cyclosweep.diagnosis.prepare.flanks import Flanks
 from cyclosweep.diagnosis.prepare.neighbours import angle_by_neighbours
 from cyclosweep.diagnosis.prepare.pieces import find_pieces
 from cyclosweep.diagnosis.prepare.rows import Rows

@@ -16,7 +16,8 @@ from scipy.ndimage import median_filter
 
 from cyclosweep.design.nominal_line import NominalLine
 from cyclosweep.diagnosis.prepare.crossings import cut_at_crossings
-from cyclosweep.diagnosis.prepare.flanks import Flanks, find_flanks
+from cyclosweep.diagnosis.prepare.flank_lines import find_flanks
+from cyclosweep.diagnosis.prepare.flanks import Flanks
 from cyclosweep.diagnosis.prepare.pieces import Pieces, find_pieces
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.recording import Recording

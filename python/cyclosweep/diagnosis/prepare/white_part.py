@@ -1,5 +1,6 @@
-"""Autocorrelated noise beside a white part of known size, as the rounding of a dial has."""
+"""Autocorrelated noise beside a white part, as a reading has whose zero wanders slowly."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +12,20 @@ from cyclosweep.simulation.effects.history import Floats
 LARGEST = 0.998
 """Largest autocorrelation that is tried."""
 MUCH_LIKELIER = 3.0
-"""Log likelihood by which rounding beside correlated noise must be ahead of none [nat]; rounding is
-white nearly, and not always."""
+"""Log likelihood by which two parts must be ahead of one [nat]."""
+SHARES = (0.3, 0.6, 0.85, 0.95)
+FIRST = ((0.4, 0.15), *((near, share) for near in (0.7, 0.9, 0.97, 0.99) for share in SHARES))
+"""Ways from the autocorrelation of one part to one, and white shares, of which one has to be
+likelier than one part alone before the likeliest are looked for."""
 LEAST_ROWS = 100
 """Rows below which two parts of the noise are not told apart."""
 MOST_TIMES = 300.0
-"""Largest variance that is tried, in variances of the white part."""
+"""Largest variance that is tried, in variances of a known white part."""
+LOG_ODDS = 7.0
+"""Largest and, negative, least logarithm of the odds of a white part that are tried."""
+
+Best = Callable[[float], tuple[float, float]]
+"""Largest log likelihood [nat] at an autocorrelation, and the share of the white part there."""
 
 
 def noise_with_white_part(
@@ -47,14 +56,80 @@ def noise_with_white_part(
     Noise or None
         ``rough`` with the share of the white part and the autocorrelation of the rest.
     """
-    if len(left) < LEAST_ROWS or not np.any(rough.gap > 0):
+    if not _can_be_told(rough):
         return None
     rows = np.column_stack([basis, left])
-    white = white_deg**2
+
+    def best(correlation: float) -> tuple[float, float]:
+        return _best_of_known(rows, rough, correlation, white_deg**2)
+
+    return _with_white_share(rows, rough, best, least_gain)
+
+
+def noise_with_free_white_part(left: Floats, basis: Floats, rough: Noise) -> Noise | None:
+    """Noise of a white part of any size beside a correlated one; None where that is no likelier.
+
+    A sensor's noise is white as a rule, and its zero wanders slowly. A first-order autoregression
+    has one autocorrelation for both, too low for the slow part, which then looks like an effect.
+
+    Parameters
+    ----------
+    left : ndarray, shape (n,)
+        What the basis leaves of the twist, without outliers [deg].
+    basis : ndarray, shape (n, k)
+        Orthonormal columns of the model.
+    rough : Noise
+        Estimate without a white part.
+
+    Returns
+    -------
+    Noise or None
+        ``rough`` with the share of the white part and the autocorrelation of the rest.
+    """
+    if not _can_be_told(rough):
+        return None
+    rows = np.column_stack([basis, left])
+    single = rough.best_correlation
+    one = _restricted(rows, replace(rough, correlation=single))[0]
+    tried = (
+        replace(rough, correlation=single + way * (1.0 - single), white_share=share)
+        for way, share in FIRST
+    )
+    if not any(_restricted(rows, noise)[0] > one for noise in tried):
+        return None
+    return _with_white_share(rows, rough, lambda rho: _best_of_any(rows, rough, rho))
+
+
+def _can_be_told(noise: Noise) -> bool:
+    """Whether two parts of a noise can be told apart."""
+    return len(noise.gap) >= LEAST_ROWS and bool(np.any(noise.gap > 0))
+
+
+def _with_white_share(
+    rows: Floats, rough: Noise, best_at: Best, least_gain: float = MUCH_LIKELIER
+) -> Noise | None:
+    """Noise of the likeliest autocorrelation, and of an upper one; None where it gains too little.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n, k + 1)
+        Columns of the model and what they leave [deg].
+    rough : Noise
+        Estimate without a white part.
+    best_at : callable
+        What is reached at an autocorrelation.
+    least_gain : float
+        Log likelihood that must be gained [nat].
+
+    Returns
+    -------
+    Noise or None
+    """
     found: dict[float, tuple[float, float]] = {}
 
     def value(correlation: float) -> float:
-        found[correlation] = _best_variance(rows, rough, correlation, white)
+        if correlation not in found:
+            found[correlation] = best_at(correlation)
         return found[correlation][0]
 
     peak = minimize_scalar(
@@ -73,14 +148,43 @@ def noise_with_white_part(
     if value(LARGEST) < allowed:
         upper = float(brentq(lambda rho: value(float(rho)) - allowed, best, LARGEST, xtol=5e-4))
         value(upper)
-    share = white / found[upper][1]
-    return replace(rough, correlation=upper, best_correlation=best, white_share=share)
+    return replace(rough, correlation=upper, best_correlation=best, white_share=found[upper][1])
 
 
-def _best_variance(
+def _best_of_any(rows: Floats, rough: Noise, correlation: float) -> tuple[float, float]:
+    """Largest restricted log likelihood [nat] at an autocorrelation, and the white share there.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n, k + 1)
+        Columns of the model and what they leave [deg].
+    rough : Noise
+        Says how steps from row to row count.
+    correlation : float
+        Of the part that is not white.
+
+    Returns
+    -------
+    value, share : float
+    """
+
+    def share(log_odds: float) -> float:
+        return float(1.0 / (1.0 + np.exp(-log_odds)))
+
+    def loss(log_odds: float) -> float:
+        noise = replace(rough, correlation=correlation, white_share=share(log_odds))
+        return -_restricted(rows, noise)[0]
+
+    least = minimize_scalar(
+        loss, bounds=(-LOG_ODDS, LOG_ODDS), method="bounded", options={"xatol": 0.2}
+    )
+    return -float(least.fun), share(least.x)
+
+
+def _best_of_known(
     rows: Floats, rough: Noise, correlation: float, white: float
 ) -> tuple[float, float]:
-    """Largest restricted log likelihood [nat] at an autocorrelation, and the variance there.
+    """The same where the variance of the white part is known.
 
     Parameters
     ----------
@@ -95,8 +199,7 @@ def _best_variance(
 
     Returns
     -------
-    value, variance : float
-        In nat and deg^2.
+    value, share : float
     """
 
     def loss(log_times: float) -> float:
@@ -107,7 +210,7 @@ def _best_variance(
     least = minimize_scalar(
         loss, bounds=(0.02, np.log(MOST_TIMES)), method="bounded", options={"xatol": 0.02}
     )
-    return -float(least.fun), white * float(np.exp(least.x))
+    return -float(least.fun), float(np.exp(-least.x))
 
 
 def _restricted(rows: Floats, noise: Noise, variance: float | None = None) -> tuple[float, float]:
