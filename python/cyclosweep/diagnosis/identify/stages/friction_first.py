@@ -17,6 +17,7 @@ from cyclosweep.diagnosis.identify.laws.loop_check import is_curve_of_torque
 from cyclosweep.diagnosis.identify.structures.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+from cyclosweep.simulation.effects.creep import Creep
 from cyclosweep.simulation.effects.slip import FrictionEffect
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
@@ -38,6 +39,8 @@ SAME_OPTIMUM = 0.01
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
+OTHER_LOOPS = (FrictionEffect.family, Creep.family)
+"""Families of effects that make a loop as friction does."""
 HOPELESS = 2.0
 """Error of a fit over that of the best one from which it is no rival, whatever it is charged."""
 
@@ -79,7 +82,7 @@ def friction_first(search: Search, noise: Noise) -> FittedStructure | None:
     if not any(term.slips for term in best.terms) or not _explains_most(best, baseline):
         return None
     others = [term for term in best.terms if not term.slips]
-    instead = ([*drag, *others] for drag in ([], *_drags(search)))
+    instead = ([*loop, *others] for loop in ([], *_other_loops(search)))
     if any(_does_as_well(noise, terms, baseline, best) for terms in instead):
         return None
     # What was fitted beside friction kept it in its place. What it really is the search decides: a
@@ -118,8 +121,8 @@ def _does_as_well(
     return other is not None and structure_cost(other) <= structure_cost(best)
 
 
-def _drags(search: Search) -> list[list[Term]]:
-    """Loops that are no friction, each as the one term of a structure.
+def _other_loops(search: Search) -> list[list[Term]]:
+    """Loops that are no friction, by the rate or by delay, each as the one term of a structure.
 
     Parameters
     ----------
@@ -128,14 +131,20 @@ def _drags(search: Search) -> list[list[Term]]:
     Returns
     -------
     list of list of Term
+        Of each law the shape that explains most alone.
     """
-    return [
-        [Term(signature.effect, signature.shape)]
-        for signature in search.library.effects.values()
-        if signature.effect is not None
-        and signature.effect.family == FrictionEffect.family
-        and not signature.effect.slips
-    ]
+    scan, best = search.baseline.scan, dict[tuple[str, ...], int]()
+    for name, members in scan.groups.items():
+        for k in members.tolist():
+            signature = search.library.signatures[k]
+            effect = signature.effect
+            if effect is None or effect.slips or effect.family not in OTHER_LOOPS:
+                continue
+            law = (name, *sorted(signature.shape))
+            if scan.observed[k] > scan.observed[best.setdefault(law, k)]:
+                best[law] = k
+    found = [search.library.signatures[k] for k in best.values()]
+    return [[Term(each.effect, each.shape)] for each in found if each.effect is not None]
 
 
 def _explains_most(fitted: FittedStructure, baseline: FittedStructure) -> bool:
