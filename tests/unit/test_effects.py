@@ -202,7 +202,7 @@ def test_shapes_are_known_in_any_order(effect: Effect) -> None:
 
 
 BOUNDS_NM = {
-    ("overload_softening", "onset_nm"): (1.0, 18.4),
+    ("overload_softening", "onset_nm"): (0.0, 18.4),
     ("clearance_takeup", "first_nm"): (0.0, 9.0),
     ("clearance_takeup", "range_nm"): (0.02, 18.0),
     ("contact_stiffening", "turn_nm"): (0.02, 5.0),

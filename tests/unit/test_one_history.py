@@ -130,14 +130,6 @@ def to_and_fro(tops: tuple[float, ...], limit_nm: float, slip_deg: float) -> cs.
     return load.with_angle(angle + np.random.default_rng(1).normal(0.0, 0.02, len(angle)))
 
 
-def test_friction_that_goes_on_is_found_of_loops_to_and_fro() -> None:
-    """Runs that begin afresh were taken for most of it, and left seven times the noise."""
-    recording = to_and_fro((8.0, 6.0, 4.0, 3.0), 0.3, 3.0)
-    diagnosis = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
-    assert [effect["name"] for effect in diagnosis.effects] == ["friction_hysteresis"]
-    assert diagnosis.content["repaired"]["rmse_deg"] < 0.04
-
-
 def test_runs_that_are_read_from_a_load_on_need_no_other_effect() -> None:
     """Sharp friction that holds beyond the first reading asked for a line with a kink beside it.
 

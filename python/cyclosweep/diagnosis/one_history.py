@@ -121,6 +121,9 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
     likelier = afresh.loss + charges(afresh) - going_on.loss - charges(going_on)
     if going_on.loss < afresh.loss + AS_WELL and set(going_on.names) < set(afresh.names):
         return True
+    if afresh.line_compliance_deg_per_nm <= 0.0 < going_on.line_compliance_deg_per_nm:
+        # No drive has the first one.
+        return going_on.rmse_deg < WITHIN_NOISE * noise.spread_deg
     if likelier <= CLEARLY_LIKELIER:
         return False
     # What is left of either may be error of the laws, of which there is less than there are rows.

@@ -20,6 +20,9 @@ from cyclosweep.simulation.effects.history import Flags, Floats, Ints
 LOADED = 0.25
 """Share of the largest torque beyond which a flank is taken to be in contact."""
 
+LOADS_APART = 0.3
+"""Range of light loads over the largest from which a line through them tells the play from the
+compliance."""
 FEWEST_SCATTERED = 8
 """Readings under load from which their scatter is known."""
 
@@ -92,7 +95,8 @@ def _through_light(
     light = ~loaded & (size > LIGHT * size[~loaded].max(initial=0.0))
     if design.shape[1] < 3 or np.count_nonzero(light) < FEWEST_SCATTERED:
         return None
-    if np.ptp(design[light, 2]) == 0.0:
+    one_load = np.ptp(size[light]) < LOADS_APART * size[light].max()
+    if one_load or np.ptp(design[light, 2]) == 0.0:
         return None
     line = np.linalg.lstsq(design[light], angle[light], rcond=None)[0]
     datum, compliance, play = map(float, line)

@@ -17,6 +17,12 @@ SHARES = (0.3, 0.6, 0.85, 0.95)
 FIRST = ((0.4, 0.15), *((near, share) for near in (0.7, 0.9, 0.97, 0.99) for share in SHARES))
 """Ways from the autocorrelation of one part to one, and white shares, of which one has to be
 likelier than one part alone before the likeliest are looked for."""
+LEAST_WHITE = 0.2
+"""Share of the variance that a white part of any size has at least. Less beside something slow is
+what an effect leaves that no shape holds."""
+MOST_SLOWER = 4.0
+"""Largest variance of the slow part beside it, in those of the likeliest one: of a few of its waves
+it is hardly known, and one far larger than what is seen would hide every effect."""
 LEAST_ROWS = 100
 """Rows below which two parts of the noise are not told apart."""
 MOST_TIMES = 300.0
@@ -97,7 +103,10 @@ def noise_with_free_white_part(left: Floats, basis: Floats, rough: Noise) -> Noi
     )
     if not any(_restricted(rows, noise)[0] > one for noise in tried):
         return None
-    return _with_white_share(rows, rough, lambda rho: _best_of_any(rows, rough, rho))
+    found = _with_white_share(
+        rows, rough, lambda rho: _best_of_any(rows, rough, rho), most_times=MOST_SLOWER
+    )
+    return found if found is not None and found.likely_white_share > LEAST_WHITE else None
 
 
 def _can_be_told(noise: Noise) -> bool:
@@ -106,7 +115,11 @@ def _can_be_told(noise: Noise) -> bool:
 
 
 def _with_white_share(
-    rows: Floats, rough: Noise, best_at: Best, least_gain: float = MUCH_LIKELIER
+    rows: Floats,
+    rough: Noise,
+    best_at: Best,
+    least_gain: float = MUCH_LIKELIER,
+    most_times: float = np.inf,
 ) -> Noise | None:
     """Noise of the likeliest autocorrelation, and of an upper one; None where it gains too little.
 
@@ -120,6 +133,8 @@ def _with_white_share(
         What is reached at an autocorrelation.
     least_gain : float
         Log likelihood that must be gained [nat].
+    most_times : float
+        Largest variance of the part that correlates, in those of the likeliest autocorrelation.
 
     Returns
     -------
@@ -144,9 +159,9 @@ def _with_white_share(
         return None
     # The higher it is, the dearer an underestimate.
     allowed = value(best) - (1.0 + 2.0 * best**2)
-    upper = LARGEST
-    if value(LARGEST) < allowed:
-        upper = float(brentq(lambda rho: value(float(rho)) - allowed, best, LARGEST, xtol=5e-4))
+    upper = min(LARGEST, float(np.sqrt(1.0 - (1.0 - best**2) / most_times)))
+    if value(upper) < allowed:
+        upper = float(brentq(lambda rho: value(float(rho)) - allowed, best, upper, xtol=5e-4))
         value(upper)
     return replace(rough, correlation=upper, best_correlation=best, white_share=found[upper][1])
 

@@ -12,10 +12,6 @@ from cyclosweep.simulation.effects.scattered import acting_beyond
 SPREAD, USUAL_SPREAD = (0.03, 0.3), 0.1
 """Logistic scale of the loads at which joints part, over their mean load."""
 
-ONSETS = (0.05, 0.92)
-"""Onsets that are fitted, over the largest load. With an earlier one a power near one is a straight
-line, which is the compliance of the drive."""
-
 
 class OverloadSoftening(Effect):
     """Extra twist ``a (|T| - T0)^p`` above a load `onset_nm`.
@@ -57,11 +53,10 @@ class OverloadSoftening(Effect):
         return [{"onset_nm": shape["onset_nm"], **law}]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Keep the onset between no load and the largest."""
+        """Keep the onset below the largest load."""
         if parameter.name != "onset_nm":
             return super().shape_bounds(parameter, history)
-        lower, upper = (share * history.largest_torque_nm for share in ONSETS)
-        return replace(parameter, lower=lower, upper=upper)
+        return replace(parameter, lower=0.0, upper=0.92 * history.largest_torque_nm)
 
     def columns(self, history: History, shape: Shape) -> Floats:
         """Extra twist, one at an overload of 10 N m [deg]."""

@@ -39,8 +39,6 @@ SAME_OPTIMUM = 0.01
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
-OTHER_LOOPS = (FrictionEffect.family, Creep.family)
-"""Families of effects that make a loop as friction does."""
 HOPELESS = 2.0
 """Error of a fit over that of the best one from which it is no rival, whatever it is charged."""
 
@@ -131,20 +129,27 @@ def _other_loops(search: Search) -> list[list[Term]]:
     Returns
     -------
     list of list of Term
-        Of each law the shape that explains most alone.
+        Drags as they are first looked for, and of each law of creep the shape that explains most.
     """
+    drags = [
+        Term(signature.effect, signature.shape)
+        for signature in search.library.effects.values()
+        if signature.effect is not None
+        and signature.effect.family == FrictionEffect.family
+        and not signature.effect.slips
+    ]
+    return [[term] for term in [*_creeps(search), *drags]]
+
+
+def _creeps(search: Search) -> list[Term]:
+    """Each law of creep, of the shape that explains most alone."""
     scan, best = search.baseline.scan, dict[tuple[str, ...], int]()
-    for name, members in scan.groups.items():
-        for k in members.tolist():
-            signature = search.library.signatures[k]
-            effect = signature.effect
-            if effect is None or effect.slips or effect.family not in OTHER_LOOPS:
-                continue
-            law = (name, *sorted(signature.shape))
-            if scan.observed[k] > scan.observed[best.setdefault(law, k)]:
-                best[law] = k
+    for k in scan.groups.get(Creep.name, np.zeros(0, dtype=np.int64)).tolist():
+        law = tuple(sorted(search.library.signatures[k].shape))
+        if scan.observed[k] > scan.observed[best.setdefault(law, k)]:
+            best[law] = k
     found = [search.library.signatures[k] for k in best.values()]
-    return [[Term(each.effect, each.shape)] for each in found if each.effect is not None]
+    return [Term(each.effect, each.shape) for each in found if each.effect is not None]
 
 
 def _explains_most(fitted: FittedStructure, baseline: FittedStructure) -> bool:
