@@ -69,7 +69,7 @@ def noise_with_white_part(
     def best(correlation: float) -> tuple[float, float]:
         return _best_of_known(rows, rough, correlation, white_deg**2)
 
-    return _with_white_share(rows, rough, best, least_gain)
+    return _with_white_share(rough, best, _of_one_part(rows, rough) + least_gain)
 
 
 def noise_with_free_white_part(left: Floats, basis: Floats, rough: Noise) -> Noise | None:
@@ -96,7 +96,7 @@ def noise_with_free_white_part(left: Floats, basis: Floats, rough: Noise) -> Noi
         return None
     rows = np.column_stack([basis, left])
     single = rough.best_correlation
-    one = _restricted(rows, replace(rough, correlation=single))[0]
+    one = _of_one_part(rows, rough)
     tried = (
         replace(rough, correlation=single + way * (1.0 - single), white_share=share)
         for way, share in FIRST
@@ -104,9 +104,17 @@ def noise_with_free_white_part(left: Floats, basis: Floats, rough: Noise) -> Noi
     if not any(_restricted(rows, noise)[0] > one for noise in tried):
         return None
     found = _with_white_share(
-        rows, rough, lambda rho: _best_of_any(rows, rough, rho), most_times=MOST_SLOWER
+        rough,
+        lambda rho: _best_of_any(rows, rough, rho),
+        one + MUCH_LIKELIER,
+        MOST_SLOWER,
     )
     return found if found is not None and found.likely_white_share > LEAST_WHITE else None
+
+
+def _of_one_part(rows: Floats, rough: Noise) -> float:
+    """Restricted log likelihood [nat] of noise without a white part."""
+    return _restricted(rows, replace(rough, correlation=rough.best_correlation))[0]
 
 
 def _can_be_told(noise: Noise) -> bool:
@@ -115,24 +123,21 @@ def _can_be_told(noise: Noise) -> bool:
 
 
 def _with_white_share(
-    rows: Floats,
     rough: Noise,
     best_at: Best,
-    least_gain: float = MUCH_LIKELIER,
+    least: float,
     most_times: float = np.inf,
 ) -> Noise | None:
     """Noise of the likeliest autocorrelation, and of an upper one; None where it gains too little.
 
     Parameters
     ----------
-    rows : ndarray, shape (n, k + 1)
-        Columns of the model and what they leave [deg].
     rough : Noise
         Estimate without a white part.
     best_at : callable
         What is reached at an autocorrelation.
-    least_gain : float
-        Log likelihood that must be gained [nat].
+    least : float
+        Log likelihood that must be reached [nat].
     most_times : float
         Largest variance of the part that correlates, in those of the likeliest autocorrelation.
 
@@ -154,8 +159,7 @@ def _with_white_share(
         options={"xatol": 0.02},
     )
     best = float(np.tanh(peak.x))
-    plain = replace(rough, correlation=rough.best_correlation)
-    if value(best) < _restricted(rows, plain)[0] + least_gain:
+    if value(best) < least:
         return None
     # The higher it is, the dearer an underestimate.
     allowed = value(best) - (1.0 + 2.0 * best**2)
