@@ -113,7 +113,20 @@ def noise_with_free_white_part(left: Floats, basis: Floats, rough: Noise) -> Noi
 
 
 def _of_one_part(rows: Floats, rough: Noise) -> float:
-    """Restricted log likelihood [nat] of noise without a white part."""
+    """Restricted log likelihood of noise without a white part.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n, k + 1)
+        Columns of the model and what they leave [deg].
+    rough : Noise
+        Its estimate.
+
+    Returns
+    -------
+    float
+        In nat.
+    """
     return _restricted(rows, replace(rough, correlation=rough.best_correlation))[0]
 
 
