@@ -5,18 +5,24 @@ use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUnty
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Weighted rows, each less its share of the row before, over what is new in it.
+/// Weighted rows, each less its share of the row before and of what was new there, over what is new
+/// in it.
 #[pyfunction]
 fn whiten_weighted<'py>(
     py: Python<'py>,
     columns: PyReadonlyArray2<'py, f64>,
     weight: PyReadonlyArray1<'py, f64>,
     share: PyReadonlyArray1<'py, f64>,
+    carried: PyReadonlyArray1<'py, f64>,
     fresh: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let (rows, width) = (columns.shape()[0], columns.shape()[1]);
     let pairs = rows.saturating_sub(1);
-    if weight.len() != rows || share.len() != pairs || fresh.len() != pairs {
+    if weight.len() != rows
+        || [&share, &carried, &fresh]
+            .iter()
+            .any(|of| of.len() != pairs)
+    {
         return Err(PyValueError::new_err(format!(
             "expected {rows} weights and {pairs} pairs of neighbours"
         )));
@@ -27,6 +33,7 @@ fn whiten_weighted<'py>(
         width,
         weight.as_slice()?,
         share.as_slice()?,
+        carried.as_slice()?,
         fresh.as_slice()?,
         found.readwrite().as_slice_mut()?,
     );

@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cholesky_banded
-from scipy.linalg.lapack import dtbtrs
 from scipy.special import digamma
 
 import cyclosweep._core as _core
@@ -128,11 +127,6 @@ class Noise:
         return np.where(self.gap > 0, self.correlation**self.gap, 0.0)[1:]
 
     @cached_property
-    def _new(self) -> Floats:
-        """Share of each row after the first, as a standard deviation, that is not in the others."""
-        return np.asarray(np.sqrt(1.0 - self._pair**2))
-
-    @cached_property
     def _lower(self) -> Floats:
         """Diagonal and subdiagonal of the Cholesky factor of the rows' steps, shape (2, n).
 
@@ -144,7 +138,7 @@ class Noise:
         band = np.zeros((2, len(self.gap)))
         band[0] = np.r_[1.0, (1.0 - share) * (1.0 - pair**2) + share * (1.0 + pair**2)]
         band[1, :-1] = -share * pair
-        return np.asarray(cholesky_banded(band, lower=True))
+        return np.ascontiguousarray(cholesky_banded(band, lower=True))
 
     @property
     def log_determinant(self) -> float:
@@ -153,22 +147,18 @@ class Noise:
             return 2.0 * float(np.log(self._lower[0]).sum())
         return float(np.log1p(-(self._pair**2)).sum())
 
+    @cached_property
+    def _carried(self) -> tuple[Floats, Floats]:
+        """Share of each row after the first in what was new in the one before, and its own new."""
+        if self.white_share > 0.0:
+            return self._lower[1, :-1], self._lower[0, 1:]
+        return np.zeros_like(self._pair), np.asarray(np.sqrt(1.0 - self._pair**2))
+
     def whiten(self, rows: Floats) -> Floats:
         """Decorrelate rows (n,) or (n, k) whose neighbours correlate; variance is kept."""
         if self.correlation == 0.0:
             return rows
-        return self._whitened(rows.copy())
-
-    def _whitened(self, rows: Floats) -> Floats:
-        """Decorrelate rows in place."""
-        if self.correlation == 0.0:
-            return rows
-        shape = (-1,) + (1,) * (rows.ndim - 1)
-        rows[1:] -= self._pair.reshape(shape) * rows[:-1]
-        if self.white_share > 0.0:
-            return np.asarray(dtbtrs(self._lower, rows, uplo="L")[0]).reshape(rows.shape)
-        rows[1:] /= self._new.reshape(shape)
-        return rows
+        return self.design(rows, np.ones(len(rows)))
 
     def log_likelihood(self, rows: Floats) -> float:
         """Log likelihood [nat] of rows (n,) of this correlation and of whatever size suits best."""
@@ -255,12 +245,11 @@ class Noise:
         ndarray, shape (n,) or (n, k)
             Of unit variance where the noise alone is.
         """
-        if columns.ndim == 1:
-            return self._whitened(columns * weight)
-        if self.correlation == 0.0 or self.white_share > 0.0:
-            return self._whitened(columns * weight[:, None])
-        rows = np.ascontiguousarray(columns)
-        return _core.whiten_weighted(rows, weight, self._pair, self._new)
+        if self.correlation == 0.0:
+            return columns * weight.reshape((-1,) + (1,) * (columns.ndim - 1))
+        rows = np.ascontiguousarray(columns.reshape(len(columns), -1))
+        white = _core.whiten_weighted(rows, weight, self._pair, *self._carried)
+        return white.reshape(columns.shape)
 
     def with_sigma(self, sigma_deg: float) -> "Noise":
         """Return the same noise with another size."""
