@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable, Collection
+from functools import partial
 
 from threadpoolctl import threadpool_limits
 
@@ -14,9 +15,8 @@ from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.inputs import check_measured, check_options, considered_effects, drive_for
 from cyclosweep.diagnosis.locate import locate
 from cyclosweep.diagnosis.model_error_table import with_error_table
-from cyclosweep.diagnosis.one_history import identify_over_runs
 from cyclosweep.diagnosis.outcome import Diagnosis
-from cyclosweep.diagnosis.prepare.problem import prepare
+from cyclosweep.diagnosis.prepare.problem import Problem, prepare
 from cyclosweep.diagnosis.prepare.single_outliers import without_single_outliers
 from cyclosweep.diagnosis.refuse import (
     NoDiagnosisError,
@@ -26,6 +26,7 @@ from cyclosweep.diagnosis.refuse import (
 )
 from cyclosweep.diagnosis.repair import repair
 from cyclosweep.diagnosis.sliding import find_sliding, sliding_diagnosis
+from cyclosweep.diagnosis.torque_zero import identify_with_torque_zero
 from cyclosweep.diagnosis.verification import verify
 from cyclosweep.display import Steps, shown_steps
 from cyclosweep.recording import Recording
@@ -103,8 +104,7 @@ def _run_stages(
 ) -> Diagnosis:
     """Run one stage after the other.
 
-    Identification starts over where its best structure shows the noise to be another, or the runs
-    to be one history, so that the places of the mismatch are looked for after it.
+    Identification may start over with what it has found, before places are looked for.
     """
     say("preparing")
     check_recording(recording)
@@ -114,13 +114,13 @@ def _run_stages(
     line, pins = drive.nominal_line(recording.side), int(drive.output_pin_count)
     mesh_ratio = float(drive.ratio) if recording.side == "output" else 1.0
     recording = without_single_outliers(recording, line)
+    prepared = partial(prepare, recording, line, pins, mesh_ratio=mesh_ratio)
 
-    def calibrated(one_history: bool) -> Search:
-        problem = prepare(recording, line, pins, mesh_ratio=mesh_ratio, one_history=one_history)
+    def calibrated(problem: Problem) -> Search:
         check_prepared(problem, drive)
         return calibrate(problem, build_library(problem.history, problem.fitted, effects), seed)
 
-    searched = identify_over_runs(recording, calibrated, say)
+    searched = identify_with_torque_zero(recording, prepared, calibrated, say)
     say("bounding what was not found")
     concluded = conclude(searched, drive, tolerance_deg)
     regions = locate(concluded)

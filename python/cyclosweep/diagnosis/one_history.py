@@ -59,7 +59,7 @@ def identify_over_runs(
     searched = identify(calibrated(False), say)
     if not may_be_one_history(recording):
         return searched
-    found = _best(searched)
+    found = best_structure(searched)
     if not _may_remember(found):
         return searched
     joined = calibrated(True)
@@ -67,7 +67,7 @@ def identify_over_runs(
         return searched
     say("starting over with runs that go on from each other")
     again = identify(joined, say)
-    return again if _remembers(_best(again)) else searched
+    return again if _remembers(best_structure(again)) else searched
 
 
 def may_be_one_history(recording: Recording) -> bool:
@@ -176,7 +176,7 @@ def _may_remember(fitted: FittedStructure) -> bool:
     return _remembers(fitted) or len(_named(fitted)) < len(fitted.terms)
 
 
-def _best(searched: Search) -> FittedStructure:
-    """The structure that the verdict on a search rests on."""
+def best_structure(searched: Search) -> FittedStructure:
+    """Return the structure that the verdict on a search rests on."""
     best = accepted_in_stages(searched) or decide(searched).best or searched.baseline
     return best.fit

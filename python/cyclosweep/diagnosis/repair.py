@@ -101,6 +101,10 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
         fitted.model(drive.name),
         fitted_torque_nm=(float(torque.min()), float(torque.max())),
     )
+    if fitted.torque_zero is not None:
+        model = replace(model, torque_zero_nm=fitted.torque_zero.value_nm)
+    if problem.torque_zero is not None:
+        model = replace(model, notes=(problem.torque_zero.in_words, *model.notes))
     if model.one_history:
         model = replace(model, notes=(ONE_HISTORY, *model.notes))
     if base.line_compliance_deg_per_nm <= 0.0:
@@ -232,4 +236,5 @@ def _at_samples(problem: Problem, angle_deg: Floats, fitted: FittedStructure) ->
         return angle_deg
     # Between rows the line's own slope carries the torque, and what is left is interpolated.
     beside = rows.at_samples(angle_deg - history.compliance_deg_per_nm * history.applied_nm)
-    return beside + history.compliance_deg_per_nm * problem.recording.torque_nm
+    zero_nm = 0.0 if fitted.torque_zero is None else fitted.torque_zero.value_nm
+    return beside + history.compliance_deg_per_nm * (problem.recording.torque_nm - zero_nm)

@@ -13,6 +13,7 @@ from cyclosweep.diagnosis.prepare.pieces import find_pieces
 from cyclosweep.diagnosis.prepare.rows import Rows
 from cyclosweep.diagnosis.prepare.thinning import MOST_ROWS, thin
 from cyclosweep.diagnosis.prepare.torque_noise import torque_without_noise
+from cyclosweep.diagnosis.prepare.torque_zero import TorqueZero
 from cyclosweep.recording import Recording
 from cyclosweep.recording.structure import REVERSAL_SHARE, turning_points
 from cyclosweep.simulation.effects.history import Flags, Floats, History, Ints, runs_and_restarts
@@ -57,6 +58,9 @@ class Problem:
         Line of the published model, without calibration [deg/(N m)], [deg].
     one_history : bool
         Runs are taken to go on from each other although the recording does not say so.
+    torque_zero : TorqueZero or None
+        What the torque reads without load [N m], where that is taken off the torques of the
+        history; None: zero. Those of the recording stay as they were read.
     """
 
     recording: Recording
@@ -77,6 +81,7 @@ class Problem:
     nominal_compliance_deg_per_nm: float
     nominal_free_play_deg: float
     one_history: bool = False
+    torque_zero: TorqueZero | None = None
 
     @property
     def count(self) -> int:
@@ -173,6 +178,7 @@ def prepare(
     mesh_ratio: float = 1.0,
     *,
     one_history: bool = False,
+    torque_zero: TorqueZero | None = None,
 ) -> Problem:
     """Thin a long recording, find the flank in contact of every row, and what to fit.
 
@@ -190,6 +196,8 @@ def prepare(
         Turns of the mesh zone a turn of the measured shaft.
     one_history : bool
         Runs go on from each other although the recording does not say so.
+    torque_zero : TorqueZero, optional
+        What the torque reads without load [N m]; default: zero.
 
     Returns
     -------
@@ -199,6 +207,8 @@ def prepare(
     rows = thin(recording, line, most_rows)
     first = rows.first
     torque, angle = rows.mean(recording.torque_nm), rows.mean(recording.angle_deg)
+    if torque_zero is not None:
+        torque = torque - torque_zero.value_nm
     time = None if recording.time_s is None else rows.mean(recording.time_s)
     warm = None if recording.temperature_c is None else rows.mean(recording.temperature_c)
     run_label = recording.run[first]
@@ -252,6 +262,7 @@ def prepare(
         recording=recording,
         history=history,
         one_history=one_history,
+        torque_zero=torque_zero,
         angle_deg=angle,
         weight=rows.samples,
         fitted=fitted,

@@ -18,13 +18,13 @@ from cyclosweep.diagnosis.identify.fitting.prediction import (
     KnownFlankPrediction,
     LeftOutPrediction,
     Prediction,
-    TorqueZero,
 )
 from cyclosweep.diagnosis.identify.fitting.repetition import Repetition
 from cyclosweep.diagnosis.identify.stages.stage import FAINT
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
 from cyclosweep.diagnosis.prepare.problem import DATUM, Problem, line_design
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, STRETCHES_OF_LOOPS, stretches
+from cyclosweep.diagnosis.prepare.torque_zero import TorqueZero
 from cyclosweep.diagnosis.whole_loop.findings import findings, hidden_by_friction
 from cyclosweep.diagnosis.whole_loop.forecast import Forecast, at_start, fit_forecast, refit
 from cyclosweep.diagnosis.whole_loop.run_comparison import steadiness
@@ -79,12 +79,16 @@ class WholeLoopFit(FittedStructure):
     @property
     def torque_zero(self) -> TorqueZero | None:
         """Torque read without load, as the crossings of the dead zone show it."""
+        taken_off = self.problem.torque_zero
         if not self.forecast.has_zero:
-            return None
+            return taken_off
         parameters = self.forecast.parameters
         zero = next(k for k, each in enumerate(parameters) if each.kind == "zero")
         variance = self.forecast.covariance[zero, zero]
-        return TorqueZero(self.forecast.model.torque_zero_nm, float(np.sqrt(max(variance, 0.0))))
+        value_nm = self.forecast.model.torque_zero_nm
+        if taken_off is not None:
+            value_nm += taken_off.value_nm
+        return TorqueZero(value_nm, float(np.sqrt(max(variance, 0.0))))
 
     def follows_path(self, index: int) -> bool:
         """All terms: the flank in contact itself follows from the path of the shaft."""

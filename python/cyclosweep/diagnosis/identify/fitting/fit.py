@@ -14,7 +14,6 @@ from cyclosweep.diagnosis.identify.fitting.path_law import path_law
 from cyclosweep.diagnosis.identify.fitting.prediction import (
     LeftOutPrediction,
     Prediction,
-    TorqueZero,
 )
 from cyclosweep.diagnosis.identify.fitting.refine import refine
 from cyclosweep.diagnosis.identify.fitting.repetition import Repetition
@@ -22,6 +21,7 @@ from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
 from cyclosweep.diagnosis.prepare.problem import Problem, gaps
 from cyclosweep.diagnosis.prepare.split import KEPT_RUNS, folds, restrict
+from cyclosweep.diagnosis.prepare.torque_zero import TorqueZero
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats
 from cyclosweep.simulation.simulate import EffectValue, Model
@@ -66,8 +66,8 @@ class ContactFit(FittedStructure):
 
     @property
     def torque_zero(self) -> TorqueZero | None:
-        """None: on a known flank an error of the torque's zero is a shift of the datum."""
-        return None
+        """What was taken off the torques; on a straight flank it is a shift of the datum."""
+        return self.problem.torque_zero
 
     def follows_path(self, index: int) -> bool:
         """Whether a term is friction, which moves the path on which it is solved."""

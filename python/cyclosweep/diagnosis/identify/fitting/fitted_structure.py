@@ -20,12 +20,12 @@ from cyclosweep.diagnosis.identify.fitting.fit_state import Linearisation
 from cyclosweep.diagnosis.identify.fitting.prediction import (
     LeftOutPrediction,
     Prediction,
-    TorqueZero,
 )
 from cyclosweep.diagnosis.identify.fitting.repetition import Repetition
 from cyclosweep.diagnosis.identify.fitting.terms import Term
 from cyclosweep.diagnosis.prepare.noise import Noise, orthonormal
 from cyclosweep.diagnosis.prepare.problem import COMPLIANCE, Problem
+from cyclosweep.diagnosis.prepare.torque_zero import TorqueZero
 from cyclosweep.result import Finding
 from cyclosweep.simulation.effects.history import Flags, Floats, History
 from cyclosweep.simulation.simulate import Model

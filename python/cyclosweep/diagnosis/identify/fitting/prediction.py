@@ -1,4 +1,4 @@
-"""What a fitted structure predicts: twist of rows, fitted or left out, and zero of the torque."""
+"""What a fitted structure predicts: twist of rows, fitted or left out."""
 
 from dataclasses import dataclass
 
@@ -70,17 +70,3 @@ class KnownFlankPrediction:
     rows: Flags
     baseline_deg: Floats
     structure_deg: Floats
-
-
-@dataclass(frozen=True, slots=True)
-class TorqueZero:
-    """Torque that the sensor reads without load.
-
-    Attributes
-    ----------
-    value_nm, std_error_nm : float
-        Estimate and its standard error [N m].
-    """
-
-    value_nm: float
-    std_error_nm: float
