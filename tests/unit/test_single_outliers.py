@@ -97,6 +97,17 @@ def test_a_reading_on_the_other_flank_near_zero_is_kept() -> None:
     assert left_out(cs.Recording.from_arrays(torque, angle)) == 0
 
 
+@pytest.mark.parametrize(("change_deg", "count"), [(15.0, 1), (-15.0, 0)])
+def test_a_reading_beyond_the_flank_is_left_out_beside_a_crossing(
+    change_deg: float, count: int
+) -> None:
+    recording = loops()
+    angle = recording.angle_deg
+    assert angle is not None
+    crossing = int(np.flatnonzero(np.diff(angle) < -30.0)[0])
+    assert left_out(spoilt(recording, crossing - 1, change_deg)) == count
+
+
 def test_changes_of_another_run_are_not_nearby() -> None:
     recording = loops()
     angle, run = np.array(recording.angle_deg), np.ones(len(recording), dtype=int)

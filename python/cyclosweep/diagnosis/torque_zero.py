@@ -39,6 +39,8 @@ MOST_ZEROS = 3
 """Most zeros that are taken one after the other: effects found with a better one show it better."""
 NEAR = 1e-4
 """Share of the largest torque to which the zero is found."""
+LESS_LEFT = 0.99
+"""What as many effects leave with another zero, over what they leave without, at most."""
 ODD = "smooth odd curve"
 BY_WAYS = frozenset({"even curve", "dial"})
 """Families of the effects by which one way is unlike the other, as from a wrong zero."""
@@ -113,7 +115,7 @@ def _is_better(again: Search, before: Search) -> bool:
     found, known = best_structure(again), best_structure(before)
     if not found.terms or len(found.terms) > len(known.terms):
         return False
-    return len(found.terms) < len(known.terms) or found.rmse_deg < known.rmse_deg
+    return len(found.terms) < len(known.terms) or found.rmse_deg < LESS_LEFT * known.rmse_deg
 
 
 def find_torque_zero(searched: Search, prepared: Prepared) -> TorqueZero | None:

@@ -184,7 +184,10 @@ def _spikes(signal: Floats, run: np.ndarray, least: float) -> Flags:
         after = _of_one_run(change[place + 2 : place + 2 + NEARBY])
         if min(len(before), len(after)) < FEWEST:
             continue
-        largest = max(np.abs(before).max(), np.abs(after).max())
+        # A single jump from the side away from the spike is a play that is crossed nearby: beyond
+        # a flank the shaft cannot be.
+        towards = np.sign(up[place]) * np.r_[before, -after]
+        largest = max(-towards.min(), np.sort(np.abs(towards))[-2])
         found[place + 1] = size[place] > BEYOND_NEARBY * largest
     return found
 

@@ -47,6 +47,9 @@ simulation fitted to them, from which the latter is taken whatever it does on th
 WORST = 0.02
 """Share of the rows without which it must not be far worse, either: a reading at which a flank is
 reached too late is off by the whole play, and a few of them outweigh all the rest."""
+MOST_LATE = 0.1
+"""Share of the rows up to which those that are off by more than half the play, from flank to flank,
+are crossings at another torque, and not the rule."""
 FAR_WORSE = 1.5
 """Error on the other rows over that of the structure fitted to the flanks, from which it is. Where
 the error on all rows falls by more than the square of this, its root is what it may be instead."""
@@ -205,7 +208,7 @@ def _is_clearly_better(model: Forecast, simulated: Floats | None) -> bool:
 
 
 def usual_error(problem: Problem, angle_deg: Floats) -> float:
-    """Root mean square error on all rows but the `WORST` share of them [deg].
+    """Root mean square error on all rows but the `WORST` share, and those on the wrong flank [deg].
 
     Parameters
     ----------
@@ -218,8 +221,11 @@ def usual_error(problem: Problem, angle_deg: Floats) -> float:
     float
     """
     error = np.abs(problem.angle_deg - angle_deg)
-    usual = error <= np.quantile(error[problem.whole_fitted], 1.0 - WORST)
-    return problem.rms_error(angle_deg, problem.whole_fitted & usual)
+    most = float(np.quantile(error[problem.whole_fitted], 1.0 - WORST))
+    beyond_play = problem.history.free_play_deg
+    if np.mean(error[problem.whole_fitted] > beyond_play) <= MOST_LATE:
+        most = min(most, beyond_play)
+    return problem.rms_error(angle_deg, problem.whole_fitted & (error <= most))
 
 
 def left_out_error(model: Forecast) -> float:

@@ -109,6 +109,7 @@ class ContactFit(FittedStructure):
         problem, noise = self.problem, self.noise
         kept_runs = bool(np.any(problem.held_out))
         parts = [(KEPT_RUNS, problem.held_out)] if kept_runs else folds(problem)
+        terms = [self._foreseen(index) for index in range(len(self.terms))]
         found = []
         for label, rows in parts:
             train, train_noise = (problem, noise) if kept_runs else restrict(problem, noise, ~rows)
@@ -117,11 +118,21 @@ class ContactFit(FittedStructure):
             base = fit(train, train_noise, ())
             repaired = base
             if self.terms:
-                repaired = fit(train, train_noise, self.terms, self, rounds=4)
+                repaired = fit(train, train_noise, terms, self, rounds=4)
             held, mean = train.held_out, repaired.mean_deg + self._unforeseen(repaired, train)
             ratio = _log_likelihood_ratio(problem, noise, mean, held)
             found.append(LeftOutPrediction(label, held, kept_runs, base.mean_deg, mean, ratio))
         return found
+
+    def _foreseen(self, index: int) -> Term:
+        """Term as a simulation takes it to other runs: offsets of runs by the law they follow."""
+        term = self.terms[index]
+        if term.effect is None or term.slips:
+            return term
+        known = self.beta[self.column_range(index)]
+        shape, _ = term.effect.portable(self.history, term.shape, known)
+        told = bool(np.any(term.effect.columns(self.history, shape)))
+        return replace(term, shape=shape) if told else term
 
     def _unforeseen(self, repaired: "ContactFit", train: Problem) -> Floats:
         """Put the mean of the fitted rows for what no prediction can tell of other runs.
