@@ -24,11 +24,14 @@ from cyclosweep.diagnosis.identify.structures.candidate import Candidate, prior_
 from cyclosweep.diagnosis.identify.structures.enrichment import freer_laws
 from cyclosweep.diagnosis.identify.structures.search import MOST_SHAPE_ERROR, SHAPE_ERROR, Search
 from cyclosweep.diagnosis.identify.structures.verdict import decide
+from cyclosweep.simulation.effects.friction_hysteresis import FrictionHysteresis
 
 CLEARLY = 3.0
 """Log evidence by which another law has to be ahead of the one that was accepted [nat]."""
 LEAST_LEFT = 0.1
 """What is left beyond the noise counts from this share of the noise."""
+DELAYED = ("relaxation", "hysteresis")
+"""Families of what may make the loop of friction."""
 FAR_LESS = 0.5
 """What another law leaves beyond the noise, over what the accepted one leaves, from which it takes
 its place although the error of models that is allowed for makes both alike."""
@@ -356,6 +359,9 @@ def _score(candidate: Candidate | None) -> float:
 def rivals_of(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str]:
     """Effects of the same class as a term that are not part of the structure.
 
+    Where nothing slips, friction is one of a drag and of a creep: beside the error of models that a
+    first stage allows for, fewer parameters count for more than what is left of a loop.
+
     Parameters
     ----------
     search : Search
@@ -368,9 +374,13 @@ def rivals_of(search: Search, fitted: FittedStructure, term: Term) -> Iterator[s
     ------
     str
     """
+    slips = any(each.slips for each in fitted.terms)
     for name, signature in search.library.effects.items():
         effect = signature.effect
-        if effect is None or effect.slips or name in fitted.names:
+        if effect is None or name in fitted.names:
             continue
-        if share_class(term, Term(effect, signature.shape)):
+        if effect.slips:
+            if term.family in DELAYED and not slips and name == FrictionHysteresis.name:
+                yield name
+        elif share_class(term, Term(effect, signature.shape)):
             yield name
