@@ -1,5 +1,7 @@
 """A torque read from a wrong zero is found by the odd curve that it makes uneven."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -101,3 +103,13 @@ def test_right_zero_is_left_alone() -> None:
 def test_wrong_zero_beside_friction() -> None:
     found = cs.diagnose(recording(-0.08, friction_nm=0.5), cs.Drive.reference_87())
     assert names(found) == {"friction_hysteresis", "contact_stiffening"}
+
+
+def test_ripple_of_a_current_is_thought_of_where_something_was_found() -> None:
+    measured = recording(0.0)
+    by_current = replace(measured, torque_from="motor-current")
+    notes = [
+        cs.diagnose(each, cs.Drive.reference_87(), full=False).answer.notes
+        for each in (measured, by_current)
+    ]
+    assert [any("ripple" in note for note in each) for each in notes] == [False, True]

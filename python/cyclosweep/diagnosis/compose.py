@@ -25,7 +25,7 @@ from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
-from cyclosweep.diagnosis.whole_loop.rig_limits import rig_limits
+from cyclosweep.diagnosis.whole_loop.rig_limits import RIPPLE, rig_limits
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import unbroken_runs
 from cyclosweep.result import (
@@ -41,6 +41,7 @@ from cyclosweep.result import (
     Sufficiency,
     Thinning,
     Untestable,
+    Verdict,
 )
 from cyclosweep.result.part import finite
 
@@ -139,6 +140,7 @@ def _answer(
         notes=(
             *repaired.model.notes,
             *recording.notes,
+            *_ripple(recording, verified.decision.verdict),
             *(() if concluded.search.problem.one_history else unbroken_runs(recording)),
             *(fault.reason for fault in recording.faults),
         ),
@@ -151,6 +153,12 @@ def _answer(
     if verified.change is not None:
         answer = _with_range(answer, verified.change)
     return answer
+
+
+def _ripple(recording: Recording, verdict: Verdict) -> tuple[str, ...]:
+    """Remark on what a torque from a current looks like, where something was found."""
+    found = verdict not in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
+    return (RIPPLE,) if found and recording.torque_from == "motor-current" else ()
 
 
 def _with_range(answer: Answer, change: DriveChange) -> Answer:

@@ -19,6 +19,13 @@ MOTOR_CURRENT = Untestable(
     "torque constant are part of every torque read here",
     needs="a torque sensor at the output",
 )
+RIPPLE = (
+    "the torque is computed from the motor current: its ripple and cogging repeat with the turn of "
+    "the motor, and over a few of their waves they cannot be told from a curve of the torque, or a "
+    "transmission error, of the same size: compare with a torque sensor, or with another part of "
+    "the motor's turn"
+)
+"""Remark on a torque from a current, where something was found."""
 ONE_POSITION = Untestable(
     name="other_mesh_positions",
     reason="the output was locked at one position of the mesh; stiffness, play and staircase "
