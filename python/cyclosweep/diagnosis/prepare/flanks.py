@@ -28,6 +28,12 @@ LOOP = (0.1, 0.9)
 LEAST_COMPLIANCE = 1e-12
 """Compliance that stands for none [deg/(N m)]."""
 
+FEW_READINGS = 2
+"""Readings to either side over which the shaft turns where the play is crossed slowly."""
+STEEP = 4.0
+"""Turn over the twist by the change of the torque from which the shaft turns freely."""
+CLEAR_OF_SCATTER = 6.0
+"""The same over the scatter of a reading."""
 FAST = 2.0
 """Steps from reading to reading above this many times the largest of a hundred under load are no
 noise: of normal ones, one in four million is as large."""
@@ -189,7 +195,34 @@ class Flanks:
         if len(beyond) and float(np.median(beyond)) > LIGHT * self.loaded_nm:
             side[one_way] = sign[one_way]
             return side, contact | one_way
-        return side, contact & ~_on_the_way(depth, contact, loaded)
+        steep = self._turns_freely(torque, angle, run) & ~loaded
+        return side, contact & ~_on_the_way(depth, contact, loaded, steep)
+
+    def _turns_freely(self, torque: Floats, angle: Floats, run: Ints) -> Flags:
+        """Readings before and after which the shaft turns further than its torque could twist it.
+
+        Parameters
+        ----------
+        torque, angle : ndarray, shape (n,)
+            Torque [N m] and twist [deg].
+        run : ndarray of int, shape (n,)
+            Run of each reading.
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+        """
+        found = np.zeros(len(torque), dtype=bool)
+        if len(torque) <= 2 * FEW_READINGS:
+            return found
+        turn = angle[FEW_READINGS:] - angle[:-FEW_READINGS]
+        twist = self.compliance_deg_per_nm * np.abs(torque[FEW_READINGS:] - torque[:-FEW_READINGS])
+        least = np.maximum(STEEP * twist, CLEAR_OF_SCATTER * self.scatter_deg)
+        far = np.where(np.abs(turn) > least, np.sign(turn), 0.0)
+        far[run[FEW_READINGS:] != run[:-FEW_READINGS]] = 0.0
+        before, after = far[:-FEW_READINGS], far[FEW_READINGS:]
+        found[FEW_READINGS:-FEW_READINGS] = (before != 0.0) & (before == after)
+        return found
 
 
 def moved_datum(left: Floats, loaded: Floats, run: Ints, least: float) -> Floats:
@@ -245,13 +278,14 @@ def _last_pushed(sign: Floats, pushed: Flags) -> Floats:
     return np.asarray(sign[places[last]])
 
 
-def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
+def _on_the_way(depth: Floats, contact: Flags, loaded: Flags, steep: Flags) -> Flags:
     """Readings at which the play was still being crossed, next to readings within it.
 
     Friction and curved laws leave readings in contact a little within the play, so that a margin
     counts as contact. Where the play is crossed in a few readings, one of them may lie in that
     margin by chance; its error is many times the noise. From it to both neighbours the angle moves
-    faster than it ever does under load.
+    faster than it ever does under load. Where the play is crossed slowly, a step is no larger than
+    the noise, but over a few the shaft turns further than its torque could twist it.
 
     Parameters
     ----------
@@ -261,6 +295,8 @@ def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
         Readings in contact, the margin included.
     loaded : ndarray of bool, shape (n,)
         Readings that are in contact whatever the angle says.
+    steep : ndarray of bool, shape (n,)
+        Readings about which the shaft turns further than its torque could twist it.
 
     Returns
     -------
@@ -271,7 +307,7 @@ def _on_the_way(depth: Floats, contact: Flags, loaded: Flags) -> Flags:
     if np.all(contact) or len(usual) < FEW_STEPS:
         return np.zeros(len(depth), dtype=bool)
     fast = step > FAST * float(np.quantile(usual, 0.99))
-    moving = np.r_[False, fast] & np.r_[fast, False] & ~loaded & (depth > 0.0)
+    moving = ((np.r_[False, fast] & np.r_[fast, False] & ~loaded) | steep) & (depth > 0.0)
     maybe = ~contact | moving
     stretch = np.cumsum(np.r_[True, np.diff(maybe.astype(np.int8)) != 0])
     return np.asarray(contact & maybe & np.isin(stretch, stretch[~contact]))
