@@ -172,3 +172,24 @@ def test_the_play_of_a_drive_that_gives_way_is_seen_by_its_light_readings() -> N
     expected = np.where(torque >= 0.0, 1.0, -1.0)
     expected[still_there] = -1.0
     np.testing.assert_array_equal(side, expected)
+
+
+def test_readings_at_the_beginning_of_a_slow_crossing_are_not_in_contact() -> None:
+    # Turned at a constant speed: the torque stands still while the play is crossed.
+    rng = np.random.default_rng(6)
+    loaded = np.linspace(0.0, 20.0, 150)
+    half = np.r_[loaded, loaded[::-1][1:]]
+    within = np.linspace(PLAY, -PLAY, 75)[1:-1]
+    hold = np.full(len(within), -0.4)
+    torque = np.r_[half, hold, -half, -hold, half]
+    angle = np.r_[PLAY + COMPLIANCE * half, within, -PLAY - COMPLIANCE * half, -within]
+    angle = np.r_[angle, PLAY + COMPLIANCE * half]
+    sense = np.sign(np.diff(torque, prepend=-1.0))
+    angle += np.where(np.abs(torque) > 0.4, 2.0 * sense, 0.0) + 0.15 * rng.normal(size=len(angle))
+    found = contact(torque, angle)
+    crossing = np.zeros(len(torque), dtype=bool)
+    crossing[len(half) : len(half) + len(within)] = True
+    crossing[2 * len(half) + len(within) :][: len(within)] = True
+    far = crossing & (np.abs(np.abs(angle) - PLAY) > 2.0)
+    assert not found[far].any()
+    assert found[~crossing & (np.abs(torque) > 2.0)].all()
