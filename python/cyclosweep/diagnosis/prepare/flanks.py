@@ -28,7 +28,7 @@ LOOP = (0.1, 0.9)
 LEAST_COMPLIANCE = 1e-12
 """Compliance that stands for none [deg/(N m)]."""
 
-FEW_READINGS = 2
+LAGS = (2, 4)
 """Readings to either side over which the shaft turns where the play is crossed slowly."""
 STEEP = 4.0
 """Turn over the twist by the change of the torque from which the shaft turns freely."""
@@ -213,15 +213,15 @@ class Flanks:
         ndarray of bool, shape (n,)
         """
         found = np.zeros(len(torque), dtype=bool)
-        if len(torque) <= 2 * FEW_READINGS:
-            return found
-        turn = angle[FEW_READINGS:] - angle[:-FEW_READINGS]
-        twist = self.compliance_deg_per_nm * np.abs(torque[FEW_READINGS:] - torque[:-FEW_READINGS])
-        least = np.maximum(STEEP * twist, CLEAR_OF_SCATTER * self.scatter_deg)
-        far = np.where(np.abs(turn) > least, np.sign(turn), 0.0)
-        far[run[FEW_READINGS:] != run[:-FEW_READINGS]] = 0.0
-        before, after = far[:-FEW_READINGS], far[FEW_READINGS:]
-        found[FEW_READINGS:-FEW_READINGS] = (before != 0.0) & (before == after)
+        for lag in LAGS:
+            if len(torque) <= 2 * lag:
+                break
+            turn = angle[lag:] - angle[:-lag]
+            twist = self.compliance_deg_per_nm * np.abs(torque[lag:] - torque[:-lag])
+            least = np.maximum(STEEP * twist, CLEAR_OF_SCATTER * self.scatter_deg)
+            far = np.where(np.abs(turn) > least, np.sign(turn), 0.0)
+            far[run[lag:] != run[:-lag]] = 0.0
+            found[lag:-lag] |= (far[:-lag] != 0.0) & (far[:-lag] == far[lag:])
         return found
 
 
