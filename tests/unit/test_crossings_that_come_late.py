@@ -49,9 +49,7 @@ def test_friction_is_named_though_no_simulation_meets_the_crossings(seed: int) -
         torque,
         twist(torque) + rng.normal(0.0, NOISE_DEG, len(torque)),
         time_s=0.3 * np.arange(len(torque)),
-        temperature_c=21.0
-        + 0.3 * np.sin(np.arange(len(torque)) / 300.0)
-        + rng.normal(0.0, 0.03, len(torque)),
+        temperature_c=warm,
     )
     found = cs.diagnose(recording, cs.Drive.reference_87(), full=False)
     assert [effect.name for effect in found.answer.effects] == ["friction_hysteresis"]

@@ -76,7 +76,7 @@ STAGES = {
     "friction_in_noise": FITTING | {"calibrate"},
     "identify_effects": FITTING | {"calibrate", "friction_in_noise"},
     "one_history": FITTING | {"friction_in_noise", "identify_effects"},
-    "torque_zero": FITTING | {"one_history"},
+    "torque_zero": FITTING | {"one_history", "refuse"},
     "conclude": FITTING | {"outcome", "provenance", "refuse"},
     "locate": DECIDED,
     "repair": DECIDED | {"elasticity"},

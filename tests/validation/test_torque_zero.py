@@ -103,6 +103,8 @@ def test_right_zero_is_left_alone() -> None:
 def test_wrong_zero_beside_friction() -> None:
     found = cs.diagnose(recording(-0.08, friction_nm=0.5), cs.Drive.reference_87())
     assert names(found) == {"friction_hysteresis", "contact_stiffening"}
+    zero = found.answer.repaired.parameters["torque_zero_nm"]
+    assert zero.estimate == pytest.approx(-0.08, abs=0.02)
 
 
 def test_ripple_of_a_current_is_thought_of_where_something_was_found() -> None:

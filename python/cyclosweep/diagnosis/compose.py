@@ -17,7 +17,7 @@ from cyclosweep.diagnosis.finish import finished
 from cyclosweep.diagnosis.identify.structures.alarm import probability
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.identify.structures.testability import hidden_effects
-from cyclosweep.diagnosis.model_error_table import learned_in_words
+from cyclosweep.diagnosis.model_error_table import SOMETHING_MISSING, learned_in_words
 from cyclosweep.diagnosis.outcome import Diagnosis
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.torque_noise import smoothed_in_words
@@ -157,8 +157,8 @@ def _answer(
 
 def _ripple(recording: Recording, verdict: Verdict) -> tuple[str, ...]:
     """Remark on what a torque from a current looks like, where something was found."""
-    found = verdict not in ("NOTHING_MISSING", "INSUFFICIENT_DATA")
-    return (RIPPLE,) if found and recording.torque_from == "motor-current" else ()
+    by_current = recording.torque_from == "motor-current"
+    return (RIPPLE,) if by_current and verdict in SOMETHING_MISSING else ()
 
 
 def _with_range(answer: Answer, change: DriveChange) -> Answer:

@@ -134,7 +134,10 @@ def with_error_table(
     if changed or not _limited_by_laws(concluded, verified.decision):
         return repaired
     problem, noise = concluded.search.problem, concluded.search.noise
-    path = predicted_path(problem, repaired.model, SIMULATED_ROUNDS)
+    # From the torques of the history its zero is taken off already.
+    zero_nm = repaired.model.torque_zero_nm - problem.zero_nm
+    simulated = replace(repaired.model, torque_zero_nm=zero_nm)
+    path = predicted_path(problem, simulated, SIMULATED_ROUNDS)
     used = np.isin(problem.history.run, problem.history.run[problem.fitted])
     largest = float(np.abs(path.applied_nm[used]).max())
     groups = _groups(_passes(problem, path, largest), SAME_START * largest)

@@ -12,6 +12,7 @@ from cyclosweep.diagnosis.identify.stages.friction_first import (
     friction_first,
     structure_cost,
 )
+from cyclosweep.diagnosis.identify.stages.other_laws import DELAYED
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.identify.structures.verdict import (
     WITHIN_NOISE,
@@ -32,9 +33,6 @@ CLEARLY_LIKELIER = 40.0
 """What it must gain against the noise, as minus twice the log likelihood."""
 AS_WELL = NORMAL_95**2
 """Minus twice the log likelihood that fewer effects may lack where runs go on."""
-DELAYED = ("relaxation", "hysteresis")
-"""Families of the effects whose delayed twist at the end of a run may go on in the next, or that
-stand in for friction which does."""
 
 
 def identify_over_runs(

@@ -103,8 +103,8 @@ def repair(concluded: Conclusion, drive: Drive) -> RepairedModel:
     )
     if fitted.torque_zero is not None:
         model = replace(model, torque_zero_nm=fitted.torque_zero.value_nm)
-    if problem.torque_zero is not None:
-        model = replace(model, notes=(problem.torque_zero.in_words, *model.notes))
+    if problem.torque_zero is not None and fitted.torque_zero is not None:
+        model = replace(model, notes=(fitted.torque_zero.in_words, *model.notes))
     if model.one_history:
         model = replace(model, notes=(ONE_HISTORY, *model.notes))
     if base.line_compliance_deg_per_nm <= 0.0:

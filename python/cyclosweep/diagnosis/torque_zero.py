@@ -1,5 +1,6 @@
 """Whether the torque was read from a wrong zero, which looks like a curve that is not odd."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -29,7 +30,9 @@ from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES
 from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.diagnosis.prepare.split import restrict
 from cyclosweep.diagnosis.prepare.torque_zero import TorqueZero
+from cyclosweep.diagnosis.refuse import NoDiagnosisError
 from cyclosweep.recording import Recording
+from cyclosweep.simulation.effects.history import Flags
 
 FARTHEST = 0.05
 """Largest error of the zero that is tried, as a share of the largest torque."""
@@ -37,6 +40,10 @@ STEP = 0.005
 """Error of the zero by which the likelihood is tried first, as a share of the largest torque."""
 MOST_ZEROS = 3
 """Most zeros that are taken one after the other: effects found with a better one show it better."""
+MOST_KEPT = 0.5
+"""Share of the rows that have to stay in contact."""
+IMPOSSIBLE = 1e12
+"""Cost of a zero with which hardly anything, or one direction alone, is left."""
 NEAR = 1e-4
 """Share of the largest torque to which the zero is found."""
 LESS_LEFT = 0.99
@@ -60,14 +67,11 @@ class Zeroed:
 
     Attributes
     ----------
-    zero_nm : float
-        Torque that was read without load [N m].
     cost : float
         Minus twice the log likelihood, with what parameters and effects are charged.
     fitted : FittedStructure
     """
 
-    zero_nm: float
     cost: float
     fitted: FittedStructure
 
@@ -103,7 +107,11 @@ def identify_with_torque_zero(
         if zero is None:
             break
         say("starting over with the torque's zero")
-        again = identified(zero)
+        try:
+            again = identified(zero)
+        except NoDiagnosisError:
+            # What can be diagnosed as it was read is not refused for a zero that was only inferred.
+            break
         if not _is_better(again, searched):
             break
         searched = again
@@ -144,25 +152,50 @@ def find_torque_zero(searched: Search, prepared: Prepared) -> TorqueZero | None:
         return None
     if not any(term.family in BENDS for term in found.terms):
         return None
-    profiles = [_Profile(searched, prepared, terms) for terms in _offered(problem, found)]
-    as_read = profiles[-1].at(0.0)
-    for profile in profiles:
-        if (best := profile.best()) is not None and _explains_more(best, as_read):
-            return TorqueZero(best.zero_nm, profile.std_error_nm(best))
+    as_read = _Profile(searched, prepared, found.terms)
+    for terms in _offered(problem, found):
+        profile = as_read if terms is found.terms else _Profile(searched, prepared, terms)
+        share = profile.best()
+        if share is not None and _explains_more(profile, share, as_read):
+            return profile.zero_at(share)
     return None
 
 
-def _explains_more(best: Zeroed, as_read: Zeroed) -> bool:
-    """Whether another zero explains as much with fewer effects, or clearly more with the same."""
-    likelier = as_read.cost - PARAMETER_CHARGE - best.cost
-    fitted, before = best.fitted, as_read.fitted
-    if len(fitted.terms) < len(before.terms):
+def _explains_more(profile: "_Profile", share: float, as_read: "_Profile") -> bool:
+    """Whether another zero explains as much with fewer effects, or clearly more with no fewer.
+
+    Both are compared on the rows that are in contact with either zero.
+
+    Parameters
+    ----------
+    profile : _Profile
+        Of the effects with another zero.
+    share : float
+        How much further that is, over the largest torque.
+    as_read : _Profile
+        Of the effects that were found.
+
+    Returns
+    -------
+    bool
+    """
+    at_best = profile.at(share)
+    if at_best is None:
+        return False
+    rows = at_best.fitted.problem.fitted
+    other, before = profile.on(rows, share), as_read.on(rows, 0.0)
+    if other is None or before is None:
+        return False
+    charge = PARAMETER_CHARGE if profile.problem.torque_zero is None else 0.0
+    likelier = before.cost - other.cost - charge
+    fitted, known = other.fitted, before.fitted
+    if len(fitted.terms) < len(known.terms):
         return likelier > -AS_WELL
     if likelier <= CLEARLY_LIKELIER:
         return False
     # What is left may be error of the laws, of which there is less than there are rows.
-    within_noise = fitted.rmse_deg < WITHIN_NOISE * before.noise.spread_deg
-    return within_noise or structure_cost(before) - structure_cost(fitted) > CLEARLY
+    within_noise = fitted.rmse_deg < WITHIN_NOISE * known.noise.spread_deg
+    return within_noise or structure_cost(known) - structure_cost(fitted) > CLEARLY
 
 
 def _offered(problem: Problem, found: FittedStructure) -> list[tuple[Term, ...]]:
@@ -206,59 +239,86 @@ class _Profile:
     def __init__(self, searched: Search, prepared: Prepared, terms: tuple[Term, ...]) -> None:
         self.problem, self.noise = searched.problem, searched.noise
         self.prepared, self.terms = prepared, terms
-        self.rows = self.problem.count
         self.largest_nm = self.problem.history.largest_torque_nm
-        known = self.problem.torque_zero
-        self.before_nm = 0.0 if known is None else known.value_nm
-        self.known: dict[float, Zeroed] = {}
+        self.known: dict[float, Zeroed | None] = {}
 
-    def at(self, share: float) -> Zeroed:
-        """Fit with the zero further by a share of the largest torque."""
+    def at(self, share: float) -> Zeroed | None:
+        """Fit with the zero further by a share of the largest torque, see `on`."""
         if share not in self.known:
-            self.known[share] = self._fitted(share)
+            self.known[share] = self.on(self.problem.fitted, share)
         return self.known[share]
 
-    def _fitted(self, share: float) -> Zeroed:
-        """Fit anew.
+    def cost_at(self, share: float) -> float:
+        """Cost of as many rows as were fitted before: near zero, one may lose contact."""
+        found = self.at(share)
+        if found is None:
+            return IMPOSSIBLE
+        return found.cost + found.fitted.loss * (
+            self.problem.count / found.fitted.problem.count - 1.0
+        )
+
+    def on(self, rows: Flags, share: float) -> Zeroed | None:
+        """Fit anew to some rows, where they are in contact.
 
         Parameters
         ----------
+        rows : ndarray of bool, shape (n,)
         share : float
             How much further the zero is, over the largest torque.
 
         Returns
         -------
-        Zeroed
+        Zeroed or None
+            None where too few are in contact, or one direction alone is left.
         """
-        zero_nm = self.before_nm + share * self.largest_nm
-        zero = TorqueZero(zero_nm, np.nan)
+        zero = TorqueZero(self.problem.zero_nm + share * self.largest_nm, np.nan)
         problem = self.prepared(one_history=self.problem.one_history, torque_zero=zero)
-        problem, noise = restrict(problem, self.noise, problem.fitted)
+        problem, noise = restrict(problem, self.noise, rows)
+        if problem.one_sided or problem.count < MOST_KEPT * self.problem.count:
+            return None
         fitted = fit(problem, noise, self.terms, rounds=CONVERGED)
-        # A reading near the zero may come into contact, or lose it.
-        per_row = fitted.loss / max(problem.count, 1)
-        return Zeroed(zero_nm, per_row * self.rows + charges(fitted) + PARAMETER_CHARGE, fitted)
+        return Zeroed(fitted.loss + charges(fitted), fitted)
 
-    def best(self) -> Zeroed | None:
-        """Least cost within reach; None where steps to both sides promise too little."""
-        below, middle, above = (self.at(share).cost for share in (-STEP, 0.0, STEP))
+    def best(self) -> float | None:
+        """Share of the largest torque by which the zero of least cost is further.
+
+        Returns
+        -------
+        float or None
+            None where steps to both sides promise too little, and where the cost has no least value
+            well within reach.
+        """
+        below, middle, above = map(self.cost_at, (-STEP, 0.0, STEP))
         slope, bend = (above - below) / 2.0, above + below - 2.0 * middle
         promised = slope**2 / (2.0 * bend) if bend > 0.0 else np.inf
         if promised < CLEARLY_LIKELIER and not min(below, above) < middle - CLEARLY_LIKELIER:
             return None
-        found = minimize_scalar(
-            lambda share: self.at(float(share)).cost,
+        minimize_scalar(
+            lambda share: self.cost_at(float(share)),
             bounds=(-FARTHEST, FARTHEST),
             method="bounded",
             options={"xatol": NEAR},
         )
-        return None if abs(found.x) > FARTHEST - STEP else self.at(float(found.x))
+        share = min(self.known, key=self.cost_at)
+        return share if abs(share) <= FARTHEST - STEP and self._bend_at(share) > 0.0 else None
 
-    def std_error_nm(self, best: Zeroed) -> float:
-        """Standard error of the zero, by the bend of the cost about it [N m]."""
-        share = (best.zero_nm - self.before_nm) / self.largest_nm
-        bend = self.at(share - STEP).cost + self.at(share + STEP).cost - 2.0 * best.cost
-        spread = np.sqrt(2.0 / max(bend, 1e-9)) * STEP * self.largest_nm
+    def _bend_at(self, share: float) -> float:
+        """Second difference of the cost over `STEP` about a zero."""
+        return self.cost_at(share - STEP) + self.cost_at(share + STEP) - 2.0 * self.cost_at(share)
+
+    def zero_at(self, share: float) -> TorqueZero:
+        """Zero that is further by a share of the largest torque, with its standard error.
+
+        Parameters
+        ----------
+        share : float
+            Where the cost is least.
+
+        Returns
+        -------
+        TorqueZero
+        """
+        spread = math.sqrt(2.0 / self._bend_at(share)) * STEP * self.largest_nm
         if self.noise.structured:
-            spread *= np.sqrt(max(self.rows / INDEPENDENT_PIECES, 1.0))
-        return float(spread)
+            spread *= math.sqrt(max(self.problem.count / INDEPENDENT_PIECES, 1.0))
+        return TorqueZero(self.problem.zero_nm + share * self.largest_nm, spread)

@@ -247,7 +247,7 @@ class Noise:
         """
         if self.correlation == 0.0:
             return columns * weight.reshape((-1,) + (1,) * (columns.ndim - 1))
-        rows = np.ascontiguousarray(columns.reshape(len(columns), -1))
+        rows = np.ascontiguousarray(columns[:, None] if columns.ndim == 1 else columns)
         white = _core.whiten_weighted(rows, weight, self._pair, *self._carried)
         return white.reshape(columns.shape)
 

@@ -107,6 +107,11 @@ class Problem:
         counts = self.whole_fitted | self.whole_held_out
         return float(np.abs(self.history.applied_nm[counts]).max(initial=0.0))
 
+    @property
+    def zero_nm(self) -> float:
+        """What was taken off the torques of the history [N m]."""
+        return 0.0 if self.torque_zero is None else self.torque_zero.value_nm
+
     @cached_property
     def has_several_loops(self) -> bool:
         """Whether the load of fitted runs turns in one direction at torques well apart.

@@ -17,7 +17,7 @@ from cyclosweep.simulation.effects.history import Flags, Floats
 BEYOND_USUAL = 12.0
 """Size of a spike over the usual change from sample to sample, as a robust standard deviation."""
 BEYOND_NEARBY = 4.0
-"""Size of a spike over the largest change nearby."""
+"""Size of a spike over the largest change nearby, but for one from the side away from it."""
 BACK_AGAIN = 0.25
 """Change across a spike over its size, up to which the signal has come back."""
 NEARBY = 3
@@ -156,7 +156,7 @@ def _usual(changes: Floats) -> float:
 
 
 def _spikes(signal: Floats, run: np.ndarray, least: float) -> Flags:
-    """Samples that leave both neighbours by far more than anything nearby.
+    """Samples that leave both neighbours by far more than anything nearby, a crossing apart.
 
     Parameters
     ----------

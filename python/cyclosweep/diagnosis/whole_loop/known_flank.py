@@ -79,15 +79,12 @@ class WholeLoopFit(FittedStructure):
     @property
     def torque_zero(self) -> TorqueZero | None:
         """Torque read without load, as the crossings of the dead zone show it."""
-        taken_off = self.problem.torque_zero
         if not self.forecast.has_zero:
-            return taken_off
+            return self.problem.torque_zero
         parameters = self.forecast.parameters
         zero = next(k for k, each in enumerate(parameters) if each.kind == "zero")
         variance = self.forecast.covariance[zero, zero]
-        value_nm = self.forecast.model.torque_zero_nm
-        if taken_off is not None:
-            value_nm += taken_off.value_nm
+        value_nm = self.forecast.model.torque_zero_nm + self.problem.zero_nm
         return TorqueZero(value_nm, float(np.sqrt(max(variance, 0.0))))
 
     def follows_path(self, index: int) -> bool:

@@ -21,9 +21,9 @@ MOTOR_CURRENT = Untestable(
 )
 RIPPLE = (
     "the torque is computed from the motor current: its ripple and cogging repeat with the turn of "
-    "the motor, and over a few of their waves they cannot be told from a curve of the torque, or a "
-    "transmission error, of the same size: compare with a torque sensor, or with another part of "
-    "the motor's turn"
+    "the motor. Where the recording spans a few periods only, they cannot be told from a curve of "
+    "the torque, or a transmission error, of the same size: compare with a torque sensor, or with "
+    "another part of the motor's turn"
 )
 """Remark on a torque from a current, where something was found."""
 ONE_POSITION = Untestable(

@@ -125,7 +125,19 @@ class ContactFit(FittedStructure):
         return found
 
     def _foreseen(self, index: int) -> Term:
-        """Term as a simulation takes it to other runs: offsets of runs by the law they follow."""
+        """Term as a simulation takes it to other runs: offsets of runs by the law they follow.
+
+        The law was chosen by all runs; its size is fitted to those that are not left out.
+
+        Parameters
+        ----------
+        index : int
+            Which term.
+
+        Returns
+        -------
+        Term
+        """
         term = self.terms[index]
         if term.effect is None or term.slips:
             return term

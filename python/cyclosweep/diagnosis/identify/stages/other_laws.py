@@ -31,7 +31,8 @@ CLEARLY = 3.0
 LEAST_LEFT = 0.1
 """What is left beyond the noise counts from this share of the noise."""
 DELAYED = ("relaxation", "hysteresis")
-"""Families of what may make the loop of friction."""
+"""Families of what may make the loop of friction, and of twist that comes late: at the end of a run
+some of it may go on in the next."""
 FAR_LESS = 0.5
 """What another law leaves beyond the noise, over what the accepted one leaves, from which it takes
 its place although the error of models that is allowed for makes both alike."""
@@ -357,10 +358,11 @@ def _score(candidate: Candidate | None) -> float:
 
 
 def rivals_of(search: Search, fitted: FittedStructure, term: Term) -> Iterator[str]:
-    """Effects of the same class as a term that are not part of the structure.
+    """Effects that may take the place of a term, and are not part of the structure.
 
-    Where nothing slips, friction is one of a drag and of a creep: beside the error of models that a
-    first stage allows for, fewer parameters count for more than what is left of a loop.
+    They are of its class. Where nothing slips, friction may take the place of a drag or of a creep:
+    beside the error of models that a first stage allows for, fewer parameters count for more than
+    what is left of a loop.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ ALWAYS_HIDDEN = (
     ),
     (
         "torque_offset",
-        "a constant error of the torque is a shift of the datum",
+        "on straight flanks a constant error of the torque is a shift of the datum",
         "a reading of the torque sensor without load",
     ),
     (
