@@ -109,7 +109,7 @@ class ContactFit(FittedStructure):
         problem, noise = self.problem, self.noise
         kept_runs = bool(np.any(problem.held_out))
         parts = [(KEPT_RUNS, problem.held_out)] if kept_runs else folds(problem)
-        terms = [self._foreseen(index) for index in range(len(self.terms))]
+        terms = [self._foreseen(index) or term for index, term in enumerate(self.terms)]
         found = []
         for label, rows in parts:
             train, train_noise = (problem, noise) if kept_runs else restrict(problem, noise, ~rows)
@@ -124,7 +124,7 @@ class ContactFit(FittedStructure):
             found.append(LeftOutPrediction(label, held, kept_runs, base.mean_deg, mean, ratio))
         return found
 
-    def _foreseen(self, index: int) -> Term:
+    def _foreseen(self, index: int) -> Term | None:
         """Term as a simulation takes it to other runs: offsets of runs by the law they follow.
 
         The law was chosen by all runs; its size is fitted to those that are not left out.
@@ -136,7 +136,8 @@ class ContactFit(FittedStructure):
 
         Returns
         -------
-        Term
+        Term or None
+            None where nothing tells it of other runs.
         """
         term = self.terms[index]
         if term.effect is None or term.slips:
@@ -144,7 +145,7 @@ class ContactFit(FittedStructure):
         known = self.beta[self.column_range(index)]
         shape, _ = term.effect.portable(self.history, term.shape, known)
         told = bool(np.any(term.effect.columns(self.history, shape)))
-        return replace(term, shape=shape) if told else term
+        return replace(term, shape=shape) if told else None
 
     def _unforeseen(self, repaired: "ContactFit", train: Problem) -> Floats:
         """Put the mean of the fitted rows for what no prediction can tell of other runs.
@@ -164,12 +165,8 @@ class ContactFit(FittedStructure):
             What is added to the twist of the part that was left out [deg].
         """
         change = np.zeros(len(self.history))
-        for index, term in enumerate(self.terms):
-            if term.effect is None or term.slips:
-                continue
-            known = self.beta[self.column_range(index)]
-            shape, _ = term.effect.portable(self.history, term.shape, known)
-            if np.any(term.effect.columns(self.history, shape)):
+        for index in range(len(self.terms)):
+            if self._foreseen(index) is not None:
                 continue
             part = repaired.terms[index].columns(repaired.history)
             twist = part @ repaired.beta[repaired.column_range(index)]
