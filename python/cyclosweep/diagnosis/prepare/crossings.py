@@ -31,7 +31,8 @@ def cut_at_crossings(
     Returns
     -------
     Pieces
-        Samples on one flank, on the other, and between them are in pieces of their own.
+        Samples on one flank, on the other, and on either half of the way between them are in pieces
+        of their own.
     """
     play = flanks.free_play_deg
     if play <= 0.0:
@@ -47,6 +48,9 @@ def cut_at_crossings(
                 after = np.flatnonzero(contact[start + at : stop])
                 cuts.append(start + (before[-1] + 1 if len(before) else at))
                 cuts.append(start + at + (after[0] if len(after) else 0))
+        middle = _passes(place[start:stop])
+        if 0 < middle < stop - start:
+            cuts.append(start + middle)
     return pieces.cut(np.array(cuts, dtype=np.int64))
 
 
