@@ -154,7 +154,7 @@ def find_torque_zero(searched: Search, prepared: Prepared) -> TorqueZero | None:
         return None
     as_read = _Profile(searched, prepared, found.terms)
     for terms in _offered(problem, found):
-        profile = as_read if terms is found.terms else _Profile(searched, prepared, terms)
+        profile = as_read if terms == found.terms else _Profile(searched, prepared, terms)
         share = profile.best()
         if share is not None and _explains_more(profile, share, as_read):
             return profile.zero_at(share)
@@ -179,11 +179,8 @@ def _explains_more(profile: "_Profile", share: float, as_read: "_Profile") -> bo
     -------
     bool
     """
-    at_best = profile.at(share)
-    if at_best is None:
-        return False
-    rows = at_best.fitted.problem.fitted
-    other, before = profile.on(rows, share), as_read.on(rows, 0.0)
+    other = profile.at(share)
+    before = None if other is None else as_read.on(other.fitted.problem.fitted, 0.0)
     if other is None or before is None:
         return False
     charge = PARAMETER_CHARGE if profile.problem.torque_zero is None else 0.0
