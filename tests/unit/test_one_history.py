@@ -107,9 +107,9 @@ def test_friction_that_goes_on_is_tried_where_another_may_stand_in_for_it(
     found = within_noise.extend(within_noise.baseline, standing_in.name)
     assert found is not None
     assert found.fit.rmse_deg < 1.2 * NOISE_DEG
-    friction = friction_of(joined, found.fit)
+    friction = friction_of(lambda: joined, found.fit)
     assert (friction is None) == (standing_in is FRICTION)
-    much_left = friction_of(joined, within_noise.baseline.fit)
+    much_left = friction_of(lambda: joined, within_noise.baseline.fit)
     for each in (friction, much_left):
         assert each is None or each.rmse_deg < 1.2 * NOISE_DEG
     assert much_left is not None

@@ -1,6 +1,9 @@
 """Whether runs that a recording takes to begin afresh go on from each other."""
 
 from collections.abc import Callable
+from functools import cache
+
+import numpy as np
 
 from cyclosweep.diagnosis.friction_in_noise import model_error_noise
 from cyclosweep.diagnosis.identify.fitting.fit import fit
@@ -20,6 +23,8 @@ from cyclosweep.diagnosis.identify.structures.verdict import (
     decide,
 )
 from cyclosweep.diagnosis.identify_effects import identify
+from cyclosweep.diagnosis.prepare.noise_estimate import as_model_error
+from cyclosweep.diagnosis.prepare.problem import Problem
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import runs_can_go_on
 from cyclosweep.result.part import NORMAL_95
@@ -36,16 +41,21 @@ AS_WELL = NORMAL_95**2
 
 
 def identify_over_runs(
-    recording: Recording, calibrated: Callable[[bool], Search], say: Callable[[str], None]
+    recording: Recording,
+    prepared: Callable[[bool], Problem],
+    calibrated: Callable[[Problem], Search],
+    say: Callable[[str], None],
 ) -> Search:
     """Identify what is missing of runs that begin afresh, or that go on from each other.
 
     Parameters
     ----------
     recording : Recording
-    calibrated : callable
+    prepared : callable
         From whether runs go on from each other, though the recording does not say so, to the
-        calibrated search of it.
+        prepared recording.
+    calibrated : callable
+        From that to a calibrated search.
     say : callable
         Called with a few words before each long step.
 
@@ -54,17 +64,22 @@ def identify_over_runs(
     Search
         With all visited structures.
     """
-    searched = identify(calibrated(False), say)
+    searched = identify(calibrated(prepared(False)), say)
     if not may_be_one_history(recording):
         return searched
     found = best_structure(searched)
     if not _may_remember(found):
         return searched
-    joined = calibrated(True)
-    if not explains_more(searched, found, joined):
+    problem = prepared(True)
+
+    @cache
+    def joined() -> Search:
+        return calibrated(problem)
+
+    if not explains_more(searched, found, problem, joined):
         return searched
     say("starting over with runs that go on from each other")
-    again = identify(joined, say)
+    again = identify(joined(), say)
     return again if _remembers(best_structure(again)) else searched
 
 
@@ -84,7 +99,9 @@ def may_be_one_history(recording: Recording) -> bool:
     return not stated and len(recording.runs) > 1 and runs_can_go_on(recording)
 
 
-def explains_more(searched: Search, found: FittedStructure, joined: Search) -> bool:
+def explains_more(
+    searched: Search, found: FittedStructure, problem: Problem, joined: Callable[[], Search]
+) -> bool:
     """Whether what was found explains clearly more where runs go on from each other.
 
     Parameters
@@ -93,8 +110,10 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
         A search that has run, of runs that begin afresh.
     found : FittedStructure
         Its best structure.
-    joined : Search
-        Calibrated, with nothing visited, of the same runs as one history.
+    problem : Problem
+        The same runs as one history.
+    joined : callable
+        Returns a calibrated search of them, with nothing visited.
 
     Returns
     -------
@@ -105,15 +124,13 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
     # What creep or friction leaves to the next run, a datum that drifts stands in for.
     still = tuple(term for term in terms if term.name != DatumDrift.name)
     alone = tuple(term for term in terms if term.slips)
-    offered = dict.fromkeys((terms, still, alone), joined.baseline.fit)
+    line: FittedStructure = fit(problem, noise, ())
+    offered = dict.fromkeys((terms, still, alone), line)
     friction = friction_of(joined, found)
     if friction is not None:
         offered[friction.terms] = friction
     going_on = min(
-        (
-            fit(joined.problem, noise, kept, near, rounds=CONVERGED)
-            for kept, near in offered.items()
-        ),
+        (fit(problem, noise, kept, near, rounds=CONVERGED) for kept, near in offered.items()),
         key=structure_cost,
     )
     likelier = afresh.loss + charges(afresh) - going_on.loss - charges(going_on)
@@ -129,13 +146,13 @@ def explains_more(searched: Search, found: FittedStructure, joined: Search) -> b
     return within_noise or structure_cost(afresh) - structure_cost(going_on) > CLEARLY
 
 
-def friction_of(joined: Search, found: FittedStructure) -> FittedStructure | None:
+def friction_of(joined: Callable[[], Search], found: FittedStructure) -> FittedStructure | None:
     """Friction alone of runs that go on, where what was found may stand in for it.
 
     Parameters
     ----------
-    joined : Search
-        Calibrated, of the runs as one history.
+    joined : callable
+        Returns a calibrated search of the runs as one history.
     found : FittedStructure
         What was found of runs that begin afresh.
 
@@ -144,12 +161,20 @@ def friction_of(joined: Search, found: FittedStructure) -> FittedStructure | Non
     FittedStructure or None
         None where nothing found may stand in for it and little is left, or no friction is found.
     """
-    assert joined.flexible is not None
-    little = model_error_noise(joined.problem, joined.noise, joined.flexible)
     doubtful = any(map(_may_be_friction_that_goes_on, found.terms))
-    if not doubtful and found.rmse_deg <= WITHIN_NOISE * little.spread_deg:
+    if not doubtful and found.rmse_deg <= WITHIN_NOISE * _from_row_to_row(found):
         return None
-    return friction_first(joined, little)
+    search = joined()
+    assert search.flexible is not None
+    return friction_first(search, model_error_noise(search.problem, search.noise, search.flexible))
+
+
+def _from_row_to_row(found: FittedStructure) -> float:
+    """Standard deviation of what differs from row to row, by what a structure leaves [deg]."""
+    problem = found.problem
+    travel_deg = float(np.ptp(problem.angle_deg[problem.fitted]))
+    step_deg = problem.resolution_deg
+    return as_model_error(found.noise, found.residual_deg, step_deg, travel_deg).sigma_deg
 
 
 def _may_be_friction_that_goes_on(term: Term) -> bool:

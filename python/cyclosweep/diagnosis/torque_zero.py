@@ -96,10 +96,10 @@ def identify_with_torque_zero(
     """
 
     def identified(zero: TorqueZero | None) -> Search:
-        def start(one_history: bool) -> Search:
-            return calibrated(prepared(one_history=one_history, torque_zero=zero))
+        def with_zero(one_history: bool) -> Problem:
+            return prepared(one_history=one_history, torque_zero=zero)
 
-        return identify_over_runs(recording, start, say)
+        return identify_over_runs(recording, with_zero, calibrated, say)
 
     searched = identified(None)
     for _ in range(MOST_ZEROS):
