@@ -73,20 +73,23 @@ MOST_POSITIONS, MOST_RUNS = 40, 60
 """Positions and runs beyond which offsets of their own would follow anything."""
 
 
-def class_columns(history: History) -> dict[str, Floats]:
+def class_columns(history: History, conditioning_nm: float = 0.0) -> dict[str, Floats]:
     """Columns of every class that a recording can show.
 
     Parameters
     ----------
     history : History
         Load history of n rows.
+    conditioning_nm : float
+        Load to and fro before each run, with the sign of its last end [N m]; zero: loops begin
+        fresh.
 
     Returns
     -------
     dict of str to ndarray, shape (n, k)
         By the name of the class.
     """
-    return dict(_curves_and_loops(history)) | dict(_in_time(history)) | dict(_by_state(history))
+    return dict(_curves_and_loops(history, conditioning_nm)) | dict(_in_time(history)) | dict(_by_state(history))
 
 
 def smooth_columns(share: Floats) -> Floats:
@@ -110,16 +113,33 @@ def smooth_columns(share: Floats) -> Floats:
     return np.asarray(hats(share, knots) @ (mix[:, kept] * np.sqrt(size[kept])))
 
 
-def _curves_and_loops(history: History) -> Iterator[tuple[str, Floats]]:
-    """Curves of the torque and loops that need no clock."""
+def _curves_and_loops(history: History, conditioning_nm: float) -> Iterator[tuple[str, Floats]]:
+    """Curves of the torque and loops that need no clock.
+
+    Parameters
+    ----------
+    history : History
+        Load history of n rows.
+    conditioning_nm : float
+        See `class_columns`.
+
+    Yields
+    ------
+    str, ndarray of shape (n, k)
+        Name of a class, and its columns.
+    """
     top, side, sense = history.largest_torque_nm, history.side, history.sense
     load = np.clip(history.load_nm / top, 0.0, 1.0)
     smooth = smooth_columns(load)
     yield ODD_CURVE, side[:, None] * smooth
     if np.any(side > 0) and np.any(side < 0):
         yield EVEN_CURVE, np.column_stack([smooth, load])
-    torque, start = history.applied_nm, np.zeros(len(history))
-    followed = [_core.play(torque, share * top, history.restart, start) for share in PLAYS]
+    torque, worked = history.applied_nm, np.array([-conditioning_nm, conditioning_nm])
+    followed = []
+    for width in (share * top for share in PLAYS):
+        left_at = _core.play(worked, width, np.zeros(2, dtype=bool), np.zeros(2))[-1]
+        start = np.full(len(history), left_at)
+        followed.append(_core.play(torque, width, history.restart, start))
     plays = (torque[:, None] - np.column_stack(followed)) / top
     yield LOOP, np.column_stack([plays, SENSE_SHARE * sense])
     yield OPENING_LOOP, np.column_stack([load[:, None] * plays, load * sense])

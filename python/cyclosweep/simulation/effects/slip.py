@@ -8,6 +8,7 @@ import numpy as np
 
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
+from cyclosweep.simulation.effects.conditioning import CONDITIONING
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip_elements import (
     ELEMENTS,
@@ -61,10 +62,19 @@ SLIP_PARAMETERS = (
     Parameter(
         LOAD_POWER, "", "power by which friction over load grows with the load", -1.0, MOST_POWER
     ),
+    Parameter(
+        CONDITIONING,
+        "N m",
+        "load to and fro before a run; above zero: it was left from that side",
+        -1e6,
+        1e6,
+    ),
 )
+MOST_CONDITIONING = 2.0
+"""Largest load of a conditioning, in those of the recording."""
 MOST_BENT = 4.0
 """Load over `reference_nm` up to which the ratio of limit and load changes with the load."""
-OPTIONAL = ("skew", "slack", "forgetting", "behind_play", BY_READING)
+OPTIONAL = ("skew", "slack", "forgetting", "behind_play", CONDITIONING, BY_READING)
 BEHIND_PLAY_PENALTY = 1.0
 """Log prior odds against friction behind the play [nat]."""
 LEAST_UNLOADED = 0.02
@@ -194,7 +204,10 @@ class FrictionEffect(Effect):
         return [{"reference_nm": 0.5 * history.largest_torque_nm, **shape, LOAD_POWER: 0.0}]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
-        """Keep presliding distances to what a recording of this twist can show."""
+        """Keep presliding distances and conditioning to what a recording of this twist can show."""
+        if parameter.name == CONDITIONING:
+            most = MOST_CONDITIONING * history.largest_torque_nm
+            return replace(parameter, lower=-most, upper=most)
         if parameter.name != "slip_deg":
             return super().shape_bounds(parameter, history)
         twist = history.largest_twist_deg

@@ -6,11 +6,12 @@ import numpy as np
 
 import cyclosweep._core as _core
 from cyclosweep.errors import InputError
+from cyclosweep.simulation.effects.conditioning import Conditioning
 from cyclosweep.simulation.effects.corners import NO_CORNERS, Corners
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.parameters import Shape
 from cyclosweep.simulation.effects.slip_elements import Elements, elements_of
-from cyclosweep.simulation.effects.slip_start import crossed_play, start_of
+from cyclosweep.simulation.effects.slip_start import crossed_play, lies_behind_play, start_of
 
 BY_READING = "by_reading"
 """Name in the shape of a friction or a drag: 1 where the torque turns at the readings, as in
@@ -86,6 +87,8 @@ def slip_state(
 ) -> Floats:
     """State of the elements along the model's path.
 
+    The angles of a conditioning are those of the straight line.
+
     Parameters
     ----------
     history : History
@@ -114,6 +117,16 @@ def slip_state(
         angle = corners.insert(angle, at_corner)
         restart, start = corners.insert(restart, False), corners.insert(start, 0.0)
         stretch = corners.insert(stretch, corners.between(stretch))
+    before = Conditioning.of(restart, shape)
+    if before is not None:
+        flank = 0.0 if lies_behind_play(shape) else before.flank * history.free_play_deg
+        worked = history.datum_deg + flank + history.compliance_deg_per_nm * before.torque_nm
+        angle, start, stretch = (
+            before.insert(angle, worked),
+            before.held(start),
+            before.held(stretch),
+        )
+        restart = before.restarts(restart)
     state = _core.slip_state(
         np.ascontiguousarray(angle),
         restart,
@@ -123,6 +136,7 @@ def slip_state(
         elements.share,
         forgetting=float(shape.get("forgetting", 0.0)),
     )
+    state = state if before is None else before.taken_out(state)
     return corners.taken_out(state) if len(corners) else state
 
 
@@ -166,6 +180,15 @@ def solve_slip(
         torque = corners.insert(torque, corners.torque_nm)
         offset = corners.insert(offset, corners.between(offset))
         restart, start = corners.insert(restart, False), corners.insert(start, 0.0)
+    before = Conditioning.of(restart, shape)
+    if before is not None:
+        torque, start = before.insert(torque, before.torque_nm), before.held(start)
+        at_first = offset[before.first][:, None]
+        if free_play == 0.0 and not lies_behind_play(shape):
+            # The offset holds the flank of the first reading.
+            side = history.side[history.restart | (np.arange(len(history)) == 0)]
+            at_first = at_first + (before.flank - side[:, None]) * history.free_play_deg
+        offset, restart = before.insert(offset, at_first), before.restarts(restart)
     angle, friction = _core.solve_slip(
         torque,
         np.ascontiguousarray(offset),
@@ -184,6 +207,8 @@ def solve_slip(
         law_torque=None if law is None else law[0],
         law_twist=None if law is None else law[1],
     )
+    if before is not None:
+        angle, friction = before.taken_out(angle), before.taken_out(friction)
     if not len(corners):
         return SlipPath(angle, friction)
     there = corners.places

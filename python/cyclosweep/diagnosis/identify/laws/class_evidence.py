@@ -14,6 +14,7 @@ from cyclosweep.diagnosis.hypotheses.behaviour_classes import CLASSES_OF_FAMILY,
 from cyclosweep.diagnosis.identify.fitting.fitted_structure import FittedStructure
 from cyclosweep.diagnosis.identify.structures.scan import likelihood_gain
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, orthonormal
+from cyclosweep.simulation.effects.conditioning import CONDITIONING
 from cyclosweep.simulation.effects.history import Floats
 
 NARROWEST = 1e-9
@@ -79,7 +80,8 @@ class ClassColumns:
         problem, noise = fitted.problem, fitted.noise
         use = problem.fitted
         _, weight = noise.residual(problem.angle_deg[use], fitted.mean_deg[use])
-        made = class_columns(fitted.history)
+        friction = next((term.shape for term in fitted.terms if term.slips), {})
+        made = class_columns(fitted.history, friction.get(CONDITIONING, 0.0))
         in_series = {
             name
             for term in fitted.terms

@@ -17,8 +17,10 @@ from cyclosweep.diagnosis.identify.laws.loop_check import is_curve_of_torque
 from cyclosweep.diagnosis.identify.structures.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+from cyclosweep.simulation.effects.conditioning import CONDITIONING
 from cyclosweep.simulation.effects.creep import Creep
-from cyclosweep.simulation.effects.slip import FrictionEffect
+from cyclosweep.simulation.effects.parameters import Shape
+from cyclosweep.simulation.effects.slip import SLIP_PARAMETERS, FrictionEffect
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
@@ -39,6 +41,8 @@ SAME_OPTIMUM = 0.01
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
+CONDITIONED = 0.6
+"""Load of a conditioning before each run from which its own is looked for, over the largest."""
 HOPELESS = 2.0
 """Error of a fit over that of the best one from which it is no rival, whatever it is charged."""
 
@@ -303,7 +307,7 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
 
 
 def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStructure]:
-    """Fit the same structure with friction that meets the play in each other way.
+    """Fit the same structure with friction that meets the play in each other way, or began worked.
 
     Parameters
     ----------
@@ -315,14 +319,21 @@ def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStr
     Yields
     ------
     FittedStructure
-        None without free play, and where it explains far less.
+        None where it explains far less.
     """
-    own = next((state_of(term.shape) for term in before.terms if term.slips), None)
-    if own is None or before.problem.history.free_play_deg <= 0.0:
+    first = next((term for term in before.terms if term.slips), None)
+    own = None if first is None else state_of(first.shape)
+    if first is None or own is None:
         return
-    for state in STATES:
-        if state == own:
-            continue
+    history = before.problem.history
+    others: list[Shape] = []
+    if history.free_play_deg > 0.0:
+        others += [state for state in STATES if state != own]
+    assert first.effect is not None
+    if first.effect.shape_parameters is SLIP_PARAMETERS and CONDITIONING not in first.shape:
+        worked = CONDITIONED * history.largest_torque_nm
+        others += [{**own, CONDITIONING: load} for load in (worked, -worked)]
+    for state in others:
         begun = [
             replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
             for term in before.terms
