@@ -89,7 +89,11 @@ def class_columns(history: History, conditioning_nm: float = 0.0) -> dict[str, F
     dict of str to ndarray, shape (n, k)
         By the name of the class.
     """
-    return dict(_curves_and_loops(history, conditioning_nm)) | dict(_in_time(history)) | dict(_by_state(history))
+    return (
+        dict(_curves_and_loops(history, conditioning_nm))
+        | dict(_in_time(history))
+        | dict(_by_state(history))
+    )
 
 
 def smooth_columns(share: Floats) -> Floats:

@@ -17,10 +17,8 @@ from cyclosweep.diagnosis.identify.laws.loop_check import is_curve_of_torque
 from cyclosweep.diagnosis.identify.structures.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
-from cyclosweep.simulation.effects.conditioning import CONDITIONING
 from cyclosweep.simulation.effects.creep import Creep
-from cyclosweep.simulation.effects.parameters import Shape
-from cyclosweep.simulation.effects.slip import SLIP_PARAMETERS, FrictionEffect
+from cyclosweep.simulation.effects.slip import FrictionEffect
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
@@ -41,8 +39,6 @@ SAME_OPTIMUM = 0.01
 CONVERGED = 20
 """Most iterations of the fit of what a stage accepted, so that what it leaves is not for want of
 them."""
-CONDITIONED = 0.6
-"""Load of a conditioning before each run from which its own is looked for, over the largest."""
 HOPELESS = 2.0
 """Error of a fit over that of the best one from which it is no rival, whatever it is charged."""
 
@@ -321,24 +317,23 @@ def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStr
     FittedStructure
         None where it explains far less.
     """
-    first = next((term for term in before.terms if term.slips), None)
-    own = None if first is None else state_of(first.shape)
-    if first is None or own is None:
+    slipping = [k for k, term in enumerate(before.terms) if term.slips]
+    own = state_of(before.terms[slipping[0]].shape) if slipping else None
+    if own is None:
         return
     history = before.problem.history
-    others: list[Shape] = []
-    if history.free_play_deg > 0.0:
-        others += [state for state in STATES if state != own]
+    others = [state for state in STATES if state != own and history.free_play_deg > 0.0]
+    shapes = {k: before.terms[k].shape for k in slipping if state_of(before.terms[k].shape)}
+    begun = [{k: in_other_state(shape, state) for k, shape in shapes.items()} for state in others]
+    first = before.terms[slipping[0]]
     assert first.effect is not None
-    if first.effect.shape_parameters is SLIP_PARAMETERS and CONDITIONING not in first.shape:
-        worked = CONDITIONED * history.largest_torque_nm
-        others += [{**own, CONDITIONING: load} for load in (worked, -worked)]
-    for state in others:
-        begun = [
-            replace(term, shape=in_other_state(term.shape, state)) if state_of(term.shape) else term
-            for term in before.terms
+    worked = first.effect.conditioned(history, first.shape)
+    for other_shapes in (*begun, *({slipping[0]: shape} for shape in worked)):
+        terms = [
+            replace(term, shape=other_shapes.get(k, term.shape))
+            for k, term in enumerate(before.terms)
         ]
-        other = _fitted(noise, begun, before, before)
+        other = _fitted(noise, terms, before, before)
         if other is not None:
             yield other
 
