@@ -72,7 +72,7 @@ SLIP_PARAMETERS = (
 )
 CONDITIONED = 0.6
 """Load of a conditioning from which its own is looked for, in the largest of the recording."""
-MOST_CONDITIONING = 2.0
+MOST_CONDITIONING = 1.2
 """Largest load of a conditioning, in those of the recording."""
 MOST_BENT = 4.0
 """Load over `reference_nm` up to which the ratio of limit and load changes with the load."""

@@ -79,6 +79,35 @@ def _corners(history: History, shape: Shape) -> Corners:
     return NO_CORNERS if shape.get(BY_READING, 0.0) else history.corners
 
 
+def _onto_flank(before: Conditioning, history: History) -> Floats:
+    """Angle from the flank of first readings to that of the loads before, shape (h, 2) [deg]."""
+    side = history.side[history.restart | (np.arange(len(history)) == 0)]
+    return np.asarray((before.flank - side[:, None]) * history.free_play_deg)
+
+
+def _start_before(before: Conditioning, start: Floats, history: History, shape: Shape) -> Floats:
+    """Angle at which elements are anchored, where a load before the first reading comes first.
+
+    Parameters
+    ----------
+    before : Conditioning
+    start : ndarray, shape (n,)
+        See `start_of` [deg].
+    history : History
+    shape : mapping
+        Shape of the friction.
+
+    Returns
+    -------
+    ndarray, shape (n + 2 h,)
+        In deg.
+    """
+    at_first = start[before.first][:, None]
+    if not lies_behind_play(shape):
+        at_first = at_first + (1.0 - float(shape.get("slack", 0.0))) * _onto_flank(before, history)
+    return before.insert(start, at_first)
+
+
 def slip_state(
     history: History,
     shape: Shape,
@@ -119,14 +148,11 @@ def slip_state(
         stretch = corners.insert(stretch, corners.between(stretch))
     before = Conditioning.of(restart, shape)
     if before is not None:
-        flank = 0.0 if lies_behind_play(shape) else before.flank * history.free_play_deg
-        worked = history.datum_deg + flank + history.compliance_deg_per_nm * before.torque_nm
-        angle, start, stretch = (
-            before.insert(angle, worked),
-            before.held(start),
-            before.held(stretch),
-        )
-        restart = before.restarts(restart)
+        worked = history.datum_deg + history.compliance_deg_per_nm * before.torque_nm
+        if not lies_behind_play(shape):
+            worked = worked + before.flank * history.free_play_deg
+        angle, start = before.insert(angle, worked), _start_before(before, start, history, shape)
+        stretch, restart = before.held(stretch), before.restarts(restart)
     state = _core.slip_state(
         np.ascontiguousarray(angle),
         restart,
@@ -182,12 +208,12 @@ def solve_slip(
         restart, start = corners.insert(restart, False), corners.insert(start, 0.0)
     before = Conditioning.of(restart, shape)
     if before is not None:
-        torque, start = before.insert(torque, before.torque_nm), before.held(start)
+        torque = before.insert(torque, before.torque_nm)
+        start = _start_before(before, start, history, shape)
         at_first = offset[before.first][:, None]
         if free_play == 0.0 and not lies_behind_play(shape):
             # The offset holds the flank of the first reading.
-            side = history.side[history.restart | (np.arange(len(history)) == 0)]
-            at_first = at_first + (before.flank - side[:, None]) * history.free_play_deg
+            at_first = at_first + _onto_flank(before, history)
         offset, restart = before.insert(offset, at_first), before.restarts(restart)
     angle, friction = _core.solve_slip(
         torque,
