@@ -250,10 +250,6 @@ class Effect(FormerNames):
         """
         return self.variants(history, shape)
 
-    def conditioned(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Shapes of a drive that was worked to and fro before each run, see `refinements`."""
-        return []
-
     def penalty(self, shape: Shape) -> float:
         """Log prior odds against a shape so free that it holds other effects whole [nat]."""
         return 0.0

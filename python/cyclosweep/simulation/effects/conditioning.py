@@ -16,8 +16,33 @@ from cyclosweep.simulation.effects.parameters import Shape
 
 CONDITIONING = "conditioning_nm"
 """Name in the shape of a friction: the load of the conditioning, with the sign of its last end."""
+CONDITIONED = 0.6
+"""Load of a conditioning from which its own is looked for, in the largest of the recording."""
+MOST_CONDITIONING = 1.2
+"""Largest load of a conditioning, in those of the recording."""
 
 Kind = TypeVar("Kind", bound=np.generic)
+
+
+def conditioned(shape: Shape, largest_nm: float) -> list[Shape]:
+    """Shapes of the same friction, left from either side of a conditioning.
+
+    Parameters
+    ----------
+    shape : mapping
+        Shape of a friction.
+    largest_nm : float
+        Largest torque of the recording [N m].
+
+    Returns
+    -------
+    list of mapping
+        Empty where the shape says from which side already.
+    """
+    if CONDITIONING in shape:
+        return []
+    load_nm = CONDITIONED * largest_nm
+    return [{**shape, CONDITIONING: load} for load in (load_nm, -load_nm)]
 
 
 @dataclass(frozen=True, eq=False)

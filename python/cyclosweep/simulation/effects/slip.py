@@ -8,7 +8,7 @@ import numpy as np
 
 from cyclosweep.errors import InputError
 from cyclosweep.simulation.effects.base import Effect, Parameter, Shape, ShapeForm
-from cyclosweep.simulation.effects.conditioning import CONDITIONING
+from cyclosweep.simulation.effects.conditioning import CONDITIONING, MOST_CONDITIONING
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.slip_elements import (
     ELEMENTS,
@@ -70,10 +70,6 @@ SLIP_PARAMETERS = (
         1e6,
     ),
 )
-CONDITIONED = 0.6
-"""Load of a conditioning from which its own is looked for, in the largest of the recording."""
-MOST_CONDITIONING = 1.2
-"""Largest load of a conditioning, in those of the recording."""
 MOST_BENT = 4.0
 """Load over `reference_nm` up to which the ratio of limit and load changes with the load."""
 OPTIONAL = ("skew", "slack", "forgetting", "behind_play", CONDITIONING, BY_READING)
@@ -204,13 +200,6 @@ class FrictionEffect(Effect):
         if own or LOAD_POWER in shape or self.friction_limits(shape)[1] <= 0.0:
             return []
         return [{"reference_nm": 0.5 * history.largest_torque_nm, **shape, LOAD_POWER: 0.0}]
-
-    def conditioned(self, history: History, shape: Shape) -> Sequence[Shape]:
-        """Friction that was left from either side; none where the shape says from which."""
-        if self.shape_parameters != SLIP_PARAMETERS or CONDITIONING in shape:
-            return []
-        load_nm = CONDITIONED * history.largest_torque_nm
-        return [{**shape, CONDITIONING: load} for load in (load_nm, -load_nm)]
 
     def shape_bounds(self, parameter: Parameter, history: History) -> Parameter:
         """Keep presliding distances and conditioning to what a recording of this twist can show."""

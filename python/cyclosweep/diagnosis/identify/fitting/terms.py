@@ -6,6 +6,7 @@ import numpy as np
 
 from cyclosweep.diagnosis.hypotheses.unnamed_shapes import UnnamedShape
 from cyclosweep.simulation.effects import Effect, Shape
+from cyclosweep.simulation.effects.conditioning import CONDITIONING
 from cyclosweep.simulation.effects.history import Floats, History
 from cyclosweep.simulation.effects.order_names import travels
 from cyclosweep.simulation.effects.slip import friction_limit_nm
@@ -82,18 +83,28 @@ class Term:
 
     @property
     def place_in_words(self) -> tuple[str, ...]:
-        """Sentence on where the effect lies beside friction and play, where that is unusual."""
+        """Sentences on where the effect lies beside friction and play, and how it began.
+
+        None where that is usual.
+        """
         if self.in_series:
             return (
                 f"{self.name} follows the applied torque, not what friction leaves of it: the part "
                 "that gives way lies between the friction and the load.",
             )
+        found = []
         if self.slips and lies_behind_play(self.shape):
-            return (
+            found.append(
                 f"{self.name} does not slide while the play is crossed: it lies on the other side "
-                "of the play than the shaft that was measured.",
+                "of the play than the shaft that was measured."
             )
-        return ()
+        if self.slips and CONDITIONING in self.shape:
+            last = "negative" if self.shape[CONDITIONING] < 0.0 else "positive"
+            found.append(
+                f"{self.name} did not begin fresh: the drive looks as if it was loaded to and fro "
+                f"before the first reading, and left from the {last} side."
+            )
+        return tuple(found)
 
     def columns(self, history: History) -> Floats:
         """Columns for unit amplitudes [deg]."""

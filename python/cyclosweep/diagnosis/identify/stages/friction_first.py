@@ -17,8 +17,9 @@ from cyclosweep.diagnosis.identify.laws.loop_check import is_curve_of_torque
 from cyclosweep.diagnosis.identify.structures.enrichment import freer_friction
 from cyclosweep.diagnosis.identify.structures.search import Search
 from cyclosweep.diagnosis.prepare.noise import INDEPENDENT_PIECES, Noise
+from cyclosweep.simulation.effects.conditioning import conditioned
 from cyclosweep.simulation.effects.creep import Creep
-from cyclosweep.simulation.effects.slip import FrictionEffect
+from cyclosweep.simulation.effects.slip import SLIP_PARAMETERS, FrictionEffect
 from cyclosweep.simulation.effects.slip_start import STATES, in_other_state, state_of
 
 STARTS = ((0.05, 0.02), (0.1, 0.02), (0.05, 0.08))
@@ -276,10 +277,10 @@ def _fitted(
 
 
 def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> FittedStructure:
-    """Let friction meet the play in another way, where that explains clearly more.
+    """Let friction begin or meet the play in another way, where that explains clearly more.
 
     Runs begin with fresh friction on the first flank, or with friction that has slipped, or
-    friction lies behind the play and does not notice it.
+    friction lies behind the play and does not notice it; or the drive was worked before.
 
     Parameters
     ----------
@@ -303,7 +304,7 @@ def from_better_start(noise: Noise, best: FittedStructure, charge: float) -> Fit
 
 
 def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStructure]:
-    """Fit the same structure with friction that meets the play in each other way, or began worked.
+    """Fit the same structure with friction that meets the play in each other way, or was worked.
 
     Parameters
     ----------
@@ -326,8 +327,9 @@ def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStr
     shapes = {k: before.terms[k].shape for k in slipping if state_of(before.terms[k].shape)}
     begun = [{k: in_other_state(shape, state) for k, shape in shapes.items()} for state in others]
     first = before.terms[slipping[0]]
-    assert first.effect is not None
-    worked = first.effect.conditioned(history, first.shape)
+    worked = []
+    if first.effect is not None and first.effect.shape_parameters is SLIP_PARAMETERS:
+        worked = conditioned(first.shape, history.largest_torque_nm)
     for other_shapes in (*begun, *({slipping[0]: shape} for shape in worked)):
         terms = [
             replace(term, shape=other_shapes.get(k, term.shape))
