@@ -25,6 +25,7 @@ from cyclosweep.diagnosis.provenance import provenance_of
 from cyclosweep.diagnosis.remainder import remainder
 from cyclosweep.diagnosis.repair import RepairedModel
 from cyclosweep.diagnosis.verification import Verification
+from cyclosweep.diagnosis.whole_loop.one_rate import remark_on_one_rate
 from cyclosweep.diagnosis.whole_loop.rig_limits import RIPPLE, rig_limits
 from cyclosweep.recording import Recording
 from cyclosweep.recording.unbroken_runs import unbroken_runs
@@ -118,6 +119,7 @@ def _answer(
     Answer
     """
     recording = concluded.search.problem.recording
+    effects = found_effects(concluded, verified.held_out.e_value)
     answer = Answer(
         tolerance_deg=concluded.tolerance_deg,
         verdict=verified.decision.verdict,
@@ -126,7 +128,7 @@ def _answer(
         baseline=replace(repaired.before, holdout_rmse_deg=finite(verified.held_out.before_deg)),
         mismatch=_mismatch(concluded.search, regions),
         explained=concluded.explained,
-        effects=found_effects(concluded, verified.held_out.e_value),
+        effects=effects,
         classes=classes_shown(concluded),
         explanation_set=explanations(concluded),
         ruled_out=_bounds(concluded, excluded=True),
@@ -141,6 +143,7 @@ def _answer(
             *repaired.model.notes,
             *recording.notes,
             *_ripple(recording, verified.decision.verdict),
+            *remark_on_one_rate(recording, [each.name for each in effects]),
             *(() if concluded.search.problem.one_history else unbroken_runs(recording)),
             *(fault.reason for fault in recording.faults),
         ),
