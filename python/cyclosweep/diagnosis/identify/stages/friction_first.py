@@ -328,7 +328,9 @@ def in_other_states(noise: Noise, before: FittedStructure) -> Iterator[FittedStr
     begun = [{k: in_other_state(shape, state) for k, shape in shapes.items()} for state in others]
     first = before.terms[slipping[0]]
     worked = []
-    if first.effect is not None and first.effect.shape_parameters is SLIP_PARAMETERS:
+    # Of several runs that begin afresh, what a conditioning seems to leave may be the run before.
+    own_elements = first.effect is None or first.effect.shape_parameters is not SLIP_PARAMETERS
+    if not own_elements and not np.any(history.restart[1:]):
         worked = conditioned(first.shape, history.largest_torque_nm)
     for other_shapes in (*begun, *({slipping[0]: shape} for shape in worked)):
         terms = [
